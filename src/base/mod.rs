@@ -1,0 +1,10 @@
+//! Words that everything shares: numbers, ticks, ids, random streams, digests, threads.
+
+pub mod digest;
+pub mod parallel;
+pub mod random;
+pub mod real;
+pub mod tick;
+
+pub use real::{Mat3, Pose, Quat, Real, Vec3};
+pub use tick::Tick;

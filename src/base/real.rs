@@ -1,0 +1,49 @@
+//! The numbers of the core: double precision and nalgebra's vectors, SI units throughout.
+
+/// A real number.
+pub type Real = f64;
+/// A vector in three dimensions.
+pub type Vec3 = nalgebra::Vector3<Real>;
+/// A 3 × 3 matrix.
+pub type Mat3 = nalgebra::Matrix3<Real>;
+/// A rotation.
+pub type Quat = nalgebra::UnitQuaternion<Real>;
+/// Position and orientation of a frame.
+pub type Pose = nalgebra::Isometry3<Real>;
+
+/// Linear and angular velocity of a body, world axes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Twist {
+    /// Velocity of the frame's origin [m/s].
+    pub linear: Vec3,
+    /// Angular velocity [rad/s].
+    pub angular: Vec3,
+}
+
+impl Twist {
+    /// A body at rest.
+    pub fn zero() -> Self {
+        Self { linear: Vec3::zeros(), angular: Vec3::zeros() }
+    }
+
+    /// Velocity of the material point at `arm` [m] from the frame's origin [m/s].
+    pub fn at(&self, arm: &Vec3) -> Vec3 {
+        self.linear + self.angular.cross(arm)
+    }
+}
+
+/// A force and a torque about a stated point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wrench {
+    /// Force [N].
+    pub force: Vec3,
+    /// Torque about the stated point [N m].
+    pub torque: Vec3,
+}
+
+impl Wrench {
+    /// No force, no torque.
+    pub fn zero() -> Self {
+        Self { force: Vec3::zeros(), torque: Vec3::zeros() }
+    }
+}

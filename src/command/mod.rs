@@ -1,0 +1,115 @@
+//! What the outside may ask. A closed list: sources make commands, `apply` carries them out.
+//!
+//! A command holds the values exactly as they arrived, even senseless ones: what is refused is
+//! recorded too.
+
+/// One wish of the outside.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Command {
+    /// Set-point of the chamber's gauge pressure [Pa]: negative is vacuum, positive blows off.
+    Vacuum {
+        /// Gauge pressure [Pa].
+        gauge_pa: f64,
+    },
+    /// Pose that the flange shall move to.
+    FlangePose(PoseCommand),
+    /// Pose that drives an object kinematically until its time-out or a release.
+    ObjectPose {
+        /// Name of the object.
+        object: String,
+        /// Where it shall be.
+        pose: PoseCommand,
+    },
+    /// Gives a driven object back to dynamics at once.
+    ObjectRelease {
+        /// Name of the object.
+        object: String,
+    },
+}
+
+/// A pose as it arrived.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PoseCommand {
+    /// Frame the pose is given in; empty means `world`.
+    pub frame_id: String,
+    /// Stamp of the message [ns]; recorded, not used.
+    pub stamp_ns: i64,
+    /// Position x, y, z [m].
+    pub position: [f64; 3],
+    /// Orientation x, y, z, w.
+    pub orientation: [f64; 4],
+}
+
+/// What became of a command.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Outcome {
+    /// Carried out as asked.
+    Applied,
+    /// Carried out within a limit; says which.
+    Limited(Limit),
+    /// Not carried out; says why.
+    Refused(Refusal),
+}
+
+/// Why a command was carried out only in part.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Limit {
+    /// The pressure was beyond the pump's range and was clamped.
+    PumpRange {
+        /// Asked for [Pa].
+        asked_pa: f64,
+        /// Set instead [Pa].
+        set_pa: f64,
+    },
+    /// The pose is further away than one command period allows; it is approached at the limits.
+    PoseJump {
+        /// Distance to the pose commanded before [m].
+        distance_m: f64,
+        /// Distance that the velocity limit allows in the time since then [m].
+        allowed_m: f64,
+    },
+}
+
+/// Why a command was not carried out.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Refusal {
+    /// A value is NaN or infinite.
+    #[error("{field} is {value}: send finite numbers")]
+    NotFinite {
+        /// Which value.
+        field: &'static str,
+        /// The value.
+        value: f64,
+    },
+    /// The quaternion's length is not one.
+    #[error("orientation has length {length}, more than 1e-3 from 1: normalise the quaternion")]
+    NotNormalised {
+        /// Length of the quaternion.
+        length: f64,
+    },
+    /// The frame is not one of this scene's.
+    #[error("unknown frame `{frame_id}`: use one of {known}")]
+    UnknownFrame {
+        /// What was asked for.
+        frame_id: String,
+        /// What there is.
+        known: String,
+    },
+    /// The object is not one of this scene's.
+    #[error("unknown object `{object}`: the scene has {known}")]
+    UnknownObject {
+        /// What was asked for.
+        object: String,
+        /// What there is.
+        known: String,
+    },
+}
+
+/// A command and its fate, as recorded.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CommandRecord {
+    /// What was asked.
+    pub command: Command,
+    /// What became of it.
+    pub outcome: Outcome,
+}

@@ -1,0 +1,10 @@
+//! `jamgrip`: co-simulation of granular jamming grippers for ROS 2.
+//!
+//! This list is the table of contents and the law: a module uses only modules listed above it.
+
+pub mod base; // words that everything shares
+pub mod scene; // text to model
+pub mod command; // what the outside may ask
+pub mod snapshot; // what the outside may see
+pub mod wire; // bytes for the outside
+pub mod sinks; // where snapshots go

@@ -1,0 +1,3 @@
+//! Bytes for the outside; pure functions from snapshots to messages and back to commands.
+
+pub mod topics;
