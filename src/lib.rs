@@ -3,6 +3,7 @@
 //! This list is the table of contents and the law: a module uses only modules listed above it.
 
 pub mod base; // words that everything shares
+pub mod physics; // grains, membrane, objects: how they move
 pub mod scene; // text to model
 pub mod command; // what the outside may ask
 pub mod snapshot; // what the outside may see

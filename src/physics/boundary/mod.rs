@@ -1,0 +1,3 @@
+//! What grains and membrane meet besides each other.
+
+pub mod shape;

@@ -1,0 +1,4 @@
+//! Grains, membrane and chamber: pure functions of model, state and controls.
+
+pub mod membrane;
+pub mod boundary;
