@@ -60,7 +60,9 @@ fn run(model: &MembraneModel, state: &mut MembraneState, dt: Real, steps: usize,
             state.positions[v] += state.velocities[v] * dt;
         }
     }
-    state.velocities.iter().map(|v| v.norm()).fold(0.0, Real::max)
+    // Unlike Real::max this keeps a NaN.
+    let larger = |a: Real, b: Real| if b > a || b.is_nan() { b } else { a };
+    state.velocities.iter().map(|v| v.norm()).fold(0.0, larger)
 }
 
 #[test]
@@ -304,15 +306,10 @@ fn bending_restores_from_both_sides_and_leaves_lengths_alone() {
             let (_, angle_after) = bend(&moved);
             // Oracle: C3 c, following the force brings the angle nearer to rest.
             assert!((angle_after - angle).abs() < (angle_before - angle).abs());
-            for [a, b] in [[0, 2], [0, 3], [1, 2], [1, 3], [2, 3]] {
-                let side: Vec3 = positions[b] - positions[a];
-                // Oracle: C3 e, forces are normal to the triangles, so no side is stretched by its
-                // own triangle's share. The shared edge has both. Tolerance: rounding.
-                let own = (f[b] - f[a]).dot(&side);
-                let other = [[0, 2], [0, 3]].contains(&[a, b]);
-                let across = if other { fold_of(&model, &positions).0.u2 } else { fold_of(&model, &positions).0.u1 };
-                let foreign = across.dot(&side).abs() * f[1].norm().max(f[0].norm());
-                assert!(own.abs() <= 2.0 * foreign + 1e-18);
+            for [of, a, b] in [[0, 0, 2], [0, 0, 3], [0, 2, 3], [1, 1, 2], [1, 1, 3], [1, 2, 3]] {
+                let along = f[of].dot(&(positions[b] - positions[a]));
+                // Oracle: C3 e, the force on r1 (r2) is normal to triangle 1 (2). Tolerance: rounding.
+                assert!(along.abs() < 1e-15 * f[of].norm());
             }
         }
     }
