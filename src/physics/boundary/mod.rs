@@ -1,0 +1,4 @@
+//! What grains and membrane meet besides each other.
+
+pub mod body;
+pub mod shape;
