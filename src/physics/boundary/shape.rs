@@ -1,0 +1,1 @@
+//! Signed distance, mass and inertia of the shapes of rigid objects.
