@@ -5,7 +5,7 @@ use super::{
     contact::law::PairLaw,
     membrane::MembraneModel,
 };
-use crate::base::{Real, Vec3};
+use crate::base::{Pose, Real, Vec3};
 
 /// Everything that does not change.
 #[derive(Clone)]
@@ -34,7 +34,10 @@ pub struct Model {
     pub clamped_positions: Vec<Vec3>,
     /// The air.
     pub chamber: ChamberModel,
-    /// The rigid bodies that the membrane can touch, in the order of `Controls::bodies`.
+    /// Pose of the table: its surface is z = 0 of this frame.
+    pub table: Pose,
+    /// The rigid bodies that the membrane can touch, in the order of `Controls::bodies`; the table
+    /// is last.
     pub bodies: Vec<BodyModel>,
 }
 

@@ -3,20 +3,20 @@
 use super::law::{self, Touch};
 use crate::{
     base::Vec3,
-    physics::{Controls, Model, scratch::PlateForce, state::Grains},
+    physics::{Model, scratch::PlateForce, state::State},
 };
 
 /// Force of the plate on grain `i`; carries its spring on by one substep.
 #[inline]
 pub fn force(
     model: &Model,
-    controls: &Controls,
-    grains: &Grains,
+    state: &State,
     i: usize,
     spring: &mut Vec3,
 ) -> PlateForce {
-    let down = -(controls.flange.rotation * Vec3::z());
-    let from_flange = grains.positions[i] - controls.flange.translation.vector;
+    let State { grains, flange, flange_twist, .. } = state;
+    let down = -(flange.rotation * Vec3::z());
+    let from_flange = grains.positions[i] - flange.translation.vector;
     let overlap = grains.radii[i] - down.dot(&from_flange);
     if overlap <= 0.0 {
         *spring = Vec3::zeros();
@@ -24,7 +24,7 @@ pub fn force(
     }
     let arm = down * -(grains.radii[i] - overlap / 2.0);
     let velocity = grains.velocities[i] + grains.spins[i].cross(&arm)
-        - controls.flange_twist.at(&(from_flange + arm));
+        - flange_twist.at(&(from_flange + arm));
     let touch = Touch {
         overlap,
         normal: down,

@@ -88,8 +88,8 @@ pub fn on_membrane(model: &Model, controls: &Controls, scratch: &mut Scratch) {
 
 /// What bag and grains put on the flange: the plate's contacts, the clamped vertices' forces and
 /// weight less what accelerates them, and the pressure on the plate.
-pub fn on_flange(model: &Model, controls: &Controls, state: &State, scratch: &mut Scratch) {
-    let origin = controls.flange.translation.vector;
+pub fn on_flange(model: &Model, state: &State, scratch: &mut Scratch) {
+    let origin = state.flange.translation.vector;
     let mut wrench = Wrench::zero();
     let mut add = |point: &Vec3, force: Vec3| {
         wrench.force += force;
