@@ -10,6 +10,9 @@ pub mod stretch;
 pub mod bridson_2003;
 pub mod pressure;
 pub mod critical_step;
+pub mod contact_geometry;
+#[cfg(test)]
+mod tests;
 
 use bridson_2003::Fold;
 use mesh::{Mesh, area_normal};
