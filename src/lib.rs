@@ -9,5 +9,6 @@ pub mod cosim; // one tick of the coupled system
 pub mod command; // what the outside may ask
 pub mod snapshot; // what the outside may see
 pub mod session; // one run in memory
+pub mod controller; // who asks, if nobody outside does
 pub mod wire; // bytes for the outside
 pub mod sinks; // where snapshots go

@@ -15,12 +15,19 @@ use rapier3d_f64::{
 
 use crate::{
     base::{
-        Mat3, Pose, Real, Vec3,
+        Pose, Real, Vec3,
         digest::Digest,
         real::{Twist, Wrench},
     },
-    physics::boundary::body::BodyMotion,
-    scene::{Scene, Shape},
+    physics::{
+        Model,
+        boundary::{
+            body::BodyMotion,
+            shape::{Bulk, Surface},
+        },
+        model::BodySurface,
+    },
+    scene::Scene,
 };
 
 /// Half the edge of the table's slab, and half its thickness [m].
@@ -28,59 +35,49 @@ const TABLE_HALF: [Real; 2] = [2.0, 0.1];
 /// Length that rapier takes as typical of the bodies [m].
 const LENGTH_UNIT: Real = 0.02;
 
-/// Mass, centre of mass and inertia of an object.
-#[derive(Clone, Copy, Debug)]
-pub struct Inertia {
-    /// Mass [kg].
-    pub mass: Real,
-    /// Centre of mass in the shape's frame [m].
-    pub centre: Vec3,
-    /// Inertia about the centre of mass, shape's axes [kg m²].
-    pub tensor: Mat3,
-}
-
 /// Objects and table.
 pub struct RapierWorld {
     world: PhysicsWorld,
     bodies: Vec<RigidBodyHandle>,
-    inertias: Vec<Inertia>,
+    bulks: Vec<Bulk>,
 }
 
 impl RapierWorld {
-    /// Puts the objects of `scene` into a fresh world; `inertias` are in their order.
-    pub fn new(scene: &Scene, inertias: Vec<Inertia>, step: Real) -> Self {
+    /// Puts the objects of `scene` into a fresh world; `model` and `bulks` are in their order.
+    pub fn new(scene: &Scene, model: &Model, bulks: Vec<Bulk>, step: Real) -> Self {
         let mut world = PhysicsWorld { gravity: vector(&scene.gravity), ..Default::default() };
         let parameters = &mut world.integration_parameters;
         parameters.dt = step;
         parameters.contact_recycling = false;
         parameters.length_unit = LENGTH_UNIT;
         let [edge, thickness] = TABLE_HALF;
-        let top = Vector::new(0.0, 0.0, scene.table.height - thickness);
+        let middle = Vector::new(0.0, 0.0, scene.table.height - thickness);
         let slab = ColliderBuilder::cuboid(edge, edge, thickness)
             .friction(scene.table.friction)
             .friction_combine_rule(CoefficientCombineRule::Max);
-        world.insert(RigidBodyBuilder::fixed().translation(top), slab);
-        let bodies = scene
-            .objects
-            .iter()
-            .zip(&inertias)
-            .map(|(object, inertia)| {
-                let mut pose = object.pose;
-                pose.translation.vector += object.pose.rotation * inertia.centre;
-                let properties =
-                    MassProperties::with_inertia_matrix(Vector::ZERO, inertia.mass, matrix(inertia));
-                let body = RigidBodyBuilder::dynamic()
-                    .pose(RapierPose::from(pose))
-                    .additional_mass_properties(properties)
-                    .can_sleep(false);
-                let collider = collider(&object.shape, inertia)
-                    .density(0.0)
-                    .friction(0.0)
-                    .friction_combine_rule(CoefficientCombineRule::Max);
-                world.insert(body, collider).0
-            })
-            .collect();
-        Self { world, bodies, inertias }
+        world.insert(RigidBodyBuilder::fixed().translation(middle), slab);
+        let mut bodies = Vec::new();
+        for ((object, body), bulk) in scene.objects.iter().zip(&model.bodies).zip(&bulks) {
+            let BodySurface::Shape(surface) = &body.surface else { continue };
+            let mut pose = object.pose;
+            pose.translation.vector += object.pose.rotation * bulk.centre_of_mass;
+            let properties = MassProperties::with_principal_inertia_frame(
+                Vector::ZERO,
+                bulk.mass,
+                vector(&bulk.principal_inertia),
+                bulk.principal_axes.into(),
+            );
+            let rigid = RigidBodyBuilder::dynamic()
+                .pose(RapierPose::from(pose))
+                .additional_mass_properties(properties)
+                .can_sleep(false);
+            let collider = collider(surface)
+                .density(0.0)
+                .friction(0.0)
+                .friction_combine_rule(CoefficientCombineRule::Max);
+            bodies.push(world.insert(rigid, collider).0);
+        }
+        Self { world, bodies, bulks }
     }
 
     /// How object `i` moves now.
@@ -93,15 +90,17 @@ impl RapierWorld {
 
     /// Mass of object `i` [kg].
     pub fn mass(&self, i: usize) -> Real {
-        self.inertias[i].mass
+        self.bulks[i].mass
     }
 
     /// Momentum [kg m/s] and angular momentum about the centre of mass [kg m²/s] of object `i`.
     pub fn momentum(&self, i: usize) -> (Vec3, Vec3) {
         let motion = self.motion(i);
-        let axes = motion.pose.rotation.to_rotation_matrix();
-        let tensor = axes * self.inertias[i].tensor * axes.transpose();
-        (motion.twist.linear * self.inertias[i].mass, tensor * motion.twist.angular)
+        let bulk = &self.bulks[i];
+        let axes = motion.pose.rotation * bulk.principal_axes;
+        let spin = axes.inverse_transform_vector(&motion.twist.angular);
+        let turning = axes * bulk.principal_inertia.component_mul(&spin);
+        (motion.twist.linear * bulk.mass, turning)
     }
 
     /// Drives object `i` with `twist`, or gives it back to dynamics with its present velocity.
@@ -147,41 +146,27 @@ impl RapierWorld {
 }
 
 /// The shape for contacts with the table, about the centre of mass.
-fn collider(shape: &Shape, inertia: &Inertia) -> ColliderBuilder {
-    let shift = |points: &[Vec3]| -> Vec<Vector> {
-        points.iter().map(|point| vector(&(point - inertia.centre))).collect()
-    };
-    // Rapier's cylinders and capsules stand along y, ours along z.
+fn collider(surface: &Surface) -> ColliderBuilder {
+    // Rapier's cylinders stand along y, ours along z.
     let upright = Pose::rotation(Vec3::x() * std::f64::consts::FRAC_PI_2);
-    match shape {
-        Shape::Sphere { radius } => ColliderBuilder::ball(*radius),
-        Shape::Box { size } => ColliderBuilder::cuboid(size.x / 2.0, size.y / 2.0, size.z / 2.0),
-        Shape::Cylinder { radius, height } => {
-            ColliderBuilder::cylinder(height / 2.0, *radius).position(upright.into())
+    match surface {
+        Surface::Sphere { radius } => ColliderBuilder::ball(*radius),
+        Surface::Cuboid { half } => ColliderBuilder::cuboid(half.x, half.y, half.z),
+        Surface::Cylinder { radius, half_height } => {
+            ColliderBuilder::cylinder(*half_height, *radius).position(upright.into())
         }
-        Shape::Capsule { radius, height } => {
-            ColliderBuilder::capsule_z(height / 2.0 - radius, *radius)
+        Surface::Capsule { radius, half_length } => {
+            ColliderBuilder::capsule_z(*half_length, *radius)
         }
-        Shape::ConvexHull { points } => ColliderBuilder::convex_hull(&shift(points))
-            .expect("the scene's check has built this hull"),
-        Shape::Mesh { vertices, triangles, .. } => ColliderBuilder::trimesh_with_flags(
-            shift(vertices),
-            triangles.clone(),
-            TriMeshFlags::ORIENTED,
-        )
-        .expect("the scene's check has built this mesh"),
+        Surface::Polyhedron(solid) => {
+            let vertices: Vec<Vector> = solid.vertices().map(|v| vector(&v)).collect();
+            let triangles = solid.triangles().to_vec();
+            ColliderBuilder::trimesh_with_flags(vertices, triangles, TriMeshFlags::ORIENTED)
+                .expect("a polyhedron is closed and oriented")
+        }
     }
 }
 
 fn vector(v: &Vec3) -> Vector {
     Vector::new(v.x, v.y, v.z)
-}
-
-fn matrix(inertia: &Inertia) -> rapier3d_f64::math::Matrix {
-    let t = &inertia.tensor;
-    rapier3d_f64::math::Matrix::from_cols(
-        vector(&t.column(0).into_owned()),
-        vector(&t.column(1).into_owned()),
-        vector(&t.column(2).into_owned()),
-    )
 }

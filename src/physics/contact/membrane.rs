@@ -92,8 +92,8 @@ fn touching(
     let mut n = 0;
     for &triangle in candidates {
         let corners = model.membrane.mesh.triangles[triangle as usize]
-            .map(|vertex| state.membrane.positions[vertex as usize]);
-        let closest = closest_on_triangle(&position, &corners);
+            .map(|vertex| &state.membrane.positions[vertex as usize]);
+        let closest = closest_on_triangle(&position, corners);
         let from_membrane = position - closest.point;
         let distance_squared = from_membrane.norm_squared();
         if distance_squared >= radius * radius || distance_squared == 0.0 || n == N_TOUCHED {
@@ -124,8 +124,10 @@ fn is_local_minimum(model: &Model, contact: &Touched, touched: &[Option<Touched>
     let corners = triangles[contact.triangle as usize];
     let shared: [Option<u32>; 2] = match contact.feature {
         Feature::Face => return true,
-        Feature::Edge(k) => [Some(corners[k]), Some(corners[(k + 1) % 3])],
-        Feature::Vertex(k) => [Some(corners[k]), None],
+        Feature::Edge(k) => {
+            [Some(corners[usize::from(k)]), Some(corners[(usize::from(k) + 1) % 3])]
+        }
+        Feature::Vertex(k) => [Some(corners[usize::from(k)]), None],
     };
     let beats = |other: &Touched| {
         let theirs = triangles[other.triangle as usize];

@@ -55,14 +55,14 @@ fn grains_near(
     found: &mut Vec<[u32; 2]>,
 ) {
     let corners = model.membrane.mesh.triangles[triangle]
-        .map(|vertex| state.membrane.positions[vertex as usize]);
+        .map(|vertex| &state.membrane.positions[vertex as usize]);
     let reach = Vec3::repeat(model.radius_max + model.skin);
-    let low = corners[0].inf(&corners[1]).inf(&corners[2]) - reach;
-    let high = corners[0].sup(&corners[1]).sup(&corners[2]) + reach;
+    let low = corners[0].inf(corners[1]).inf(corners[2]) - reach;
+    let high = corners[0].sup(corners[1]).sup(corners[2]) + reach;
     grid.visit(&low, &high, |grain| {
         let i = grain as usize;
         let cut = state.grains.radii[i] + model.skin;
-        let closest = closest_on_triangle(&state.grains.positions[i], &corners);
+        let closest = closest_on_triangle(&state.grains.positions[i], corners);
         if (closest.point - state.grains.positions[i]).norm_squared() < cut * cut {
             found.push([grain, id(triangle)]);
         }
