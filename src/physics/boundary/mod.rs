@@ -1,6 +1,7 @@
 //! What grains and membrane meet besides each other.
 
-pub mod shape;
+pub mod body;
 mod polyhedron;
+pub mod shape;
 #[cfg(test)]
 mod tests;
