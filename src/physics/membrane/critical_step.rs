@@ -38,7 +38,9 @@ enum Part {
 /// The longest stable substep [s] of a sheet whose vertices meet contacts of `contact_stiffness`
 /// [N/m] (0 for none).
 pub fn critical_step(model: &MembraneModel, contact_stiffness: Real) -> Real {
-    let lightest = model.masses.iter().copied().fold(Real::INFINITY, Real::min);
+    let free = |v: &usize| !model.is_clamped[*v];
+    let masses = (0..model.masses.len()).filter(free).map(|v| model.masses[v]);
+    let lightest = masses.fold(Real::INFINITY, Real::min);
     let kappa = MARGIN * largest_eigenvalue(model, Part::Stiffness) + contact_stiffness / lightest;
     let c = MARGIN * largest_eigenvalue(model, Part::Damping);
     ((c * c + 4.0 * kappa).sqrt() - c) / kappa
