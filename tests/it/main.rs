@@ -1,4 +1,6 @@
 //! All integration tests, in one binary.
 #![expect(clippy::unwrap_used, reason = "a failing unwrap is a failing test")]
 
+mod fanout; // sinks behind their queues: order, drops, failure, closing
 mod generated_types; // msgs/*.msg and the Rust types agree
+mod synthetic; // a scene and snapshots made up for tests
