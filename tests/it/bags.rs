@@ -41,7 +41,7 @@ fn record_second(folder: &Path) -> BagReport {
 }
 
 /// What `rosbags` and `mcap-ros2-support` find in a recording.
-fn read(folder: &Path) -> Value {
+fn read_back(folder: &Path) -> Value {
     let json = peers::run("read_bag.py", &[folder.to_str().unwrap()]);
     serde_json::from_str(&json).unwrap()
 }
@@ -123,10 +123,10 @@ fn the_mcap_crate_reads_what_was_encoded() {
 #[test]
 fn other_libraries_read_every_topic() {
     let folder = tempfile::tempdir().unwrap();
-    let bag = folder.path().join("bag");
+    // A name that YAML would take for something else.
+    let bag = folder.path().join("bag: 'first', #1");
     record_second(&bag);
-    let read: Value =
-        serde_json::from_str(&peers::run("read_bag.py", &[bag.to_str().unwrap()])).unwrap();
+    let read = read_back(&bag);
     let topics = read["rosbags"]["topics"].as_object().unwrap();
     let counts: BTreeMap<String, u64> =
         topics.iter().map(|(name, it)| (name.clone(), it["count"].as_u64().unwrap())).collect();
@@ -152,8 +152,7 @@ fn values_arrive_in_other_libraries() {
     let folder = tempfile::tempdir().unwrap();
     let bag = folder.path().join("bag");
     record_second(&bag);
-    let read: Value =
-        serde_json::from_str(&peers::run("read_bag.py", &[bag.to_str().unwrap()])).unwrap();
+    let read = read_back(&bag);
     let first = |topic: &str| read["rosbags"]["topics"][topic]["first"].clone();
     // Oracle: the numbers of `synthetic::snapshot` at the first tick at which each is due.
     assert_eq!(first("/jamgrip/wrench")["wrench"]["force"]["z"], -9.81);
@@ -234,8 +233,7 @@ fn on_a_full_disk_what_was_recorded_stays_readable() {
         + &String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{said}");
     let bag = kept.path().join("bag");
-    let read: Value =
-        serde_json::from_str(&peers::run("read_bag.py", &[bag.to_str().unwrap()])).unwrap();
+    let read = read_back(&bag);
     // Oracle: the counts that the recording itself reported, written by `fill`.
     let reported: BTreeMap<String, u64> =
         serde_json::from_str(&fs::read_to_string(bag.join("reported.json")).unwrap()).unwrap();
@@ -264,4 +262,23 @@ fn fill(disk: &Path) {
     bag.close().unwrap();
     let counts: BTreeMap<String, u64> = reporter.report().message_counts.into_iter().collect();
     fs::write(folder.join("reported.json"), serde_json::to_string(&counts).unwrap()).unwrap();
+}
+
+#[test]
+fn a_killed_recording_keeps_what_was_flushed() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut bag = create(folder.path()).unwrap();
+    (1..=300).for_each(|tick| bag.write(&synthetic::packet(tick)).unwrap());
+    bag.idle().unwrap(); // what happens each second
+    let report = bag.reporter().report();
+    let name = folder.path().file_name().unwrap().to_str().unwrap().to_owned();
+    // What a killed process leaves behind is what is in the file now.
+    let bytes = fs::read(folder.path().join(format!("{name}_0.mcap"))).unwrap();
+    let options = mcap::read::Options::IgnoreEndMagic.into();
+    let found = mcap::MessageStream::new_with_options(&bytes, options).unwrap();
+    let n_found = found.take_while(Result::is_ok).count() as u64;
+    let n_reported: u64 = report.message_counts.iter().map(|(_, count)| count).sum();
+    // Oracle: what the recording reported when it flushed.
+    assert_eq!(n_found, n_reported);
+    assert!(300 < n_found);
 }

@@ -3,6 +3,7 @@
 
 #[cfg(feature = "bag")]
 mod bags; // recordings, read back by independent libraries
+mod commands; // commands from ROS 2 messages
 mod fanout; // sinks behind their queues: order, drops, failure, closing
 mod generated_types; // msgs/*.msg and the Rust types agree
 mod peers; // independent programs in Python

@@ -129,6 +129,7 @@ pub(crate) fn packet(tick: u64) -> Arc<Packet> {
 }
 
 /// A packet with many grains whose numbers look random, so that recordings grow quickly.
+#[cfg(feature = "bag")]
 pub(crate) fn incompressible_packet(tick: u64) -> Arc<Packet> {
     let mut snapshot = snapshot(tick);
     let mut noise =

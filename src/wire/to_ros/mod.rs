@@ -97,7 +97,7 @@ impl Encoder {
         self.heavy(snapshot, &mut out);
         if let Some(run) = run {
             out.common(Common::Statistics, &run::statistics(snapshot, run));
-            if self.is_due_among(outputs.statistics_rate, DIAGNOSTICS_RATE, snapshot) {
+            if is_first_of(outputs.statistics_rate, DIAGNOSTICS_RATE, snapshot.time_ns) {
                 out.common(Common::Diagnostics, &run::diagnostics(snapshot, run));
             }
         }
@@ -140,7 +140,7 @@ impl Encoder {
         if let Some(membrane) = &snapshot.membrane {
             let cloud = clouds::membrane(membrane, time_ns);
             out.sized(Common::Membrane, &cloud, cloud.data.len() + 512);
-            if self.is_due_among(outputs.membrane_rate, MARKER_RATE_MAX, snapshot) {
+            if is_first_of(outputs.membrane_rate, MARKER_RATE_MAX, time_ns) {
                 let marker = clouds::surface(membrane, &self.triangles, time_ns);
                 out.sized(Common::MembraneMarker, &marker, 24 * marker.points.len() + 512);
             }
@@ -157,16 +157,13 @@ impl Encoder {
         let before_ns = time_ns.saturating_sub(self.scene.time.tick_ns);
         count(rate, before_ns) < count(rate, time_ns)
     }
+}
 
-    /// Of instants that come at `rate`, true for the first after each multiple of 1/`slower`.
-    fn is_due_among(&self, rate: f64, slower: f64, snapshot: &Snapshot) -> bool {
-        let period_ns = 1e9 / rate;
-        let time_ns = snapshot.time_ns as f64;
-        let instant = (time_ns / period_ns).floor();
-        rate <= slower
-            || count_f64(slower, (instant - 1.0) * period_ns)
-                < count_f64(slower, instant * period_ns)
-    }
+/// Of instants that come at `rate`, true for the first after each multiple of 1/`slower`.
+fn is_first_of(rate: f64, slower: f64, time_ns: u64) -> bool {
+    let (period_ns, instant) = (1e9 / rate, count_f64(rate, time_ns as f64));
+    let count_at = |instant: f64| count_f64(slower, instant * period_ns);
+    rate <= slower || count_at(instant - 1.0) < count_at(instant)
 }
 
 /// How many multiples of 1/rate lie in (0, time].
@@ -204,5 +201,34 @@ impl Outbox {
 
     fn push(&mut self, topic: usize, cdr: Vec<u8>) {
         self.messages.push(Message { topic, time_ns: self.time_ns, cdr });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// How often in ten seconds of ticks of a millisecond something is due.
+    fn n_due(is_due: impl Fn(u64) -> bool) -> usize {
+        (1..=10_000).filter(|tick| is_due(tick * 1_000_000)).count()
+    }
+
+    #[test]
+    fn what_is_due_keeps_its_rate() {
+        for (rate, expected) in [(1000.0, 10_000), (333.0, 3330), (30.0, 300), (7.5, 75), (0.3, 3)]
+        {
+            // Oracle: rate times time.
+            assert_eq!(n_due(|t| count(rate, t - 1_000_000) < count(rate, t)), expected, "{rate}");
+        }
+    }
+
+    #[test]
+    fn of_the_due_the_slower_is_picked() {
+        for (rate, slower, expected) in [(30.0, 10.0, 100), (25.0, 10.0, 100), (5.0, 10.0, 50)] {
+            let is_due =
+                |t| count(rate, t - 1_000_000) < count(rate, t) && is_first_of(rate, slower, t);
+            // Oracle: the smaller of the two rates, times time.
+            assert_eq!(n_due(is_due), expected, "{slower} of {rate}");
+        }
     }
 }
