@@ -19,7 +19,11 @@ use super::{
 use crate::{
     base::Vec3,
     scene::Scene,
-    snapshot::{Snapshot, run::RunStatistics},
+    snapshot::{
+        Snapshot,
+        due::{is_due, is_first_of},
+        run::RunStatistics,
+    },
 };
 
 /// The frame of everything that says nothing else.
@@ -88,10 +92,10 @@ impl Encoder {
         let mut out = Outbox { time_ns: snapshot.time_ns, messages: Vec::new() };
         out.common(Common::Clock, &run::clock(snapshot));
         let outputs = &self.scene.outputs;
-        if self.is_due(outputs.state_rate, snapshot) {
+        if is_due(outputs.state_rate, snapshot.time_ns, self.tick_ns()) {
             self.bodies(snapshot, &mut out);
         }
-        if self.is_due(outputs.pressure_rate, snapshot) {
+        if is_due(outputs.pressure_rate, snapshot.time_ns, self.tick_ns()) {
             self.chamber(snapshot, &mut out);
         }
         self.heavy(snapshot, &mut out);
@@ -150,34 +154,6 @@ impl Encoder {
             out.sized(Common::Grains, &cloud, cloud.data.len() + 512);
         }
     }
-
-    /// True if a multiple of 1/rate lies in the tick that ended.
-    fn is_due(&self, rate: f64, snapshot: &Snapshot) -> bool {
-        let time_ns = snapshot.time_ns;
-        let before_ns = time_ns.saturating_sub(self.scene.time.tick_ns);
-        count(rate, before_ns) < count(rate, time_ns)
-    }
-}
-
-/// Of instants that come at `rate`, true for the first after each multiple of 1/`slower`.
-fn is_first_of(rate: f64, slower: f64, time_ns: u64) -> bool {
-    let (period_ns, instant) = (1e9 / rate, count_f64(rate, time_ns as f64));
-    let count_at = |instant: f64| count_f64(slower, instant * period_ns);
-    rate <= slower || count_at(instant - 1.0) < count_at(instant)
-}
-
-/// How many multiples of 1/rate lie in (0, time].
-fn count(rate: f64, time_ns: u64) -> u64 {
-    #[expect(clippy::cast_possible_truncation, reason = "beyond any run")]
-    #[expect(clippy::cast_sign_loss, reason = "rates and times are not negative")]
-    {
-        count_f64(rate, time_ns as f64) as u64
-    }
-}
-
-/// As `count`; a nanosecond of grace keeps multiples that rounding put just behind.
-fn count_f64(rate: f64, time_ns: f64) -> f64 {
-    ((time_ns + 1.0) * rate * 1e-9).floor()
 }
 
 /// Messages on their way out, all with the same time.
@@ -201,34 +177,5 @@ impl Outbox {
 
     fn push(&mut self, topic: usize, cdr: Vec<u8>) {
         self.messages.push(Message { topic, time_ns: self.time_ns, cdr });
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// How often in ten seconds of ticks of a millisecond something is due.
-    fn n_due(is_due: impl Fn(u64) -> bool) -> usize {
-        (1..=10_000).filter(|tick| is_due(tick * 1_000_000)).count()
-    }
-
-    #[test]
-    fn what_is_due_keeps_its_rate() {
-        for (rate, expected) in [(1000.0, 10_000), (333.0, 3330), (30.0, 300), (7.5, 75), (0.3, 3)]
-        {
-            // Oracle: rate times time.
-            assert_eq!(n_due(|t| count(rate, t - 1_000_000) < count(rate, t)), expected, "{rate}");
-        }
-    }
-
-    #[test]
-    fn of_the_due_the_slower_is_picked() {
-        for (rate, slower, expected) in [(30.0, 10.0, 100), (25.0, 10.0, 100), (5.0, 10.0, 50)] {
-            let is_due =
-                |t| count(rate, t - 1_000_000) < count(rate, t) && is_first_of(rate, slower, t);
-            // Oracle: the smaller of the two rates, times time.
-            assert_eq!(n_due(is_due), expected, "{slower} of {rate}");
-        }
     }
 }
