@@ -2,6 +2,8 @@
 //!
 //! The small parts are there at every tick; grains, membrane and contacts only when they are due.
 
+pub mod due;
+pub mod run;
 pub mod view;
 
 use crate::{

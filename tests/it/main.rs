@@ -1,0 +1,10 @@
+//! All integration tests, in one binary.
+#![expect(clippy::unwrap_used, reason = "a failing unwrap is a failing test")]
+
+#[cfg(feature = "bag")]
+mod bags; // recordings, read back by independent libraries
+mod commands; // commands from ROS 2 messages
+mod fanout; // sinks behind their queues: order, drops, failure, closing
+mod generated_types; // msgs/*.msg and the Rust types agree
+mod peers; // independent programs in Python
+mod synthetic; // a scene and snapshots made up for tests
