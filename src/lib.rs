@@ -8,3 +8,4 @@ pub mod command; // what the outside may ask
 pub mod snapshot; // what the outside may see
 pub mod wire; // bytes for the outside
 pub mod sinks; // where snapshots go
+pub mod sources; // where commands come from

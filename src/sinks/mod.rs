@@ -3,6 +3,9 @@
 //! A sink runs on its own thread behind a bounded queue, so that a slow or dead reader never slows
 //! or stops the physics. The encoding to ROS 2 messages is made once, by whichever sink asks first.
 
+pub mod reach;
+#[cfg(feature = "ros")]
+pub mod ros;
 #[cfg(feature = "shm")]
 pub mod shm;
 
