@@ -35,8 +35,8 @@ pub const NODE_NAME: &str = "jamgrip";
 /// interface never had.
 pub const LOG_FILTER: &str = "rustdds=error,rustdds::network::udp_listener=off,ros2_client=error";
 
-/// Makes the messages of a packet, in the order of the topics' indices.
-pub type Encoder = Arc<dyn Fn(&Packet) -> Vec<Message> + Send + Sync>;
+/// Makes the messages of a packet; the same for all sinks.
+pub type Encode = Arc<dyn Fn(&Packet) -> Vec<Message> + Send + Sync>;
 
 /// Why the node could not join, or a topic could not be opened.
 #[derive(Debug, thiserror::Error)]
@@ -102,7 +102,7 @@ pub struct Body(Vec<u8>);
 /// The publishers of all topics that carry something out.
 pub struct RosSink {
     publishers: Vec<Option<(String, Publisher<Body>)>>,
-    encode: Encoder,
+    encode: Encode,
     _node: Arc<RosNode>,
 }
 
@@ -223,7 +223,7 @@ impl RosSink {
     ///
     /// # Errors
     /// When a topic cannot be opened.
-    pub fn new(node: &Arc<RosNode>, topics: &[Topic], encode: Encoder) -> Result<Self, RosError> {
+    pub fn new(node: &Arc<RosNode>, topics: &[Topic], encode: Encode) -> Result<Self, RosError> {
         let open = |topic: &Topic| {
             if topic.is_input {
                 return Ok(None);
@@ -233,15 +233,12 @@ impl RosSink {
         let publishers = topics.iter().map(open).collect::<Result<_, _>>()?;
         Ok(Self { publishers, encode, _node: Arc::clone(node) })
     }
-}
 
-impl Sink for RosSink {
-    fn name(&self) -> &'static str {
-        "ros"
-    }
-
-    fn write(&mut self, packet: &Packet) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
-        let messages = packet.messages(|it| (self.encode)(it));
+    /// Publishes messages at once: those that are latched and never change.
+    ///
+    /// # Errors
+    /// When some were not taken; the others are out.
+    pub fn send(&self, messages: &[Message]) -> Result<(), WriteFault> {
         let mut n_failed = 0;
         let mut first = None;
         for message in messages {
@@ -255,7 +252,17 @@ impl Sink for RosSink {
             }
         }
         let Some((topic, reason)) = first else { return Ok(()) };
-        Err(WriteFault { n_failed, n_messages: messages.len(), topic, reason }.into())
+        Err(WriteFault { n_failed, n_messages: messages.len(), topic, reason })
+    }
+}
+
+impl Sink for RosSink {
+    fn name(&self) -> &'static str {
+        "ros"
+    }
+
+    fn write(&mut self, packet: &Packet) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
+        self.send(packet.messages(|it| (self.encode)(it))).map_err(Into::into)
     }
 
     fn close(&mut self) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {

@@ -1,14 +1,13 @@
 //! Commands from ROS 2 topics: subscriptions that fill the inbox on a thread of their own.
 
 use std::{
-    fmt,
     sync::{Arc, Mutex, MutexGuard, PoisonError},
     thread::JoinHandle,
     time::Duration,
 };
 
 use ros2_client::Subscription;
-use serde::de::{Deserialize, Deserializer, SeqAccess, Visitor};
+use serde::de::{DeserializeSeed, Deserializer};
 use smol::{LocalExecutor, channel, future, stream::StreamExt};
 
 use super::{Source, SourceCounters, inbox::Inbox};
@@ -16,19 +15,21 @@ use crate::{
     command::Command,
     sinks::ros::{RosError, RosNode},
     snapshot::Snapshot,
-    wire::topics::Topic,
+    wire::{
+        messages::{
+            RosMessage, geometry_msgs::PoseStamped, jamgrip_msgs::ObjectCommand, std_msgs::Float64,
+        },
+        topics::Topic,
+    },
 };
 
-/// Longest message that is read; every command is far shorter.
-const BYTES_MAX: usize = 64 * 1024;
-
 /// Reads a message that came on the topic with this index: a body of little-endian CDR.
-pub type Decoder = Arc<
+pub type Decode = Arc<
     dyn Fn(usize, &[u8]) -> Result<Command, Box<dyn std::error::Error + Send + Sync>> + Send + Sync,
 >;
 
 /// A message's body as it came.
-pub struct Received(pub Vec<u8>);
+struct Received(Vec<u8>);
 
 /// The subscriptions of all topics that carry commands.
 pub struct RosSource {
@@ -43,13 +44,14 @@ impl RosSource {
     ///
     /// # Errors
     /// When a topic cannot be opened.
-    pub fn new(node: &Arc<RosNode>, topics: &[Topic], decode: Decoder) -> Result<Self, RosError> {
+    pub fn new(node: &Arc<RosNode>, topics: &[Topic], decode: Decode) -> Result<Self, RosError> {
         let inbox = Arc::new(Mutex::new(Inbox::new(topics.len())));
         let mut ears = Vec::new();
         for (index, topic) in topics.iter().enumerate().filter(|(_, it)| it.is_input) {
             let subscription = node.subscription::<Received>(topic)?;
             let decode = Arc::clone(&decode);
-            ears.push(Ear { index, name: topic.name.clone(), subscription, decode });
+            let recode = Recode { type_name: topic.type_name };
+            ears.push(Ear { index, name: topic.name.clone(), recode, subscription, decode });
         }
         let (stop, stopped) = channel::bounded(1);
         let kept = Arc::clone(&inbox);
@@ -93,13 +95,14 @@ impl Drop for RosSource {
 struct Ear {
     index: usize,
     name: String,
+    recode: Recode,
     subscription: Subscription<Received>,
-    decode: Decoder,
+    decode: Decode,
 }
 
 impl Ear {
     async fn listen(self, inbox: &Mutex<Inbox>) {
-        let mut messages = std::pin::pin!(self.subscription.async_stream());
+        let mut messages = std::pin::pin!(self.subscription.async_stream_seed(self.recode));
         while let Some(message) = messages.next().await {
             let command = message
                 .map_err(Into::into)
@@ -122,7 +125,7 @@ fn listen(ears: Vec<Ear>, inbox: &Mutex<Inbox>, stopped: &channel::Receiver<()>)
     }
     executor.spawn(complain(inbox)).detach();
     // The channel carries nothing: its only news is that it was closed.
-    drop(smol::block_on(executor.run(stopped.recv())));
+    let _closed = smol::block_on(executor.run(stopped.recv()));
 }
 
 /// Says once a second what could not be read, if anything.
@@ -147,41 +150,74 @@ fn lock(inbox: &Mutex<Inbox>) -> MutexGuard<'_, Inbox> {
     inbox.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// CDR does not say where it ends: single bytes are read until there are none.
-impl<'de> Deserialize<'de> for Received {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct ToTheEnd;
-        impl<'de> Visitor<'de> for ToTheEnd {
-            type Value = Received;
+/// Reads one of the command types in the sender's byte order and keeps it in ours, so that all
+/// behind it sees little-endian bytes only.
+#[derive(Clone, Copy)]
+struct Recode {
+    type_name: &'static str,
+}
 
-            fn expecting(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-                out.write_str("the bytes of a message")
-            }
+impl<'de> DeserializeSeed<'de> for Recode {
+    type Value = Received;
 
-            fn visit_seq<A: SeqAccess<'de>>(self, mut bytes: A) -> Result<Received, A::Error> {
-                let mut body = Vec::new();
-                while let Ok(Some(byte)) = bytes.next_element() {
-                    body.push(byte);
-                }
-                Ok(Received(body))
-            }
+    fn deserialize<D: Deserializer<'de>>(self, bytes: D) -> Result<Received, D::Error> {
+        let name = self.type_name;
+        if name == Float64::TYPE.name {
+            recode::<Float64, D>(bytes)
+        } else if name == PoseStamped::TYPE.name {
+            recode::<PoseStamped, D>(bytes)
+        } else if name == ObjectCommand::TYPE.name {
+            recode::<ObjectCommand, D>(bytes)
+        } else {
+            Err(serde::de::Error::custom(format_args!("no command is a `{name}`")))
         }
-        deserializer.deserialize_tuple(BYTES_MAX, ToTheEnd)
     }
+}
+
+fn recode<'de, T: RosMessage, D: Deserializer<'de>>(bytes: D) -> Result<Received, D::Error> {
+    T::deserialize(bytes).map(|it| Received(it.to_cdr()))
 }
 
 #[cfg(test)]
 mod tests {
+    use byteorder::{BigEndian, LittleEndian};
+    use cdr_encoding::{CdrDeserializer, to_vec};
+
     use super::*;
 
-    /// Oracle: the identity, through the very deserializer that the middleware uses.
+    fn recoded<BO: byteorder::ByteOrder>(
+        type_name: &'static str,
+        bytes: &[u8],
+    ) -> Result<Vec<u8>, String> {
+        let mut reader = CdrDeserializer::<BO>::new(bytes);
+        let received = Recode { type_name }.deserialize(&mut reader);
+        received.map(|it| it.0).map_err(|it| it.to_string())
+    }
+
+    /// Oracle: the other byte order's own encoding of the same message.
     #[test]
-    fn a_body_is_read_as_it_is() {
-        for length in [0, 1, 9, 1000] {
-            let bytes = vec![7_u8; length];
-            let (received, _) =
-                cdr_encoding::from_bytes::<Received, byteorder::LittleEndian>(&bytes).unwrap();
-            assert_eq!(received.0, bytes);
+    fn both_byte_orders_arrive_as_one() {
+        let mut pose = PoseStamped::default();
+        pose.header.frame_id = "world".to_owned();
+        pose.pose.position.z = 0.25;
+        let little = to_vec::<_, LittleEndian>(&pose).unwrap();
+        let big = to_vec::<_, BigEndian>(&pose).unwrap();
+        assert_ne!(little, big);
+        let name = PoseStamped::TYPE.name;
+        assert_eq!(recoded::<LittleEndian>(name, &little).as_ref(), Ok(&little));
+        assert_eq!(recoded::<BigEndian>(name, &big).as_ref(), Ok(&little));
+    }
+
+    /// Oracle: the contract: what is too short, or no command, is an error and not a panic.
+    #[test]
+    fn nonsense_is_an_error() {
+        for length in 0..40 {
+            for name in [Float64::TYPE.name, PoseStamped::TYPE.name, ObjectCommand::TYPE.name] {
+                let is_float = name == Float64::TYPE.name && 8 <= length;
+                let read = recoded::<LittleEndian>(name, &vec![0xff; length]);
+                assert_eq!(read.is_ok(), is_float, "{name}, {length} bytes");
+            }
         }
+        assert!(recoded::<LittleEndian>("std_msgs/msg/Empty", &[0; 8]).is_err());
     }
 }
