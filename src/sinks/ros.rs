@@ -25,7 +25,10 @@ use super::{
     Packet, Sink,
     reach::{Extent, Reach},
 };
-use crate::wire::topics::{Message, Qos, Topic};
+use crate::wire::{
+    to_ros::Encoder,
+    topics::{Message, Qos, Topic},
+};
 
 /// Name of the node, in the root namespace.
 pub const NODE_NAME: &str = "jamgrip";
@@ -34,9 +37,6 @@ pub const NODE_NAME: &str = "jamgrip";
 /// every larger datagram, and reports an error when it leaves a multicast group that a loopback
 /// interface never had.
 pub const LOG_FILTER: &str = "rustdds=error,rustdds::network::udp_listener=off,ros2_client=error";
-
-/// Makes the messages of a packet; the same for all sinks.
-pub type Encode = Arc<dyn Fn(&Packet) -> Vec<Message> + Send + Sync>;
 
 /// Why the node could not join, or a topic could not be opened.
 #[derive(Debug, thiserror::Error)]
@@ -71,6 +71,9 @@ pub enum RosError {
         /// What the middleware says.
         reason: String,
     },
+    /// What never changes could not be published.
+    #[error(transparent)]
+    Write(#[from] WriteFault),
 }
 
 /// One or more writes of a packet failed.
@@ -102,7 +105,7 @@ pub struct Body(Vec<u8>);
 /// The publishers of all topics that carry something out.
 pub struct RosSink {
     publishers: Vec<Option<(String, Publisher<Body>)>>,
-    encode: Encode,
+    encoder: Arc<Encoder>,
     _node: Arc<RosNode>,
 }
 
@@ -219,26 +222,25 @@ impl Serialize for Body {
 }
 
 impl RosSink {
-    /// Opens a publisher for every topic that is not an input.
+    /// Opens a publisher for every topic that is not an input, and publishes what never changes.
     ///
     /// # Errors
     /// When a topic cannot be opened.
-    pub fn new(node: &Arc<RosNode>, topics: &[Topic], encode: Encode) -> Result<Self, RosError> {
+    pub fn new(node: &Arc<RosNode>, encoder: &Arc<Encoder>) -> Result<Self, RosError> {
         let open = |topic: &Topic| {
             if topic.is_input {
                 return Ok(None);
             }
             node.publisher(topic).map(|it| Some((topic.name.clone(), it)))
         };
-        let publishers = topics.iter().map(open).collect::<Result<_, _>>()?;
-        Ok(Self { publishers, encode, _node: Arc::clone(node) })
+        let publishers = encoder.topics().iter().map(open).collect::<Result<_, _>>()?;
+        let sink = Self { publishers, encoder: Arc::clone(encoder), _node: Arc::clone(node) };
+        sink.send(&encoder.latched(0))?;
+        Ok(sink)
     }
 
-    /// Publishes messages at once: those that are latched and never change.
-    ///
-    /// # Errors
-    /// When some were not taken; the others are out.
-    pub fn send(&self, messages: &[Message]) -> Result<(), WriteFault> {
+    /// Tries all messages, also behind one that fails.
+    fn send(&self, messages: &[Message]) -> Result<(), WriteFault> {
         let mut n_failed = 0;
         let mut first = None;
         for message in messages {
@@ -262,7 +264,7 @@ impl Sink for RosSink {
     }
 
     fn write(&mut self, packet: &Packet) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
-        self.send(packet.messages(|it| (self.encode)(it))).map_err(Into::into)
+        self.send(packet.messages(&self.encoder)).map_err(Into::into)
     }
 
     fn close(&mut self) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {

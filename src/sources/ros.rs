@@ -19,14 +19,9 @@ use crate::{
         messages::{
             RosMessage, geometry_msgs::PoseStamped, jamgrip_msgs::ObjectCommand, std_msgs::Float64,
         },
-        topics::Topic,
+        to_ros::Encoder,
     },
 };
-
-/// Reads a message that came on the topic with this index: a body of little-endian CDR.
-pub type Decode = Arc<
-    dyn Fn(usize, &[u8]) -> Result<Command, Box<dyn std::error::Error + Send + Sync>> + Send + Sync,
->;
 
 /// A message's body as it came.
 struct Received(Vec<u8>);
@@ -44,14 +39,15 @@ impl RosSource {
     ///
     /// # Errors
     /// When a topic cannot be opened.
-    pub fn new(node: &Arc<RosNode>, topics: &[Topic], decode: Decode) -> Result<Self, RosError> {
+    pub fn new(node: &Arc<RosNode>, encoder: &Arc<Encoder>) -> Result<Self, RosError> {
+        let topics = encoder.topics();
         let inbox = Arc::new(Mutex::new(Inbox::new(topics.len())));
         let mut ears = Vec::new();
         for (index, topic) in topics.iter().enumerate().filter(|(_, it)| it.is_input) {
             let subscription = node.subscription::<Received>(topic)?;
-            let decode = Arc::clone(&decode);
+            let encoder = Arc::clone(encoder);
             let recode = Recode { type_name: topic.type_name };
-            ears.push(Ear { index, name: topic.name.clone(), recode, subscription, decode });
+            ears.push(Ear { index, name: topic.name.clone(), recode, subscription, encoder });
         }
         let (stop, stopped) = channel::bounded(1);
         let kept = Arc::clone(&inbox);
@@ -97,19 +93,23 @@ struct Ear {
     name: String,
     recode: Recode,
     subscription: Subscription<Received>,
-    decode: Decode,
+    encoder: Arc<Encoder>,
 }
 
 impl Ear {
     async fn listen(self, inbox: &Mutex<Inbox>) {
         let mut messages = std::pin::pin!(self.subscription.async_stream_seed(self.recode));
         while let Some(message) = messages.next().await {
-            let command = message
-                .map_err(Into::into)
-                .and_then(|(Received(cdr), _)| (self.decode)(self.index, &cdr));
+            let command = match message {
+                Ok((Received(cdr), _)) => {
+                    let command = self.encoder.commands().decode(self.index, &cdr);
+                    command.map_err(|it| it.to_string())
+                }
+                Err(error) => Err(format!("`{}`: {error}", self.name)),
+            };
             match command {
                 Ok(command) => lock(inbox).offer(self.index, command),
-                Err(error) => lock(inbox).refuse(format!("`{}`: {error}", self.name)),
+                Err(fault) => lock(inbox).refuse(fault),
             }
             // A flood on one topic lets the others have their turn.
             future::yield_now().await;
@@ -139,7 +139,7 @@ async fn complain(inbox: &Mutex<Inbox>) {
         };
         if let Some(fault) = fault {
             let n_new = n_malformed - n_said;
-            log::warn!("{n_new} messages could not be read and were left out, the last on {fault}");
+            log::warn!("{n_new} messages could not be read and were left out, the last: {fault}");
             n_said = n_malformed;
         }
     }

@@ -15,7 +15,6 @@ use jamgrip::{
     },
     sources::{Source, inbox, ros::RosSource},
     wire::{
-        from_ros::CommandCodec,
         messages::{
             RosMessage,
             geometry_msgs::{PoseStamped, WrenchStamped},
@@ -53,19 +52,9 @@ fn topic(name: &str) -> Topic {
     found.unwrap_or_else(|| panic!("no topic `{name}`"))
 }
 
-fn sink(node: &Arc<RosNode>) -> RosSink {
-    let encoder = Encoder::new(&scene(), &[], &[]);
-    let topics = encoder.topics().to_vec();
-    let encode = move |it: &Packet| encoder.encode(&it.snapshot, it.run.as_ref());
-    RosSink::new(node, &topics, Arc::new(encode)).unwrap()
-}
-
-fn source(node: &Arc<RosNode>) -> RosSource {
-    let topics = topics(&scene());
-    let objects = scene().objects.iter().map(|it| it.name.clone()).collect();
-    let codec = CommandCodec::new(topics.clone(), objects);
-    let decode = move |topic: usize, cdr: &[u8]| codec.decode(topic, cdr).map_err(Into::into);
-    RosSource::new(node, &topics, Arc::new(decode)).unwrap()
+/// The encoder of the scene, with a membrane that has no triangles.
+fn encoder() -> Arc<Encoder> {
+    Arc::new(Encoder::new(&scene(), &[], &[]))
 }
 
 /// Oracle: the synthetic system's formula, message by message; and who comes late gets what is
@@ -75,7 +64,7 @@ fn what_is_published_reaches_our_own_subscribers() {
     inside("ros_loop::what_is_published_reaches_our_own_subscribers", || {
         let here = RosNode::join(&reach()).unwrap();
         let there = RosNode::join_as("listener", &reach()).unwrap();
-        let mut sink = sink(&here);
+        let mut sink = RosSink::new(&here, &encoder()).unwrap();
         let clock = there.subscription::<Clock>(&topic("/clock")).unwrap();
         let wrench = there.subscription::<WrenchStamped>(&topic("/jamgrip/wrench")).unwrap();
         wait_until("readers", || {
@@ -118,7 +107,7 @@ fn commands_wait_in_order_for_the_next_tick() {
     inside("ros_loop::commands_wait_in_order_for_the_next_tick", || {
         let here = RosNode::join(&reach()).unwrap();
         let there = RosNode::join_as("operator", &reach()).unwrap();
-        let mut source = source(&here);
+        let mut source = RosSource::new(&here, &encoder()).unwrap();
         let seen = Synthetic::new("cylinder").snapshot;
         let flange = there.publisher(&topic("/jamgrip/flange/pose_cmd")).unwrap();
         let object = there.publisher(&topic("/jamgrip/object/cylinder/pose_cmd")).unwrap();
@@ -162,8 +151,10 @@ fn commands_wait_in_order_for_the_next_tick() {
             orientation: [0.0, 0.0, 0.0, 1.0],
         };
         let object = "cylinder".to_owned();
-        let expected =
-            [Command::ObjectPose { object: object.clone(), pose }, Command::ObjectRelease { object }];
+        let expected = [
+            Command::ObjectPose { object: object.clone(), pose },
+            Command::ObjectRelease { object },
+        ];
         assert_eq!(source.drain(&seen), expected);
         assert_eq!((source.counters().n_dropped, source.drain(&seen).len()), (0, 0));
     });
@@ -176,7 +167,7 @@ fn a_flood_of_commands_holds_up_nothing() {
     inside("ros_loop::a_flood_of_commands_holds_up_nothing", || {
         let here = RosNode::join(&reach()).unwrap();
         let there = RosNode::join_as("flooder", &reach()).unwrap();
-        let mut source = source(&here);
+        let mut source = RosSource::new(&here, &encoder()).unwrap();
         let seen = Synthetic::new("cylinder").snapshot;
         let vacuum = there.publisher(&topic("/jamgrip/vacuum_cmd")).unwrap();
         let flange = there.publisher(&topic("/jamgrip/flange/pose_cmd")).unwrap();
@@ -221,7 +212,9 @@ fn a_flood_of_commands_holds_up_nothing() {
 fn an_independent_dds_hears_and_is_heard() {
     inside_with_peers("ros_loop::an_independent_dds_hears_and_is_heard", || {
         let node = RosNode::join(&reach()).unwrap();
-        let (mut sink, mut source) = (sink(&node), source(&node));
+        let encoder = encoder();
+        let mut sink = RosSink::new(&node, &encoder).unwrap();
+        let mut source = RosSource::new(&node, &encoder).unwrap();
         let folder = tempfile::tempdir().unwrap();
         let seconds = std::env::var("JAMGRIP_LOOP_SECONDS").unwrap_or_else(|_| "2".to_owned());
         let mut peer = peers::script("hear_and_say.py")
@@ -245,8 +238,7 @@ fn an_independent_dds_hears_and_is_heard() {
             system.snapshot.grains = (tick % 33 == 0).then(|| system.grains());
             system.snapshot.membrane = (tick % 33 == 0).then(|| system.membrane());
             let packet = Packet::new(system.snapshot.clone(), None);
-            let messages = packet.messages(|it| Encoder::new(&scene(), &[], &[]).encode(&it.snapshot, None));
-            n_messages += u32::try_from(messages.len()).unwrap();
+            n_messages += u32::try_from(packet.messages(&encoder).len()).unwrap();
             let before = now();
             sink.write(&packet).unwrap();
             spent += now() - before;
@@ -275,7 +267,10 @@ fn check_what_the_peer_heard(peer: &serde_json::Value, n_ticks: u64) {
     assert_eq!(peer["faults"], serde_json::json!([]));
     assert_eq!((&peer["n_ticks"], &peer["n_ticks_missed"]), (&n_ticks.into(), &0.into()));
     assert_eq!(peer["is_clock_steady"], true);
-    assert_eq!((&peer["are_forces_right"], &peer["wrench_frame"]), (&true.into(), &"gripper_flange".into()));
+    assert_eq!(
+        (&peer["are_forces_right"], &peer["wrench_frame"]),
+        (&true.into(), &"gripper_flange".into())
+    );
     // The peer stops at the last clock; what belongs to the same tick may come behind it.
     let n_forces = peer["n_forces"].as_u64().unwrap();
     assert!((n_ticks / 4 - 1..=n_ticks / 4).contains(&n_forces), "{n_forces} wrenches");
