@@ -100,6 +100,7 @@ pub struct RosNode {
 }
 
 /// A message body that is CDR already.
+#[derive(Clone, Debug)]
 pub struct Body(Vec<u8>);
 
 /// The publishers of all topics that carry something out.

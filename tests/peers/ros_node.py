@@ -32,7 +32,7 @@ class Node:
         return DataWriter(self.participant, Topic(self.participant, f"rt{name}", kind), qos=qos)
 
     def nodes(self, timeout_s=10.0):
-        """Names, reader and writer counts of the nodes in `ros_discovery_info`."""
+        """Names, counts of readers and of writers of the nodes in `ros_discovery_info`."""
         qos = Qos(RELIABLE, Policy.Durability.TransientLocal, Policy.History.KeepLast(1))
         topic = Topic(self.participant, "ros_discovery_info", t.ParticipantEntitiesInfo)
         reader = DataReader(self.participant, topic, qos=qos)
@@ -42,7 +42,9 @@ class Node:
             for info in reader.take(N=100):
                 for node in getattr(info, "node_entities_info_seq", []):
                     name = node.node_namespace.rstrip("/") + "/" + node.node_name
-                    found[name] = (len(node.reader_gid_seq), len(node.writer_gid_seq))
+                    # The middleware lists /rosout twice, under one identity.
+                    ports = (node.reader_gid_seq, node.writer_gid_seq)
+                    found[name] = [len({bytes(gid.data) for gid in it}) for it in ports]
             time.sleep(0.02)
         return found
 
