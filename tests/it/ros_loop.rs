@@ -272,12 +272,13 @@ fn an_independent_dds_hears_and_is_heard() {
 fn check_what_the_peer_heard(peer: &serde_json::Value, n_ticks: u64) {
     let n_inputs = topics(&scene()).iter().filter(|it| it.is_input).count();
     let n_outputs = topics(&scene()).len() - n_inputs;
-    // Besides its topics a node always writes /rosout and /parameter_events.
-    let listed = serde_json::json!([n_inputs, n_outputs + 2]);
+    // Besides its topics the node writes /rosout, /parameter_events and ros_discovery_info.
+    let listed = serde_json::json!([n_inputs, n_outputs + 3]);
     assert_eq!(peer["nodes"]["/jamgrip"], listed, "the node and its topics in the graph");
     assert_eq!(peer["faults"], serde_json::json!([]));
     assert_eq!((&peer["n_ticks"], &peer["n_ticks_missed"]), (&n_ticks.into(), &0.into()));
     assert_eq!(peer["is_clock_steady"], true);
+    assert_eq!(peer["status"], 3, "NO_OBJECT_DETECTED");
     assert_eq!(
         (&peer["are_forces_right"], &peer["wrench_frame"]),
         (&true.into(), &"gripper_flange".into())

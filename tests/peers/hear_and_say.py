@@ -67,7 +67,7 @@ print(
             "wrench_frame": forces[0][2] if forces else "",
             "n_clouds": clouds,
             "n_sheets": sheets,
-            "statuses": statuses,
+            "status": statuses[-1] if statuses else None,
             "n_said": n_said,
             "faults": faults,
         }

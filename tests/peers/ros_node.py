@@ -42,9 +42,7 @@ class Node:
             for info in reader.take(N=100):
                 for node in getattr(info, "node_entities_info_seq", []):
                     name = node.node_namespace.rstrip("/") + "/" + node.node_name
-                    # The middleware lists /rosout twice, under one identity.
-                    ports = (node.reader_gid_seq, node.writer_gid_seq)
-                    found[name] = [len({bytes(gid.data) for gid in it}) for it in ports]
+                    found[name] = (len(node.reader_gid_seq), len(node.writer_gid_seq))
             time.sleep(0.02)
         return found
 
