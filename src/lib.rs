@@ -6,6 +6,7 @@ pub mod base; // words that everything shares
 pub mod scene; // text to model
 pub mod command; // what the outside may ask
 pub mod snapshot; // what the outside may see
+pub mod controller; // pick and lift, from observations to commands
 pub mod wire; // bytes for the outside
 pub mod sinks; // where snapshots go
 pub mod sources; // where commands come from

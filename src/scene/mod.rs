@@ -1,8 +1,27 @@
 //! What a scene is once its text has been read and checked: SI numbers, nothing optional that the
 //! physics needs.
 //!
-//! `schema` is the YAML as written, `check` finds all its faults at once, and this file is what
-//! is left: the input of `compile`.
+//! `text` is the way from YAML to here: `yaml` makes a tree with places, `schema` walks its keys
+//! with their units and limits, `check` joins them; all faults come at once. `print` goes back.
+
+pub mod fault; // what can be wrong
+pub mod print; // scene to text
+pub mod quantity; // "2 mm"
+pub mod text; // text to scene
+
+mod blank;
+mod check;
+mod extent;
+mod mesh_file;
+mod read;
+mod schema;
+mod tree;
+mod walk;
+mod yaml;
+
+pub use fault::SceneError;
+pub use print::to_yaml;
+pub use text::{load, parse};
 
 use std::path::PathBuf;
 
@@ -199,6 +218,8 @@ pub enum Shape {
     Mesh {
         /// The file it was read from.
         file: PathBuf,
+        /// Length of one unit of the file [m].
+        unit: Real,
         /// Vertices [m].
         vertices: Vec<Vec3>,
         /// Vertex indices of each triangle.

@@ -1,0 +1,55 @@
+"""Writes knob.obj: a lobed, bent knob that no gripper finger was made for, 55 mm high.
+
+    python3 launch_configs/meshes/knob.py > launch_configs/meshes/knob.obj
+
+Millimetres, z up, standing on its flat base about the origin.
+"""
+
+from math import cos, pi, sin, sqrt
+
+HEIGHT = 55.0
+RINGS, SECTORS = 22, 28
+
+
+def radius(z, angle):
+    """A base, a waist at 24 mm, a head at 42 mm; three lobes that turn on the way up."""
+    s = z / HEIGHT
+    body = 12.5 - 3.5 * sin(pi * min(s / 0.87, 1.0)) ** 2 + 1.5 * s
+    cap = sqrt(max(0.0, 1.0 - max(0.0, (s - 0.7) / 0.3) ** 2))
+    lobes = 1.0 + 0.07 * cos(3.0 * angle + 2.0 * s)
+    return body * cap * lobes
+
+
+def axis(z):
+    """The axis leans and comes back."""
+    s = z / HEIGHT
+    return 1.8 * sin(pi * s), 1.1 * sin(2.0 * pi * s)
+
+
+def main():
+    print("# Made by knob.py beside this file. Millimetres, z up.")
+    rings = []
+    index = 1
+    for k in range(RINGS):
+        z = HEIGHT * sin(0.5 * pi * 0.985 * k / (RINGS - 1)) if k else 0.0
+        x, y = axis(z)
+        rings.append(index)
+        for j in range(SECTORS):
+            a = 2.0 * pi * j / SECTORS
+            r = radius(z, a)
+            print(f"v {x + r * cos(a):.4f} {y + r * sin(a):.4f} {z:.4f}")
+            index += 1
+    bottom, top = index, index + 1
+    print("v 0.0000 0.0000 0.0000")
+    x, y = axis(HEIGHT)
+    print(f"v {x:.4f} {y:.4f} {HEIGHT:.4f}")
+    for j in range(SECTORS):
+        n = (j + 1) % SECTORS
+        print(f"f {bottom} {rings[0] + n} {rings[0] + j}")
+        for low, high in zip(rings, rings[1:]):
+            print(f"f {low + j} {low + n} {high + n}")
+            print(f"f {low + j} {high + n} {high + j}")
+        print(f"f {rings[-1] + j} {rings[-1] + n} {top}")
+
+
+main()

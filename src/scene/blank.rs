@@ -1,0 +1,89 @@
+//! A scene before it is read: every number is NaN, so that nothing forgotten can pass for a value.
+
+use super::{
+    Bag, Chamber, Controller, Flange, Grains, Material, Membrane, Object, OnError, OnFull, Outputs,
+    Ros, Scene, Shape, Table, Time,
+};
+use crate::base::{Pose, Real, Vec3};
+
+const NAN: Real = Real::NAN;
+const MATERIAL: Material = Material { youngs_modulus: NAN, poisson_ratio: NAN, density: NAN };
+const GRAINS: Grains = Grains {
+    count: 0,
+    radius_min: NAN,
+    radius_max: NAN,
+    material: MATERIAL,
+    friction: NAN,
+    dissipation_time: NAN,
+    tangential_damping: NAN,
+};
+const MEMBRANE: Membrane = Membrane {
+    radius: NAN,
+    frequency: 0,
+    thickness: NAN,
+    material: MATERIAL,
+    friction: NAN,
+    spring_damping: NAN,
+    bending_stiffness: NAN,
+    bending_damping: NAN,
+    rest_length_shrink: NAN,
+    fill_stretch: NAN,
+    dissipation_time: NAN,
+    tangential_damping: NAN,
+};
+
+/// The blank scene, with one blank object.
+pub(super) fn scene() -> Scene {
+    Scene {
+        name: String::new(),
+        seed: 0,
+        time: Time { tick_ns: 0, substep: None, safety: NAN },
+        gravity: Vec3::repeat(NAN),
+        grains: GRAINS,
+        membrane: MEMBRANE,
+        chamber: Chamber { ambient: NAN, gauge_min: NAN, gauge_max: NAN, lag: NAN, rate_max: NAN },
+        flange: Flange {
+            pose: Pose::identity(),
+            speed_max: NAN,
+            acceleration_max: NAN,
+            angular_speed_max: NAN,
+            angular_acceleration_max: NAN,
+        },
+        table: Table { height: NAN, friction: NAN },
+        objects: vec![object()],
+        controller: Controller::Topics { duration: None },
+        outputs: outputs(),
+    }
+}
+
+fn object() -> Object {
+    Object {
+        name: String::new(),
+        shape: Shape::Sphere { radius: NAN },
+        material: MATERIAL,
+        friction: NAN,
+        pose: Pose::identity(),
+        drive_timeout: NAN,
+    }
+}
+
+fn outputs() -> Outputs {
+    Outputs {
+        state_rate: NAN,
+        pressure_rate: NAN,
+        membrane_rate: NAN,
+        grains_rate: NAN,
+        contacts_rate: NAN,
+        statistics_rate: NAN,
+        grains_count_max: 0,
+        ros: Ros { enabled: false, domain_id: None, lan: false },
+        stream: false,
+        bag: Bag {
+            enabled: false,
+            folder: None,
+            on_full: OnFull::Wait,
+            on_error: OnError::Continue,
+        },
+        real_time: false,
+    }
+}

@@ -1,0 +1,373 @@
+//! Fills a scene from a tree and collects all faults on the way.
+
+use super::{
+    fault::{Fault, Problem, near_matches},
+    quantity::Dimension,
+    tree::{Node, Value},
+    walk::{Quantity, Range, Walk},
+};
+use crate::base::{Real, Vec3};
+
+/// Walks a tree of values.
+pub(super) struct Reader<'a> {
+    open: Vec<Section<'a>>,
+    /// Values to show as examples in messages.
+    examples: &'a Node,
+    faults: Vec<Fault>,
+}
+
+struct Section<'a> {
+    key: &'static str,
+    /// `None` where the section is missing or not a map: then its keys are silent.
+    node: Option<&'a Node>,
+    known: Vec<&'static str>,
+}
+
+impl<'a> Reader<'a> {
+    /// A reader at the root of `tree`. `examples` is a tree of values that are right.
+    pub(super) fn new(tree: &'a Node, examples: &'a Node) -> Self {
+        let root = Section { key: "", node: Some(tree), known: Vec::new() };
+        let mut reader = Self { open: vec![root], examples, faults: Vec::new() };
+        if !matches!(tree.value, Value::Map(_)) {
+            reader.open[0].node = None;
+            reader.fault(
+                tree,
+                String::new(),
+                Problem::WrongKind {
+                    expected: "a map of keys and values",
+                    found: tree.describe(),
+                    example: "name: my_scene".to_owned(),
+                },
+            );
+        }
+        reader
+    }
+
+    /// All faults, in the order of the text. Call it after the walk.
+    pub(super) fn finish(mut self) -> Vec<Fault> {
+        while !self.open.is_empty() {
+            self.close_section();
+        }
+        self.faults
+    }
+
+    fn path(&self, key: &str) -> String {
+        let above = self.open.iter().map(|section| section.key).filter(|key| !key.is_empty());
+        above.chain([key]).collect::<Vec<_>>().join(".")
+    }
+
+    /// The node of a key of the open section; a missing one is a fault.
+    fn take(&mut self, key: &'static str) -> Option<&'a Node> {
+        let section = self.open.last_mut().expect("the root is open until the end");
+        section.known.push(key);
+        let here = section.node?;
+        if let Some(found) = here.get(key) {
+            return Some(found);
+        }
+        let path = self.path(key);
+        let example = self.example(&path, "");
+        let is_default = here.place.source == self.examples.place.source;
+        let root = self.open[0].node.filter(|_| is_default);
+        self.fault(root.unwrap_or(here), path, Problem::Missing { example });
+        None
+    }
+
+    fn fault(&mut self, at: &Node, key: String, problem: Problem) {
+        self.faults.push(Fault { place: at.place.clone(), key, problem });
+    }
+
+    fn wrong_kind(&mut self, at: &Node, key: &str, expected: &'static str, fallback: &str) {
+        let path = self.path(key);
+        let example = self.example(&path, fallback);
+        self.fault(at, path, Problem::WrongKind { expected, found: at.describe(), example });
+    }
+
+    /// A value that would do: the default, or the known example of a key without one.
+    fn example(&self, path: &str, fallback: &str) -> String {
+        let known = EXAMPLES.iter().find(|(key, _)| *key == path).map(|(_, text)| *text);
+        let default = self.examples.at(path).filter(|it| !matches!(it.value, Value::Map(_)));
+        let default = default.and_then(plain);
+        default.unwrap_or_else(|| known.unwrap_or(fallback).to_owned())
+    }
+
+    fn close_section(&mut self) {
+        let section = self.open.pop().expect("sections close once");
+        let Some(Node { value: Value::Map(entries), .. }) = section.node else { return };
+        for entry in entries {
+            if section.known.contains(&entry.key.as_str()) {
+                continue;
+            }
+            let mut key = self.path(section.key);
+            if !key.is_empty() {
+                key.push('.');
+            }
+            self.faults.push(Fault {
+                place: entry.place.clone(),
+                key: key + &entry.key,
+                problem: Problem::UnknownKey {
+                    near: near_matches(&entry.key, section.known.iter().copied()),
+                    known: section.known.iter().map(|&key| key.to_owned()).collect(),
+                },
+            });
+        }
+    }
+
+    fn parse_quantity(&mut self, node: &Node, key: &str, kind: Quantity) -> Option<Real> {
+        let path = self.path(key);
+        let text = match &node.value {
+            Value::Text(text) => text.clone(),
+            Value::Whole(number) => number.to_string(),
+            Value::Real(number) => number.to_string(),
+            _ => {
+                self.wrong_kind(node, key, "a number with a unit", &unit_example(kind.dimension));
+                return None;
+            }
+        };
+        match kind.dimension.parse(&text) {
+            Err(error) => self.fault(node, path, error.into()),
+            Ok(value) if kind.range.contains(value) => return Some(value),
+            Ok(_) => {
+                let example = self.example(&path, &unit_example(kind.dimension));
+                let limit = kind.range.describe(|number| kind.dimension.print(number));
+                let found = node.describe();
+                self.fault(node, path, Problem::OutOfRange { found, limit, example });
+            }
+        }
+        None
+    }
+
+    fn parse_number(&mut self, node: &Node, key: &str, range: Range) -> Option<Real> {
+        #[expect(clippy::cast_precision_loss, reason = "a scene's numbers are far below 2^53")]
+        let value = match node.value {
+            Value::Real(number) => number,
+            Value::Whole(number) => number as Real,
+            _ => {
+                self.wrong_kind(node, key, "a number without a unit", "0.5");
+                return None;
+            }
+        };
+        if range.contains(value) {
+            return Some(value);
+        }
+        let path = self.path(key);
+        let example = self.example(&path, "0.5");
+        let limit = range.describe(|number| number.to_string());
+        self.fault(node, path, Problem::OutOfRange { found: node.describe(), limit, example });
+        None
+    }
+
+    fn parse_whole(&mut self, node: &Node, key: &str, (min, max): (u64, u64)) -> Option<u64> {
+        let Value::Whole(number) = node.value else {
+            self.wrong_kind(node, key, "a whole number", "1");
+            return None;
+        };
+        let inside = u64::try_from(number).ok().filter(|number| (min..=max).contains(number));
+        if inside.is_none() {
+            let path = self.path(key);
+            let example = self.example(&path, "1");
+            let limit = format!("from {min} to {max}");
+            self.fault(node, path, Problem::OutOfRange { found: node.describe(), limit, example });
+        }
+        inside
+    }
+
+    fn parse_vector(&mut self, node: &Node, key: &str, kind: Quantity) -> Option<Vec3> {
+        if let Value::List(items) = &node.value
+            && let [x, y, z] = items.as_slice()
+        {
+            let x = self.parse_quantity(x, key, kind);
+            let y = self.parse_quantity(y, key, kind);
+            let z = self.parse_quantity(z, key, kind);
+            return Some(Vec3::new(x?, y?, z?));
+        }
+        let one = unit_example(kind.dimension);
+        let example = format!("[{one}, {one}, {one}]");
+        self.wrong_kind(node, key, "three numbers with units, [x, y, z]", &example);
+        None
+    }
+
+    fn not_one_of(&mut self, at: &Node, key: &str, found: String, known: &[&'static str]) {
+        let near = near_matches(found.trim_matches('`'), known.iter().copied());
+        let path = self.path(key);
+        let known = known.join(", ");
+        self.fault(at, path, Problem::NotOneOf { found, known, near });
+    }
+}
+
+/// Examples of keys that have no default.
+const EXAMPLES: &[(&str, &str)] = &[
+    ("name", "my_scene"),
+    ("object", "object: { shape: { sphere: { radius: 10 mm } }, position: [0 m, 0 m, 10 mm] }"),
+    ("object.shape", "shape: { sphere: { radius: 10 mm } }"),
+    ("object.position", "[0 m, 0 m, 10 mm]"),
+    ("object.shape.box.size", "[20 mm, 20 mm, 60 mm]"),
+    ("object.shape.mesh.file", "meshes/blob.stl"),
+    ("object.shape.mesh.unit", "1 mm"),
+    ("object.shape.convex_hull.points", "[[0 mm, 0 mm, 0 mm], [20 mm, 0 mm, 0 mm], …]"),
+];
+
+fn unit_example(dimension: &Dimension) -> String {
+    let everyday = if dimension.name == "length" { "10 mm" } else { "" };
+    if everyday.is_empty() { format!("1 {}", dimension.units[0].name) } else { everyday.to_owned() }
+}
+
+/// A scalar or list of scalars as it was written.
+fn plain(node: &Node) -> Option<String> {
+    match &node.value {
+        Value::List(items) => {
+            let items: Option<Vec<String>> = items.iter().map(plain).collect();
+            items.map(|items| format!("[{}]", items.join(", ")))
+        }
+        Value::Null | Value::Map(_) => None,
+        _ => Some(node.describe().trim_matches('`').to_owned()),
+    }
+}
+
+/// True if `node` is the word that stands for "none".
+fn is_word(node: &Node, word: &str) -> bool {
+    matches!(&node.value, Value::Text(text) if text == word)
+}
+
+impl Walk for Reader<'_> {
+    fn section(&mut self, key: &'static str, inside: impl FnOnce(&mut Self)) {
+        let node = self.take(key).and_then(|node| {
+            let is_map = matches!(node.value, Value::Map(_));
+            if !is_map {
+                self.wrong_kind(node, key, "a map of keys and values", "key: value");
+            }
+            is_map.then_some(node)
+        });
+        self.open.push(Section { key, node, known: Vec::new() });
+        inside(self);
+        self.close_section();
+    }
+
+    fn quantity(&mut self, key: &'static str, kind: Quantity, value: &mut Real) {
+        let found = self.take(key).and_then(|node| self.parse_quantity(node, key, kind));
+        *value = found.unwrap_or(Real::NAN);
+    }
+
+    fn quantity_or(
+        &mut self,
+        key: &'static str,
+        word: &'static str,
+        kind: Quantity,
+        value: &mut Option<Real>,
+    ) {
+        let node = self.take(key).filter(|node| !is_word(node, word));
+        *value = node.and_then(|node| self.parse_quantity(node, key, kind));
+    }
+
+    fn vector(&mut self, key: &'static str, kind: Quantity, value: &mut Vec3) {
+        let found = self.take(key).and_then(|node| self.parse_vector(node, key, kind));
+        *value = found.unwrap_or_else(|| Vec3::repeat(Real::NAN));
+    }
+
+    fn vectors(&mut self, key: &'static str, kind: Quantity, value: &mut Vec<Vec3>) {
+        let Some(node) = self.take(key) else { return };
+        let Value::List(items) = &node.value else {
+            self.wrong_kind(node, key, "a list of points", "");
+            return;
+        };
+        *value = items.iter().filter_map(|item| self.parse_vector(item, key, kind)).collect();
+    }
+
+    fn number(&mut self, key: &'static str, range: Range, value: &mut Real) {
+        let found = self.take(key).and_then(|node| self.parse_number(node, key, range));
+        *value = found.unwrap_or(Real::NAN);
+    }
+
+    fn numbers<const N: usize>(&mut self, key: &'static str, value: &mut [Real; N]) {
+        let Some(node) = self.take(key) else { return };
+        match &node.value {
+            Value::List(items) if items.len() == N => {
+                for (item, value) in items.iter().zip(value) {
+                    *value = self.parse_number(item, key, Range::Any).unwrap_or(Real::NAN);
+                }
+            }
+            _ => self.wrong_kind(node, key, "a list of numbers", "[0, 0, 0, 1]"),
+        }
+    }
+
+    fn whole(&mut self, key: &'static str, min: u64, max: u64, value: &mut u64) {
+        let found = self.take(key).and_then(|node| self.parse_whole(node, key, (min, max)));
+        *value = found.unwrap_or(0);
+    }
+
+    fn whole_or(
+        &mut self,
+        key: &'static str,
+        word: &'static str,
+        max: u64,
+        value: &mut Option<u64>,
+    ) {
+        let node = self.take(key).filter(|node| !is_word(node, word));
+        *value = node.and_then(|node| self.parse_whole(node, key, (0, max)));
+    }
+
+    fn flag(&mut self, key: &'static str, value: &mut bool) {
+        let Some(node) = self.take(key) else { return };
+        match node.value {
+            Value::Flag(flag) => *value = flag,
+            _ => self.wrong_kind(node, key, "true or false", "true"),
+        }
+    }
+
+    fn text(&mut self, key: &'static str, value: &mut String) {
+        let Some(node) = self.take(key) else { return };
+        match &node.value {
+            Value::Text(text) => value.clone_from(text),
+            _ => self.wrong_kind(node, key, "a text", "text"),
+        }
+    }
+
+    fn text_or(&mut self, key: &'static str, word: &'static str, value: &mut Option<String>) {
+        let mut text = String::new();
+        self.text(key, &mut text);
+        *value = (text != word && !text.is_empty()).then_some(text);
+    }
+
+    fn choice(
+        &mut self,
+        key: &'static str,
+        known: &[&'static str],
+        current: &'static str,
+    ) -> &'static str {
+        let Some(node) = self.take(key) else { return current };
+        let chosen = match &node.value {
+            Value::Text(text) => known.iter().find(|name| *name == text),
+            _ => None,
+        };
+        if chosen.is_none() {
+            self.not_one_of(node, key, node.describe(), known);
+        }
+        chosen.copied().unwrap_or(current)
+    }
+
+    fn alternative(
+        &mut self,
+        key: &'static str,
+        known: &[&'static str],
+        _current: &'static str,
+    ) -> Option<&'static str> {
+        let node = self.take(key)?;
+        let Value::Map(entries) = &node.value else {
+            self.not_one_of(node, key, node.describe(), known);
+            return None;
+        };
+        let [entry] = entries.as_slice() else {
+            self.not_one_of(node, key, format!("a map of {} keys", entries.len()), known);
+            return None;
+        };
+        let chosen = known.iter().find(|name| **name == entry.key).copied();
+        if chosen.is_none() {
+            let at = Node { place: entry.place.clone(), value: Value::Null };
+            self.not_one_of(&at, key, format!("`{}`", entry.key), known);
+        }
+        chosen
+    }
+
+    fn is_reading(&self) -> bool {
+        true
+    }
+}

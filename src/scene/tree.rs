@@ -1,0 +1,168 @@
+//! A YAML text as a tree whose every node knows where it was written.
+//!
+//! Scenes are read by way of this tree, not straight into structs: a struct reader stops at the
+//! first fault, and a person wants to see all of them; and defaults and `--set` are merged here
+//! without losing the places.
+
+use std::{fmt, rc::Rc};
+
+use crate::base::Real;
+
+/// Where something was written.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Place {
+    /// File, or the `--set` it came from.
+    pub source: Rc<str>,
+    /// Line, from 1; 0 means the source as a whole.
+    pub line: u64,
+    /// Column, from 1.
+    pub column: u64,
+}
+
+impl Place {
+    /// The source as a whole.
+    pub fn whole(source: &str) -> Self {
+        Self { source: Rc::from(source), line: 0, column: 0 }
+    }
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.line {
+            0 => write!(f, "{}", self.source),
+            _ => write!(f, "{}:{}:{}", self.source, self.line, self.column),
+        }
+    }
+}
+
+/// A value and its place.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Node {
+    /// Where it was written.
+    pub place: Place,
+    /// What was written.
+    pub value: Value,
+}
+
+/// What YAML knows.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Value {
+    /// Nothing.
+    Null,
+    /// `true` or `false`.
+    Flag(bool),
+    /// A whole number.
+    Whole(i128),
+    /// A real number.
+    Real(Real),
+    /// A text; quantities are texts.
+    Text(String),
+    /// A list.
+    List(Vec<Node>),
+    /// Keys and values, in the order written.
+    Map(Vec<Entry>),
+}
+
+/// A key with its value.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Entry {
+    /// The key.
+    pub key: String,
+    /// Where the key was written.
+    pub place: Place,
+    /// Its value.
+    pub node: Node,
+}
+
+/// Keys whose value is one of several alternatives, `shape: { sphere: … }`. Another alternative
+/// replaces the one below it instead of joining it.
+const ALTERNATIVES: &[&str] = &["shape", "orientation"];
+
+impl Node {
+    /// An empty map.
+    pub(super) fn empty(place: Place) -> Self {
+        Self { place, value: Value::Map(Vec::new()) }
+    }
+
+    /// The node under a key.
+    pub(super) fn get(&self, key: &str) -> Option<&Self> {
+        match &self.value {
+            Value::Map(entries) => entries.iter().find(|it| it.key == key).map(|it| &it.node),
+            _ => None,
+        }
+    }
+
+    /// The node at a dotted path.
+    pub(super) fn at(&self, path: &str) -> Option<&Self> {
+        path.split('.').try_fold(self, |node, key| node.get(key))
+    }
+
+    /// Lays `over` on top: maps are joined key by key, everything else is replaced.
+    pub(super) fn lay(&mut self, over: Self) {
+        let Value::Map(entries) = over.value else {
+            *self = over;
+            return;
+        };
+        let Value::Map(mine) = &mut self.value else {
+            *self = Self { place: over.place, value: Value::Map(entries) };
+            return;
+        };
+        self.place = over.place;
+        for entry in entries {
+            match mine.iter_mut().find(|it| it.key == entry.key) {
+                Some(below) if is_other_alternative(&below.node, &entry) => *below = entry,
+                Some(below) => {
+                    below.place = entry.place;
+                    below.node.lay(entry.node);
+                }
+                None => mine.push(entry),
+            }
+        }
+    }
+
+    /// What was written, for messages.
+    pub(super) fn describe(&self) -> String {
+        match &self.value {
+            Value::Null => "nothing".to_owned(),
+            Value::Flag(flag) => format!("`{flag}`"),
+            Value::Whole(number) => format!("`{number}`"),
+            Value::Real(number) => format!("`{number}`"),
+            Value::Text(text) => format!("`{text}`"),
+            Value::List(_) => "a list".to_owned(),
+            Value::Map(_) => "a map".to_owned(),
+        }
+    }
+}
+
+/// True if `over` names an alternative that `below` does not have.
+fn is_other_alternative(below: &Node, over: &Entry) -> bool {
+    let (Value::Map(below), Value::Map(over_entries)) = (&below.value, &over.node.value) else {
+        return false;
+    };
+    let is_known = |it: &Entry| below.iter().any(|below| below.key == it.key);
+    ALTERNATIVES.contains(&over.key.as_str()) && !over_entries.iter().all(is_known)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::yaml;
+
+    /// Oracle: the text one would have written by hand.
+    #[test]
+    fn laying_joins_maps_and_replaces_the_rest() {
+        let mut below = yaml::parse("a: { b: 1, c: [1, 2] }\nd: x", "below").unwrap();
+        below.lay(yaml::parse("a: { c: [3], e: 2 }", "over").unwrap());
+        assert_eq!(below.at("a.b").unwrap().describe(), "`1`");
+        assert_eq!(below.at("a.e").unwrap().describe(), "`2`");
+        assert_eq!(below.at("a.c").unwrap().place.source.as_ref(), "over");
+        assert_eq!(below.at("d").unwrap().describe(), "`x`");
+    }
+
+    #[test]
+    fn another_shape_replaces_the_shape_below() {
+        let mut below = yaml::parse("shape: { sphere: { radius: 1 mm } }", "below").unwrap();
+        below.lay(yaml::parse("shape: { box: { size: 1 } }", "over").unwrap());
+        assert!(below.at("shape.sphere").is_none(), "the sphere is gone");
+        assert!(below.at("shape.box.size").is_some(), "the box is there");
+    }
+}
