@@ -9,3 +9,4 @@ pub mod snapshot; // what the outside may see
 pub mod controller; // pick and lift, from observations to commands
 pub mod wire; // bytes for the outside
 pub mod sinks; // where snapshots go
+pub mod sources; // where commands come from
