@@ -12,3 +12,4 @@ pub mod session; // one run in memory
 pub mod controller; // who asks, if nobody outside does
 pub mod wire; // bytes for the outside
 pub mod sinks; // where snapshots go
+pub mod sources; // where commands come from
