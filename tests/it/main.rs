@@ -2,8 +2,10 @@
 #![expect(clippy::unwrap_used, reason = "a failing unwrap is a failing test")]
 
 mod generated_types; // msgs/*.msg and the Rust types agree
+mod main_job; // the main job, commanded from other processes
 mod peers; // Python, with other people's implementations of what we speak
 mod private_network; // where tests may speak DDS
 mod ros_loop; // what goes out reaches others, what others say comes in
 mod stream; // what other processes read in shared memory
 mod synthetic; // a made-up system with known numbers
+mod toy_run; // a whole run with a toy for physics
