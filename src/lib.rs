@@ -3,10 +3,13 @@
 //! This list is the table of contents and the law: a module uses only modules listed above it.
 
 pub mod base; // words that everything shares
-pub mod scene; // text to model
+pub mod scene; // text to checked numbers
+pub mod physics; // grains, membrane, chamber
+pub mod cosim; // one tick of the coupled system
 pub mod command; // what the outside may ask
 pub mod snapshot; // what the outside may see
-pub mod controller; // pick and lift, from observations to commands
+pub mod session; // one run in memory
+pub mod controller; // who asks, if nobody outside does
 pub mod wire; // bytes for the outside
 pub mod sinks; // where snapshots go
 pub mod sources; // where commands come from

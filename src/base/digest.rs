@@ -6,9 +6,15 @@ use xxhash_rust::xxh3::Xxh3;
 
 use super::{Real, Vec3};
 
+/// Bytes collected before they are hashed in one go.
+const BLOCK: usize = 16 * 1024;
+
 /// Collects numbers in the order they are given.
 #[derive(Default)]
-pub struct Digest(Xxh3);
+pub struct Digest {
+    hasher: Xxh3,
+    block: Vec<u8>,
+}
 
 impl Digest {
     /// An empty digest.
@@ -18,17 +24,21 @@ impl Digest {
 
     /// Adds raw bytes.
     pub fn bytes(&mut self, bytes: &[u8]) {
-        self.0.update(bytes);
+        self.block.extend_from_slice(bytes);
+        if self.block.len() >= BLOCK {
+            self.hasher.update(&self.block);
+            self.block.clear();
+        }
     }
 
     /// Adds a whole number.
     pub fn integer(&mut self, value: u64) {
-        self.0.update(&value.to_le_bytes());
+        self.bytes(&value.to_le_bytes());
     }
 
     /// Adds the bits of a real number.
     pub fn real(&mut self, value: Real) {
-        self.0.update(&value.to_bits().to_le_bytes());
+        self.bytes(&value.to_bits().to_le_bytes());
     }
 
     /// Adds the bits of real numbers.
@@ -46,7 +56,8 @@ impl Digest {
     }
 
     /// The digest of all that was added.
-    pub fn finish(&self) -> u64 {
-        self.0.digest()
+    pub fn finish(mut self) -> u64 {
+        self.hasher.update(&self.block);
+        self.hasher.digest()
     }
 }

@@ -61,3 +61,18 @@ where
     let sums: Vec<T> = (0..n.div_ceil(CHUNK)).into_par_iter().map(of_chunk).collect();
     sums.into_iter().fold(zero, |total, part| total + part)
 }
+
+/// `write(i, &mut a[i], &mut b[i])` for every element of two slices of the same length.
+pub fn for_each_of_two<A: Send, B: Send>(
+    a: &mut [A],
+    b: &mut [B],
+    write: impl Fn(usize, &mut A, &mut B) + Sync + Send,
+) {
+    debug_assert_eq!(a.len(), b.len(), "the slices belong together");
+    let chunks = a.par_chunks_mut(CHUNK).zip(b.par_chunks_mut(CHUNK));
+    chunks.enumerate().for_each(|(chunk, (a, b))| {
+        for (k, (a, b)) in a.iter_mut().zip(b).enumerate() {
+            write(chunk * CHUNK + k, a, b);
+        }
+    });
+}

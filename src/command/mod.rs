@@ -3,6 +3,8 @@
 //! A command holds the values exactly as they arrived, even senseless ones: what is refused is
 //! recorded too.
 
+pub mod apply;
+
 /// One wish of the outside.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Command {
@@ -112,4 +114,15 @@ pub struct CommandRecord {
     pub command: Command,
     /// What became of it.
     pub outcome: Outcome,
+}
+
+/// Commands so far, by fate.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct CommandCounts {
+    /// Carried out as asked.
+    pub n_applied: u64,
+    /// Carried out within a limit.
+    pub n_limited: u64,
+    /// Not carried out.
+    pub n_refused: u64,
 }

@@ -10,7 +10,7 @@ use crate::{
         Pose, Tick, Vec3,
         real::{Twist, Wrench},
     },
-    command::CommandRecord,
+    command::{CommandCounts, CommandRecord},
 };
 
 /// The coupled system at the end of one tick.
@@ -152,15 +152,4 @@ pub struct ContactSnapshot {
     pub normal_force: f64,
     /// Overlap [m].
     pub overlap: f64,
-}
-
-/// Commands so far, by fate.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct CommandCounts {
-    /// Carried out as asked.
-    pub n_applied: u64,
-    /// Carried out within a limit.
-    pub n_limited: u64,
-    /// Not carried out.
-    pub n_refused: u64,
 }

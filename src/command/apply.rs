@@ -1,0 +1,195 @@
+//! Commands become controls: checked, limited, or refused with a reason.
+
+use super::{Command, CommandCounts, CommandRecord, Limit, Outcome, PoseCommand, Refusal};
+use crate::{
+    base::{Pose, Quat, Real, Vec3},
+    cosim::Inputs,
+    scene::Scene,
+};
+
+/// How far a quaternion's length may be from 1.
+const NORMALISED: Real = 1e-3;
+/// Frame of everything.
+pub const WORLD: &str = "world";
+/// Frame of the flange, in the rim's plane.
+pub const FLANGE: &str = "gripper_flange";
+
+/// Frame of an object, at its centre of mass.
+pub fn object_frame(name: &str) -> String {
+    format!("object/{name}")
+}
+
+/// Poses that commands may refer to, as they were at the end of the last tick.
+pub struct Frames {
+    /// The flange in the world.
+    pub flange: Pose,
+    /// The objects in the world, in the scene's order.
+    pub objects: Vec<Pose>,
+}
+
+/// What was commanded, and what has become of it.
+pub struct Desk {
+    names: Vec<String>,
+    gauge_range: [Real; 2],
+    speed_max: Real,
+    drive_timeouts_ns: Vec<u64>,
+    gauge_setpoint: Real,
+    flange: Target,
+    drives: Vec<Option<Target>>,
+    counts: CommandCounts,
+}
+
+/// A commanded pose and when it came.
+#[derive(Clone, Copy)]
+struct Target {
+    pose: Pose,
+    time_ns: u64,
+}
+
+impl Desk {
+    /// A desk for `scene`: the flange shall stay where it is.
+    pub fn new(scene: &Scene) -> Self {
+        let nanoseconds = |time: Real| std::time::Duration::from_secs_f64(time).as_nanos();
+        Self {
+            names: scene.objects.iter().map(|object| object.name.clone()).collect(),
+            gauge_range: [scene.chamber.gauge_min, scene.chamber.gauge_max],
+            speed_max: scene.flange.speed_max,
+            drive_timeouts_ns: scene
+                .objects
+                .iter()
+                .map(|o| u64::try_from(nanoseconds(o.drive_timeout)).unwrap_or(u64::MAX))
+                .collect(),
+            gauge_setpoint: 0.0,
+            flange: Target { pose: scene.flange.pose, time_ns: 0 },
+            drives: vec![None; scene.objects.len()],
+            counts: CommandCounts::default(),
+        }
+    }
+
+    /// How commands fared so far.
+    pub fn counts(&self) -> CommandCounts {
+        self.counts
+    }
+
+    /// Takes the commands that arrived before the tick that starts at `now_ns`.
+    pub fn take(
+        &mut self,
+        commands: &[Command],
+        frames: &Frames,
+        now_ns: u64,
+    ) -> (Inputs, Vec<CommandRecord>) {
+        let mut records = Vec::with_capacity(commands.len());
+        for command in commands {
+            let outcome = match self.apply(command, frames, now_ns) {
+                Ok(None) => Outcome::Applied,
+                Ok(Some(limit)) => Outcome::Limited(limit),
+                Err(refusal) => Outcome::Refused(refusal),
+            };
+            match outcome {
+                Outcome::Applied => self.counts.n_applied += 1,
+                Outcome::Limited(_) => self.counts.n_limited += 1,
+                Outcome::Refused(_) => self.counts.n_refused += 1,
+            }
+            records.push(CommandRecord { command: command.clone(), outcome });
+        }
+        for (drive, timeout) in self.drives.iter_mut().zip(&self.drive_timeouts_ns) {
+            if drive.is_some_and(|target| now_ns - target.time_ns > *timeout) {
+                *drive = None;
+            }
+        }
+        let inputs = Inputs {
+            gauge_setpoint: self.gauge_setpoint,
+            flange_target: self.flange.pose,
+            drives: self.drives.iter().map(|drive| drive.map(|target| target.pose)).collect(),
+        };
+        (inputs, records)
+    }
+
+    fn apply(
+        &mut self,
+        command: &Command,
+        frames: &Frames,
+        now_ns: u64,
+    ) -> Result<Option<Limit>, Refusal> {
+        match command {
+            Command::Vacuum { gauge_pa } => {
+                finite("gauge pressure", *gauge_pa)?;
+                let [min, max] = self.gauge_range;
+                let set_pa = gauge_pa.clamp(min, max);
+                self.gauge_setpoint = set_pa;
+                let asked_pa = *gauge_pa;
+                let is_limited = asked_pa < min || asked_pa > max;
+                Ok(is_limited.then_some(Limit::PumpRange { asked_pa, set_pa }))
+            }
+            Command::FlangePose(pose) => {
+                let pose = self.pose_in_world(pose, frames)?;
+                let limit = self.jump(&self.flange, &pose, now_ns);
+                self.flange = Target { pose, time_ns: now_ns };
+                Ok(limit)
+            }
+            Command::ObjectPose { object, pose } => {
+                let i = self.find(object)?;
+                let pose = self.pose_in_world(pose, frames)?;
+                let here = Target { pose: frames.objects[i], time_ns: now_ns };
+                let limit = self.jump(&self.drives[i].unwrap_or(here), &pose, now_ns);
+                self.drives[i] = Some(Target { pose, time_ns: now_ns });
+                Ok(limit)
+            }
+            Command::ObjectRelease { object } => {
+                let i = self.find(object)?;
+                self.drives[i] = None;
+                Ok(None)
+            }
+        }
+    }
+
+    fn find(&self, object: &str) -> Result<usize, Refusal> {
+        self.names.iter().position(|name| name == object).ok_or_else(|| Refusal::UnknownObject {
+            object: object.to_owned(),
+            known: self.names.join(", "),
+        })
+    }
+
+    fn pose_in_world(&self, command: &PoseCommand, frames: &Frames) -> Result<Pose, Refusal> {
+        for value in command.position {
+            finite("position", value)?;
+        }
+        for value in command.orientation {
+            finite("orientation", value)?;
+        }
+        let [x, y, z, w] = command.orientation;
+        let quaternion = nalgebra::Quaternion::new(w, x, y, z);
+        let length = quaternion.norm();
+        if (length - 1.0).abs() > NORMALISED {
+            return Err(Refusal::NotNormalised { length });
+        }
+        let rotation = Quat::from_quaternion(quaternion);
+        let local = Pose::from_parts(Vec3::from(command.position).into(), rotation);
+        let object_frames: Vec<String> = self.names.iter().map(|n| object_frame(n)).collect();
+        match command.frame_id.as_str() {
+            "" | WORLD => Ok(local),
+            FLANGE => Ok(frames.flange * local),
+            other => match object_frames.iter().position(|frame| frame == other) {
+                Some(i) => Ok(frames.objects[i] * local),
+                None => Err(Refusal::UnknownFrame {
+                    frame_id: other.to_owned(),
+                    known: format!("{WORLD}, {FLANGE}, {}", object_frames.join(", ")),
+                }),
+            },
+        }
+    }
+
+    /// A jump is further than the body can go in the time since the command before.
+    fn jump(&self, before: &Target, pose: &Pose, now_ns: u64) -> Option<Limit> {
+        let way = pose.translation.vector - before.pose.translation.vector;
+        let distance_m = way.norm();
+        let elapsed = std::time::Duration::from_nanos(now_ns - before.time_ns).as_secs_f64();
+        // A millimetre and a tick of grace: stamps fall between ticks.
+        let allowed_m = self.speed_max * (elapsed + 1e-3) + 1e-3;
+        (distance_m > allowed_m).then_some(Limit::PoseJump { distance_m, allowed_m })
+    }
+}
+
+fn finite(field: &'static str, value: Real) -> Result<(), Refusal> {
+    if value.is_finite() { Ok(()) } else { Err(Refusal::NotFinite { field, value }) }
+}

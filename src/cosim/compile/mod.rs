@@ -1,0 +1,302 @@
+//! A checked scene becomes a model: laws, meshes, surfaces, and the substep that all of them bear.
+//!
+//! ```text
+//! critical step = min(0.4 T_R, t_membrane),   T_R = π R √(ρ/G) / (0.1631 ν + 0.8766)
+//! ```
+//!
+//! T_R is the Rayleigh time of the smallest grain (Thornton & Randall 1988); 0.4 of it is where a
+//! packing at full vacuum starts to ring. t_membrane is the limit of springs, hinges and of the
+//! contacts that press on a vertex at full vacuum.
+
+mod start_state;
+
+pub use start_state::{StartState, StartStateError};
+
+use super::{Plan, flange::Limits};
+use crate::{
+    base::{Pose, Real, digest::Digest, parallel},
+    physics::{
+        Model,
+        boundary::shape::{Bulk, ShapeFault, Surface},
+        contact::law::{self, PairLaw},
+        membrane::{MembraneModel, Sheet, critical_step, mesh::Mesh},
+        model::{BodyModel, BodySurface, ChamberModel},
+    },
+    scene::{self, Scene, Shape},
+};
+
+/// Changes whenever the same scene would settle differently: part of every cache key.
+const PHYSICS_VERSION: u64 = 1;
+/// Neighbours are listed this share of the largest radius beyond contact.
+const SKIN_SHARE: Real = 0.25;
+/// Longest time between two steps of the rigid world [s].
+const EXCHANGE_MAX: Real = 1e-4;
+/// Share of the Rayleigh time at which a packing under full vacuum starts to ring.
+const RAYLEIGH_SHARE: Real = 0.4;
+
+/// Why a scene cannot be compiled.
+#[derive(Debug, thiserror::Error)]
+pub enum CompileError {
+    /// The substep set by hand is unstable.
+    #[error(
+        "time.substep: {given_s:.3e} s exceeds the critical step {critical_s:.3e} s; \
+         use at most {advised_s:.3e} s, leave it out, or take softer materials or a coarser mesh"
+    )]
+    SubstepTooLong {
+        /// Asked for [s].
+        given_s: Real,
+        /// Where the system becomes unstable [s].
+        critical_s: Real,
+        /// What would be derived [s].
+        advised_s: Real,
+    },
+    /// The bag cannot be meshed.
+    #[error("membrane: {0}")]
+    Membrane(#[from] crate::physics::membrane::mesh::MeshFault),
+    /// An object's shape cannot be used.
+    #[error("object `{name}`: {fault}")]
+    Object {
+        /// Its name.
+        name: String,
+        /// What is wrong with it.
+        fault: ShapeFault,
+    },
+    /// The solver's threads could not be started.
+    #[error("threads: {0}; use --threads with fewer")]
+    Threads(#[from] rayon::ThreadPoolBuildError),
+}
+
+/// A scene ready to run.
+pub struct Compiled {
+    /// Where it came from.
+    pub scene: Scene,
+    /// Grains, membrane and chamber.
+    pub model: Model,
+    /// How a tick is cut.
+    pub plan: Plan,
+    /// Mass properties of the objects.
+    pub bulks: Vec<Bulk>,
+    /// Limits of the flange's motion.
+    pub limits: Limits,
+    /// The solver's threads.
+    pub pool: rayon::ThreadPool,
+}
+
+impl Compiled {
+    /// Compiles `scene` for `n_threads` solver threads; the result does not depend on their number.
+    ///
+    /// # Errors
+    /// If the substep is too long, a shape is unusable, or threads cannot be had.
+    pub fn new(scene: &Scene, n_threads: usize) -> Result<Self, CompileError> {
+        let mesh = Mesh::half_icosphere(scene.membrane.radius, scene.membrane.frequency)?;
+        let mut membrane = MembraneModel::new(mesh, sheet(&scene.membrane));
+        membrane.scale_rest_lengths(1.0 - scene.membrane.rest_length_shrink);
+        let (mut bodies, bulks) = bodies(scene)?;
+        bodies.push(table(scene));
+        let laws = Laws::new(scene);
+        let plan = plan(scene, &membrane, &laws, &bodies)?;
+        let dt = plan.tick / real(plan.n_substeps);
+        let grains = &scene.grains;
+        let model = Model {
+            gravity: scene.gravity,
+            substep: dt,
+            radius_max: grains.radius_max,
+            radius_mean: (grains.radius_min + grains.radius_max) / 2.0,
+            skin: SKIN_SHARE * grains.radius_max,
+            grain_law: laws.grain,
+            plate_law: laws.plate,
+            membrane_law: laws.membrane,
+            clamped_positions: membrane.mesh.positions.clone(),
+            membrane,
+            is_held: false,
+            chamber: ChamberModel::new(&scene.chamber, dt),
+            table: Pose::translation(0.0, 0.0, scene.table.height),
+            bodies,
+        };
+        let limits = Limits::new(&scene.flange);
+        let pool = parallel::pool(n_threads)?;
+        Ok(Self { scene: scene.clone(), model, plan, bulks, limits, pool })
+    }
+
+    /// Key of the settled start state: everything that the filling depends on, nothing else.
+    pub fn start_digest(&self) -> u64 {
+        let Scene { seed, gravity, grains, membrane, flange, .. } = &self.scene;
+        let mut digest = Digest::new();
+        digest.integer(PHYSICS_VERSION);
+        digest.integer(*seed);
+        digest.real(self.model.substep);
+        digest.bytes(format!("{gravity:?} {grains:?} {membrane:?} {:?}", flange.pose).as_bytes());
+        digest.finish()
+    }
+}
+
+struct Laws {
+    grain: PairLaw,
+    plate: PairLaw,
+    membrane: PairLaw,
+}
+
+impl Laws {
+    fn new(scene: &Scene) -> Self {
+        let grains = &scene.grains;
+        let among_grains = law::Surface {
+            friction: grains.friction,
+            dissipation_time: grains.dissipation_time,
+            tangential_damping: grains.tangential_damping,
+        };
+        let on_membrane = membrane_surface(&scene.membrane, scene.membrane.friction);
+        Self {
+            grain: PairLaw::between(&grains.material, &grains.material, among_grains),
+            plate: PairLaw::against_rigid(&grains.material, among_grains),
+            membrane: PairLaw::between(&grains.material, &scene.membrane.material, on_membrane),
+        }
+    }
+}
+
+fn membrane_surface(membrane: &scene::Membrane, friction: Real) -> law::Surface {
+    law::Surface {
+        friction,
+        dissipation_time: membrane.dissipation_time,
+        tangential_damping: membrane.tangential_damping,
+    }
+}
+
+fn sheet(membrane: &scene::Membrane) -> Sheet {
+    Sheet {
+        thickness: membrane.thickness,
+        youngs_modulus: membrane.material.youngs_modulus,
+        density: membrane.material.density,
+        spring_damping: membrane.spring_damping,
+        bending_stiffness: membrane.bending_stiffness,
+        bending_damping: membrane.bending_damping,
+    }
+}
+
+fn bodies(scene: &Scene) -> Result<(Vec<BodyModel>, Vec<Bulk>), CompileError> {
+    let mut bodies = Vec::new();
+    let mut bulks = Vec::new();
+    for object in &scene.objects {
+        let surface = surface(&object.shape)
+            .map_err(|fault| CompileError::Object { name: object.name.clone(), fault })?;
+        let bulk = surface.bulk(object.material.density);
+        let on_object = membrane_surface(&scene.membrane, object.friction);
+        bodies.push(BodyModel {
+            law: PairLaw::between(&scene.membrane.material, &object.material, on_object),
+            contact_radius: contact_radius(&object.shape, bulk.volume),
+            bounding_radius: surface.bounding_radius(),
+            surface: BodySurface::Shape(Box::new(surface)),
+        });
+        bulks.push(bulk);
+    }
+    Ok((bodies, bulks))
+}
+
+fn surface(shape: &Shape) -> Result<Surface, ShapeFault> {
+    Ok(match shape {
+        Shape::Sphere { radius } => Surface::Sphere { radius: *radius },
+        Shape::Box { size } => Surface::cuboid(size),
+        Shape::Cylinder { radius, height } => Surface::cylinder(*radius, *height),
+        Shape::Capsule { radius, height } => Surface::capsule(*radius, *height),
+        Shape::ConvexHull { points } => Surface::convex_hull(points)?,
+        Shape::Mesh { vertices, triangles, .. } => Surface::mesh(vertices, triangles)?,
+    })
+}
+
+/// Effective radius R* of a soft sheet on the object: the radius of spheres, cylinders and
+/// capsules as in the source; for others that of the sphere of the same volume.
+fn contact_radius(shape: &Shape, volume: Real) -> Real {
+    match shape {
+        Shape::Sphere { radius }
+        | Shape::Cylinder { radius, .. }
+        | Shape::Capsule { radius, .. } => *radius,
+        Shape::Box { .. } | Shape::ConvexHull { .. } | Shape::Mesh { .. } => {
+            (volume * 0.75 / std::f64::consts::PI).cbrt()
+        }
+    }
+}
+
+fn table(scene: &Scene) -> BodyModel {
+    let on_table = membrane_surface(&scene.membrane, scene.table.friction);
+    BodyModel {
+        surface: BodySurface::HalfSpace,
+        law: PairLaw::against_rigid(&scene.membrane.material, on_table),
+        contact_radius: scene.membrane.radius,
+        bounding_radius: Real::INFINITY,
+    }
+}
+
+fn plan(
+    scene: &Scene,
+    membrane: &MembraneModel,
+    laws: &Laws,
+    bodies: &[BodyModel],
+) -> Result<Plan, CompileError> {
+    let critical = critical_step(scene, membrane, laws, bodies);
+    let advised = scene.time.safety * critical;
+    let wanted = match scene.time.substep {
+        Some(given) if given > critical => {
+            return Err(CompileError::SubstepTooLong {
+                given_s: given,
+                critical_s: critical,
+                advised_s: advised,
+            });
+        }
+        Some(given) => given,
+        None => advised,
+    };
+    let tick = std::time::Duration::from_nanos(scene.time.tick_ns).as_secs_f64();
+    // A hand-set step that divides the tick must not be cut once more by rounding.
+    let n_first = count((tick / wanted - 1e-9).ceil());
+    let n_per_exchange = count((EXCHANGE_MAX * real(n_first) / tick).floor());
+    let n_substeps = n_first.div_ceil(n_per_exchange) * n_per_exchange;
+    Ok(Plan { tick, n_substeps, n_per_exchange, critical_step: critical })
+}
+
+fn critical_step(
+    scene: &Scene,
+    membrane: &MembraneModel,
+    laws: &Laws,
+    bodies: &[BodyModel],
+) -> Real {
+    let grains = &scene.grains;
+    let material = &grains.material;
+    let shear_modulus = material.youngs_modulus / (2.0 * (1.0 + material.poisson_ratio));
+    let rayleigh = std::f64::consts::PI * grains.radius_min * (material.density / shear_modulus).sqrt()
+        / (0.1631 * material.poisson_ratio + 0.8766);
+    // Under the strongest vacuum a grain carries the pressure on its square of sheet, a sample
+    // that on its share of the sheet.
+    let pressure = scene.chamber.gauge_min.abs().max(scene.chamber.gauge_max);
+    let of_grain = stiffness(
+        &laws.membrane,
+        grains.radius_max,
+        pressure * 4.0 * grains.radius_max.powi(2),
+    );
+    let area = membrane.mesh.vertex_areas().into_iter().fold(0.0, Real::max);
+    let of_body = bodies
+        .iter()
+        .map(|body| stiffness(&body.law, body.contact_radius, pressure * area))
+        .fold(0.0, Real::max);
+    let sheet = critical_step::critical_step(membrane, of_grain + of_body);
+    sheet.min(RAYLEIGH_SHARE * rayleigh)
+}
+
+/// Normal stiffness [N/m] of a Hertz contact that carries `force` [N].
+fn stiffness(law: &PairLaw, radius: Real, force: Real) -> Real {
+    let overlap = (0.75 * force / (law.modulus * radius.sqrt())).powf(2.0 / 3.0);
+    2.0 * law.modulus * (radius * overlap).sqrt()
+}
+
+#[expect(clippy::cast_precision_loss, reason = "counts of substeps are small")]
+fn real(count: usize) -> Real {
+    count as Real
+}
+
+/// A whole positive real as a count, at least 1.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "substeps per tick stay far below 2^53"
+)]
+fn count(value: Real) -> usize {
+    value.max(1.0) as usize
+}

@@ -1,0 +1,96 @@
+//! How a kinematic body follows commanded poses within its limits.
+//!
+//! ```text
+//! v_wanted = ê min(v_max, |e|/τ, √(2 a_max |e|)),   |v − v_before| ≤ a_max dt
+//! ```
+//!
+//! e is the way left to the target and τ = 50 ms smooths a target that arrives in steps of a
+//! controller's period; the square root lets the body stop in time. The same holds for rotations,
+//! with the rotation vector as e.
+
+use crate::{
+    base::{Pose, Real, Vec3, real::Twist},
+    physics::boundary::body::BodyMotion,
+    scene,
+};
+
+/// Time constant of the approach [s].
+const FOLLOW_TIME: Real = 0.05;
+
+/// Velocity and acceleration limits of a kinematic body.
+#[derive(Clone, Copy, Debug)]
+pub struct Limits {
+    /// Linear speed [m/s].
+    pub speed_max: Real,
+    /// Linear acceleration [m/s²].
+    pub acceleration_max: Real,
+    /// Angular speed [rad/s].
+    pub angular_speed_max: Real,
+    /// Angular acceleration [rad/s²].
+    pub angular_acceleration_max: Real,
+}
+
+impl Limits {
+    /// The limits of a scene's flange; driven objects keep to them too.
+    pub fn new(flange: &scene::Flange) -> Self {
+        Self {
+            speed_max: flange.speed_max,
+            acceleration_max: flange.acceleration_max,
+            angular_speed_max: flange.angular_speed_max,
+            angular_acceleration_max: flange.angular_acceleration_max,
+        }
+    }
+
+    /// Velocity after `dt` [s] of a body on its way to `target`.
+    pub fn follow(&self, target: &Pose, motion: &BodyMotion, dt: Real) -> Twist {
+        let way = target.translation.vector - motion.pose.translation.vector;
+        let turn = (target.rotation * motion.pose.rotation.inverse()).scaled_axis();
+        let linear = (self.speed_max, self.acceleration_max);
+        let angular = (self.angular_speed_max, self.angular_acceleration_max);
+        Twist {
+            linear: approach(way, motion.twist.linear, linear, dt),
+            angular: approach(turn, motion.twist.angular, angular, dt),
+        }
+    }
+}
+
+fn approach(way: Vec3, velocity: Vec3, (fastest, acceleration): (Real, Real), dt: Real) -> Vec3 {
+    let left = way.norm();
+    let speed = fastest.min(left / FOLLOW_TIME).min((2.0 * acceleration * left).sqrt());
+    // Closer than any motion that matters: standing still keeps the bits of the pose.
+    let wanted = if left > 1e-12 { way * (speed / left) } else { Vec3::zeros() };
+    let change = wanted - velocity;
+    let size = change.norm();
+    let allowed = acceleration * dt;
+    if size > allowed { velocity + change * (allowed / size) } else { wanted }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LIMITS: Limits = Limits {
+        speed_max: 0.2,
+        acceleration_max: 1.0,
+        angular_speed_max: 1.0,
+        angular_acceleration_max: 5.0,
+    };
+
+    #[test]
+    fn a_far_target_is_reached_within_the_limits_and_without_overshoot() {
+        // Oracle: the limits themselves; the end is the target to a micrometre.
+        let target = Pose::new(Vec3::new(0.0, 0.0, 0.3), Vec3::new(0.0, 0.5, 0.0));
+        let mut motion = BodyMotion { pose: Pose::identity(), twist: Twist::zero() };
+        let dt = 1e-3;
+        for _ in 0..4000 {
+            let before = motion.twist;
+            motion.twist = LIMITS.follow(&target, &motion, dt);
+            assert!(motion.twist.linear.norm() <= 0.2 + 1e-12);
+            assert!((motion.twist.linear - before.linear).norm() <= 1e-3 + 1e-12);
+            motion.advance(dt);
+            assert!(motion.pose.translation.z < 0.3 + 1e-6);
+        }
+        assert!((motion.pose.translation.vector - target.translation.vector).norm() < 1e-6);
+        assert!(motion.pose.rotation.angle_to(&target.rotation) < 1e-6);
+    }
+}

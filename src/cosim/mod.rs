@@ -1,0 +1,225 @@
+//! One tick of the coupled system: motion in, substeps, wrench out, rigid step.
+//!
+//! Grains and membrane take many substeps per tick. Every few of them (an exchange, at most
+//! 0.1 ms) the rigid world takes one step under the membrane's mean wrench; in between the bodies
+//! move on with their last velocity. A staggered exchange at the tick itself would be unstable:
+//! a light body between stiff contacts swings faster than 1 kHz.
+
+pub mod compile;
+pub mod flange;
+pub mod rapier_world;
+
+use crate::{
+    base::{
+        Pose, Real, Vec3,
+        real::{Twist, Wrench},
+    },
+    physics::{Controls, Model, Scratch, State, boundary::body::BodyMotion, substep},
+};
+use flange::Limits;
+use rapier_world::RapierWorld;
+
+/// How a tick is cut.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Plan {
+    /// Length of a tick [s].
+    pub tick: Real,
+    /// Substeps in a tick, a multiple of `n_per_exchange`.
+    pub n_substeps: usize,
+    /// Substeps between two steps of the rigid world.
+    pub n_per_exchange: usize,
+    /// The longest stable substep [s].
+    pub critical_step: Real,
+}
+
+/// What the outside wants during a tick.
+#[derive(Clone, Debug)]
+pub struct Inputs {
+    /// Set-point of the chamber [Pa].
+    pub gauge_setpoint: Real,
+    /// Where the flange shall be.
+    pub flange_target: Pose,
+    /// Where driven objects shall be.
+    pub drives: Vec<Option<Pose>>,
+}
+
+/// Means over a tick. World axes.
+#[derive(Clone, Debug)]
+pub struct Means {
+    /// Wrench of the membrane on each object about its centre of mass.
+    pub membrane_on_objects: Vec<Wrench>,
+    /// Wrench of all contacts on each object about its centre of mass, from its momentum.
+    pub contacts_on_objects: Vec<Wrench>,
+    /// Wrench of all objects on the gripper about the flange's origin.
+    pub objects_on_gripper: Wrench,
+    /// Wrench of the whole gripper on its mount about the flange's origin.
+    pub gripper_on_mount: Wrench,
+}
+
+/// Grains, membrane and chamber together with the rigid world.
+pub struct Coupled {
+    /// What it is made of.
+    pub model: Model,
+    /// How a tick is cut.
+    pub plan: Plan,
+    /// State of grains, membrane and chamber.
+    pub state: State,
+    /// Working memory, also read by measurements.
+    pub scratch: Scratch,
+    /// Objects and table.
+    pub world: RapierWorld,
+    controls: Controls,
+    limits: Limits,
+    n_objects: usize,
+}
+
+impl Coupled {
+    /// Couples a settled state with the rigid world. The last body of `model` is the table.
+    pub fn new(
+        model: Model,
+        plan: Plan,
+        state: State,
+        world: RapierWorld,
+        limits: Limits,
+    ) -> Self {
+        let n_objects = model.bodies.len() - 1;
+        let table = BodyMotion { pose: model.table, twist: Twist::zero() };
+        let mut bodies: Vec<BodyMotion> = (0..n_objects).map(|i| world.motion(i)).collect();
+        bodies.push(table);
+        let controls = Controls {
+            gauge_setpoint: state.gauge,
+            flange: state.flange,
+            flange_twist: state.flange_twist,
+            bodies,
+        };
+        let scratch = Scratch::new(&model);
+        Self { model, plan, state, scratch, world, controls, limits, n_objects }
+    }
+
+    /// Number of objects.
+    pub fn n_objects(&self) -> usize {
+        self.n_objects
+    }
+
+    /// Advances everything by one tick.
+    pub fn advance(&mut self, inputs: &Inputs) -> Means {
+        let n = self.plan.n_substeps;
+        let flange = BodyMotion { pose: self.state.flange, twist: self.state.flange_twist };
+        let twist_end = self.limits.follow(&inputs.flange_target, &flange, self.plan.tick);
+        self.drive_objects(inputs);
+        self.controls.gauge_setpoint = inputs.gauge_setpoint;
+        let before: Vec<_> = (0..self.n_objects).map(|i| self.world.momentum(i)).collect();
+        let mut sums = Sums::new(self.n_objects);
+        let mut exchange = vec![Wrench::zero(); self.n_objects];
+        for s in 0..n {
+            self.move_flange(&flange.twist, &twist_end, s);
+            substep(&self.model, &self.controls, &mut self.state, &mut self.scratch);
+            self.add_wrenches(&mut sums, &mut exchange);
+            for body in &mut self.controls.bodies[..self.n_objects] {
+                body.advance(self.model.substep);
+            }
+            if (s + 1) % self.plan.n_per_exchange == 0 {
+                self.exchange(&mut exchange);
+            }
+        }
+        self.means(&sums, &before)
+    }
+
+    fn drive_objects(&mut self, inputs: &Inputs) {
+        for (i, target) in inputs.drives.iter().enumerate() {
+            let twist = target
+                .as_ref()
+                .map(|target| self.limits.follow(target, &self.world.motion(i), self.plan.tick));
+            self.world.drive(i, twist.as_ref());
+        }
+        for i in 0..self.n_objects {
+            self.controls.bodies[i] = self.world.motion(i);
+        }
+    }
+
+    /// The flange's velocity goes evenly from its value at the tick's start to that at its end.
+    fn move_flange(&mut self, start: &Twist, end: &Twist, s: usize) {
+        let share = real(s + 1) / real(self.plan.n_substeps);
+        let twist = Twist {
+            linear: start.linear + (end.linear - start.linear) * share,
+            angular: start.angular + (end.angular - start.angular) * share,
+        };
+        let mut motion = BodyMotion { pose: self.state.flange, twist };
+        motion.advance(self.model.substep);
+        self.controls.flange = motion.pose;
+        self.controls.flange_twist = twist;
+    }
+
+    fn add_wrenches(&self, sums: &mut Sums, exchange: &mut [Wrench]) {
+        let origin = self.state.flange.translation.vector;
+        for i in 0..self.n_objects {
+            let wrench = &self.scratch.body_wrenches[i];
+            let centre = self.controls.bodies[i].pose.translation.vector;
+            add(&mut exchange[i], wrench);
+            add(&mut sums.on_objects[i], wrench);
+            sums.on_gripper.force -= wrench.force;
+            sums.on_gripper.torque -= wrench.torque + (centre - origin).cross(&wrench.force);
+        }
+        add(&mut sums.on_mount, &self.scratch.flange_wrench);
+    }
+
+    /// One step of the rigid world under the mean of the wrenches summed up.
+    fn exchange(&mut self, sums: &mut [Wrench]) {
+        for sum in sums.iter_mut() {
+            *sum = scaled(sum, 1.0 / real(self.plan.n_per_exchange));
+        }
+        self.world.step(sums);
+        sums.fill(Wrench::zero());
+        for i in 0..self.n_objects {
+            self.controls.bodies[i] = self.world.motion(i);
+        }
+    }
+
+    fn means(&self, sums: &Sums, before: &[(Vec3, Vec3)]) -> Means {
+        let share = 1.0 / real(self.plan.n_substeps);
+        let contacts = before.iter().enumerate().map(|(i, (momentum, spin))| {
+            let (momentum_now, spin_now) = self.world.momentum(i);
+            let weight = self.model.gravity * self.world.mass(i);
+            Wrench {
+                force: (momentum_now - momentum) / self.plan.tick - weight,
+                torque: (spin_now - spin) / self.plan.tick,
+            }
+        });
+        Means {
+            membrane_on_objects: sums.on_objects.iter().map(|w| scaled(w, share)).collect(),
+            contacts_on_objects: contacts.collect(),
+            objects_on_gripper: scaled(&sums.on_gripper, share),
+            gripper_on_mount: scaled(&sums.on_mount, share),
+        }
+    }
+}
+
+struct Sums {
+    on_objects: Vec<Wrench>,
+    on_gripper: Wrench,
+    on_mount: Wrench,
+}
+
+impl Sums {
+    fn new(n_objects: usize) -> Self {
+        Self {
+            on_objects: vec![Wrench::zero(); n_objects],
+            on_gripper: Wrench::zero(),
+            on_mount: Wrench::zero(),
+        }
+    }
+}
+
+fn add(sum: &mut Wrench, wrench: &Wrench) {
+    sum.force += wrench.force;
+    sum.torque += wrench.torque;
+}
+
+fn scaled(wrench: &Wrench, share: Real) -> Wrench {
+    Wrench { force: wrench.force * share, torque: wrench.torque * share }
+}
+
+#[expect(clippy::cast_precision_loss, reason = "counts of substeps are small")]
+fn real(count: usize) -> Real {
+    count as Real
+}

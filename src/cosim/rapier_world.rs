@@ -1,0 +1,172 @@
+//! The rigid world: objects on a table. The only file that knows rapier.
+//!
+//! Rapier's defaults are made for bodies of metres: contacts are not recycled here and the length
+//! unit is that of the objects. Bodies never sleep, because a sleeping body would ignore the
+//! membrane.
+
+use nalgebra::Isometry3;
+use rapier3d_f64::{
+    parry::shape::TriMeshFlags,
+    prelude::{
+        CoefficientCombineRule, ColliderBuilder, MassProperties, PhysicsWorld, Pose as RapierPose,
+        RigidBodyBuilder, RigidBodyHandle, RigidBodyType, Vector,
+    },
+};
+
+use crate::{
+    base::{
+        Pose, Real, Vec3,
+        digest::Digest,
+        real::{Twist, Wrench},
+    },
+    physics::{
+        Model,
+        boundary::{
+            body::BodyMotion,
+            shape::{Bulk, Surface},
+        },
+        model::BodySurface,
+    },
+    scene::Scene,
+};
+
+/// Half the edge of the table's slab, and half its thickness [m].
+const TABLE_HALF: [Real; 2] = [2.0, 0.1];
+/// Length that rapier takes as typical of the bodies [m].
+const LENGTH_UNIT: Real = 0.02;
+
+/// Objects and table.
+pub struct RapierWorld {
+    world: PhysicsWorld,
+    bodies: Vec<RigidBodyHandle>,
+    bulks: Vec<Bulk>,
+}
+
+impl RapierWorld {
+    /// Puts the objects of `scene` into a fresh world; `model` and `bulks` are in their order.
+    pub fn new(scene: &Scene, model: &Model, bulks: Vec<Bulk>, step: Real) -> Self {
+        let mut world = PhysicsWorld { gravity: vector(&scene.gravity), ..Default::default() };
+        let parameters = &mut world.integration_parameters;
+        parameters.dt = step;
+        parameters.contact_recycling = false;
+        parameters.length_unit = LENGTH_UNIT;
+        let [edge, thickness] = TABLE_HALF;
+        let middle = Vector::new(0.0, 0.0, scene.table.height - thickness);
+        let slab = ColliderBuilder::cuboid(edge, edge, thickness)
+            .friction(scene.table.friction)
+            .friction_combine_rule(CoefficientCombineRule::Max);
+        world.insert(RigidBodyBuilder::fixed().translation(middle), slab);
+        let mut bodies = Vec::new();
+        for ((object, body), bulk) in scene.objects.iter().zip(&model.bodies).zip(&bulks) {
+            let BodySurface::Shape(surface) = &body.surface else { continue };
+            let mut pose = object.pose;
+            pose.translation.vector += object.pose.rotation * bulk.centre_of_mass;
+            let properties = MassProperties::with_principal_inertia_frame(
+                Vector::ZERO,
+                bulk.mass,
+                vector(&bulk.principal_inertia),
+                bulk.principal_axes.into(),
+            );
+            let rigid = RigidBodyBuilder::dynamic()
+                .pose(RapierPose::from(pose))
+                .additional_mass_properties(properties)
+                .can_sleep(false);
+            let collider = collider(surface)
+                .density(0.0)
+                .friction(0.0)
+                .friction_combine_rule(CoefficientCombineRule::Max);
+            bodies.push(world.insert(rigid, collider).0);
+        }
+        Self { world, bodies, bulks }
+    }
+
+    /// How object `i` moves now.
+    pub fn motion(&self, i: usize) -> BodyMotion {
+        let body = &self.world.bodies[self.bodies[i]];
+        let pose: Isometry3<Real> = (*body.position()).into();
+        let twist = Twist { linear: body.linvel().into(), angular: body.angvel().into() };
+        BodyMotion { pose, twist }
+    }
+
+    /// Mass of object `i` [kg].
+    pub fn mass(&self, i: usize) -> Real {
+        self.bulks[i].mass
+    }
+
+    /// Momentum [kg m/s] and angular momentum about the centre of mass [kg m²/s] of object `i`.
+    pub fn momentum(&self, i: usize) -> (Vec3, Vec3) {
+        let motion = self.motion(i);
+        let bulk = &self.bulks[i];
+        let axes = motion.pose.rotation * bulk.principal_axes;
+        let spin = axes.inverse_transform_vector(&motion.twist.angular);
+        let turning = axes * bulk.principal_inertia.component_mul(&spin);
+        (motion.twist.linear * bulk.mass, turning)
+    }
+
+    /// Drives object `i` with `twist`, or gives it back to dynamics with its present velocity.
+    pub fn drive(&mut self, i: usize, twist: Option<&Twist>) {
+        let body = &mut self.world.bodies[self.bodies[i]];
+        let kind = match twist {
+            Some(_) => RigidBodyType::KinematicVelocityBased,
+            None => RigidBodyType::Dynamic,
+        };
+        if body.body_type() != kind {
+            let (linear, angular) = (body.linvel(), body.angvel());
+            body.set_body_type(kind, true);
+            body.set_linvel(linear, true);
+            body.set_angvel(angular, true);
+        }
+        if let Some(twist) = twist {
+            body.set_linvel(vector(&twist.linear), true);
+            body.set_angvel(vector(&twist.angular), true);
+        }
+    }
+
+    /// One step of the rigid world under the membrane's mean wrenches, about centres of mass.
+    pub fn step(&mut self, wrenches: &[Wrench]) {
+        for (&handle, wrench) in self.bodies.iter().zip(wrenches) {
+            let body = &mut self.world.bodies[handle];
+            body.reset_forces(true);
+            body.reset_torques(true);
+            body.add_force(vector(&wrench.force), true);
+            body.add_torque(vector(&wrench.torque), true);
+        }
+        self.world.step();
+    }
+
+    /// Adds poses and velocities of all objects.
+    pub fn digest(&self, digest: &mut Digest) {
+        for i in 0..self.bodies.len() {
+            let motion = self.motion(i);
+            digest.reals(motion.pose.translation.vector.as_slice());
+            digest.reals(motion.pose.rotation.coords.as_slice());
+            digest.vectors(&[motion.twist.linear, motion.twist.angular]);
+        }
+    }
+}
+
+/// The shape for contacts with the table, about the centre of mass.
+fn collider(surface: &Surface) -> ColliderBuilder {
+    // Rapier's cylinders stand along y, ours along z.
+    let upright = Pose::rotation(Vec3::x() * std::f64::consts::FRAC_PI_2);
+    match surface {
+        Surface::Sphere { radius } => ColliderBuilder::ball(*radius),
+        Surface::Cuboid { half } => ColliderBuilder::cuboid(half.x, half.y, half.z),
+        Surface::Cylinder { radius, half_height } => {
+            ColliderBuilder::cylinder(*half_height, *radius).position(upright.into())
+        }
+        Surface::Capsule { radius, half_length } => {
+            ColliderBuilder::capsule_z(*half_length, *radius)
+        }
+        Surface::Polyhedron(solid) => {
+            let vertices: Vec<Vector> = solid.vertices().map(|v| vector(&v)).collect();
+            let triangles = solid.triangles().to_vec();
+            ColliderBuilder::trimesh_with_flags(vertices, triangles, TriMeshFlags::ORIENTED)
+                .expect("a polyhedron is closed and oriented")
+        }
+    }
+}
+
+fn vector(v: &Vec3) -> Vector {
+    Vector::new(v.x, v.y, v.z)
+}

@@ -1,0 +1,220 @@
+//! A closed polyhedron: signed distance by a tree over its triangles, mass by exact integrals.
+//!
+//! ```text
+//! ∫ dV = Σ s/6     ∫ x dV = Σ s/24 (a + b + c)     ∫ x xᵀ dV = Σ s/120 (aaᵀ + bbᵀ + ccᵀ + ttᵀ)
+//! s = a · (b × c),  t = a + b + c      over the triangles, each a tetrahedron with the origin
+//! ```
+//!
+//! This file is the only one of the physics that knows parry. On a face the normal is that of the
+//! face, whatever the distance; nearest to an edge or a vertex it points away from it, and within
+//! 10⁻⁹ of the size the mean normal of the faces around takes over, where the direction to a point
+//! that touches would be rounding.
+//!
+//! parry's own convex shape was rejected: it visits every vertex, 3 µs at 162 and 43 µs at 2562; the
+//! tree takes about 1 µs.
+
+use rapier3d_f64::parry;
+
+use nalgebra::{Rotation3, SymmetricEigen};
+use parry::math::Vector;
+use parry::query::PointQueryWithLocation;
+use parry::shape::{TriMesh, TriMeshFlags, TrianglePointLocation};
+use parry::transformation::try_convex_hull;
+
+use super::shape::{Aabb, Bulk, ShapeFault, Signed};
+use crate::base::{Mat3, Quat, Real, Vec3};
+
+/// A closed, outward oriented surface of triangles around its centre of mass.
+#[derive(Clone, Debug)]
+pub struct Polyhedron {
+    tree: TriMesh,
+    /// Unit normal of each triangle, zero where it has no area.
+    normals: Vec<Vec3>,
+    bounding_radius: Real,
+    volume: Real,
+    /// Centre of mass in the frame in which the shape was given [m].
+    centre_of_mass: Vec3,
+    /// ∫ x xᵀ dV about the centre of mass [m⁵].
+    second_moment: Mat3,
+}
+
+impl Polyhedron {
+    /// The convex hull of `points`.
+    pub(super) fn hull(points: &[Vec3]) -> Result<Self, ShapeFault> {
+        check_finite(points)?;
+        let fault = ShapeFault::NoHull { n_points: points.len() };
+        let points: Vec<Vector> = points.iter().map(|&p| p.into()).collect();
+        let (vertices, triangles) = try_convex_hull(&points).map_err(|_| fault.clone())?;
+        let vertices: Vec<Vec3> = vertices.into_iter().map(Into::into).collect();
+        // Flat sets of points come back as a sheet with two sides.
+        Self::new(&vertices, &triangles).map_err(|_| fault)
+    }
+
+    /// A mesh as given; equal vertices are merged.
+    pub(super) fn new(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Result<Self, ShapeFault> {
+        check_finite(vertices)?;
+        let n_vertices = vertices.len();
+        for (t, triangle) in triangles.iter().enumerate() {
+            if let Some(&vertex) = triangle.iter().find(|&&v| n_vertices <= v as usize) {
+                return Err(ShapeFault::NoSuchVertex { triangle: t, vertex, n_vertices });
+            }
+        }
+        let (vertices, triangles) = merged(vertices, triangles);
+        check_closed(&triangles)?;
+        let (volume, centre_of_mass, second_moment) = moments(&vertices, &triangles);
+        let size = vertices.iter().map(|v| (v - centre_of_mass).norm()).fold(0.0, Real::max);
+        // Rounding of a flat sheet with two sides stays far below this.
+        if !(volume > 1e-9 * size * size * size) {
+            return Err(ShapeFault::InsideOut);
+        }
+        let centred: Vec<Vector> = vertices.iter().map(|v| (v - centre_of_mass).into()).collect();
+        let tree = TriMesh::with_flags(centred, triangles, TriMeshFlags::ORIENTED)
+            .map_err(|_| ShapeFault::InsideOut)?;
+        let normal = |triangle: parry::shape::Triangle| {
+            triangle.normal().map_or_else(Vec3::zeros, |n| Vec3::from(n))
+        };
+        let normals = tree.triangles().map(normal).collect();
+        Ok(Self { tree, normals, bounding_radius: size, volume, centre_of_mass, second_moment })
+    }
+
+    /// Signed distance of `p` from the surface.
+    pub fn distance(&self, p: &Vec3) -> Signed {
+        let (projection, (face, location)) =
+            self.tree.project_local_point_and_get_location((*p).into(), false);
+        let delta = p - Vec3::from(projection.point);
+        let face_normal = self.normals[face as usize];
+        if let TrianglePointLocation::OnFace(..) = location
+            && face_normal != Vec3::zeros()
+        {
+            return Signed { distance: delta.dot(&face_normal), normal: face_normal };
+        }
+        let length = delta.norm();
+        let sign = if projection.is_inside { -1.0 } else { 1.0 };
+        let normal = if length > 1e-9 * self.bounding_radius {
+            delta * (sign / length)
+        } else {
+            self.mean_normal(face as usize, location)
+        };
+        Signed { distance: sign * length, normal }
+    }
+
+    /// Mean normal of the faces around an edge or a vertex.
+    fn mean_normal(&self, face: usize, location: TrianglePointLocation) -> Vec3 {
+        let Some(of) = self.tree.pseudo_normals() else { return self.normals[face] };
+        let sum: Vec3 = match location {
+            TrianglePointLocation::OnVertex(place) => {
+                let vertex = self.tree.indices()[face][place as usize];
+                of.vertices_pseudo_normal[vertex as usize].into()
+            }
+            TrianglePointLocation::OnEdge(place, _) => {
+                of.edges_pseudo_normal[face][place as usize].into()
+            }
+            _ => self.normals[face],
+        };
+        sum.try_normalize(1e-12).unwrap_or(self.normals[face])
+    }
+
+    /// Radius of a sphere about the centre of mass that holds all vertices [m].
+    pub fn bounding_radius(&self) -> Real {
+        self.bounding_radius
+    }
+
+    /// Box along the axes that holds all vertices.
+    pub fn aabb(&self) -> Aabb {
+        let mut aabb = Aabb { min: Vec3::repeat(Real::INFINITY), max: Vec3::repeat(-Real::INFINITY) };
+        for vertex in self.vertices() {
+            aabb.min = aabb.min.inf(&vertex);
+            aabb.max = aabb.max.sup(&vertex);
+        }
+        aabb
+    }
+
+    /// Vertices around the centre of mass [m].
+    pub fn vertices(&self) -> impl Iterator<Item = Vec3> {
+        self.tree.vertices().iter().map(|&v| v.into())
+    }
+
+    /// Vertex indices of each triangle.
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        self.tree.indices()
+    }
+
+    /// Volume, mass and inertia at `density` [kg/m³].
+    pub fn bulk(&self, density: Real) -> Bulk {
+        let trace = Mat3::identity() * self.second_moment.trace();
+        let eigen = SymmetricEigen::new(trace - self.second_moment);
+        let mut axes = eigen.eigenvectors;
+        if axes.determinant() < 0.0 {
+            axes.set_column(2, &-axes.column(2));
+        }
+        Bulk {
+            volume: self.volume,
+            mass: density * self.volume,
+            centre_of_mass: self.centre_of_mass,
+            principal_inertia: eigen.eigenvalues * density,
+            principal_axes: Quat::from_rotation_matrix(&Rotation3::from_matrix_unchecked(axes)),
+        }
+    }
+}
+
+fn check_finite(vertices: &[Vec3]) -> Result<(), ShapeFault> {
+    match vertices.iter().position(|v| !v.iter().all(|x| x.is_finite())) {
+        Some(vertex) => Err(ShapeFault::NotFinite { vertex }),
+        None => Ok(()),
+    }
+}
+
+/// One vertex for all that are equal, as files of loose triangles need; collapsed triangles go.
+fn merged(vertices: &[Vec3], triangles: &[[u32; 3]]) -> (Vec<Vec3>, Vec<[u32; 3]>) {
+    let key = |v: u32| vertices[v as usize].as_slice().iter().copied().map(ordered).collect();
+    let mut number = std::collections::BTreeMap::<Vec<i64>, u32>::new();
+    let mut kept = Vec::new();
+    let mut renumber = |v: u32| {
+        *number.entry(key(v)).or_insert_with(|| {
+            kept.push(vertices[v as usize]);
+            u32::try_from(kept.len() - 1).expect("no more vertices than the given indices reach")
+        })
+    };
+    let mut renumbered: Vec<[u32; 3]> = triangles.iter().map(|t| t.map(&mut renumber)).collect();
+    renumbered.retain(|[a, b, c]| a != b && b != c && c != a);
+    (kept, renumbered)
+}
+
+/// The bits of a number, with both zeros alike.
+fn ordered(x: Real) -> i64 {
+    (x + 0.0).to_bits().cast_signed()
+}
+
+/// Every directed edge must meet exactly one that runs the other way.
+fn check_closed(triangles: &[[u32; 3]]) -> Result<(), ShapeFault> {
+    let sides = |&[a, b, c]: &[u32; 3]| [(a, b), (b, c), (c, a)];
+    let mut edges: Vec<(u32, u32)> = triangles.iter().flat_map(sides).collect();
+    edges.sort_unstable();
+    let n_edges = edges.len();
+    let n_open = edges
+        .iter()
+        .enumerate()
+        .filter(|&(k, &(a, b))| {
+            let is_twice = k > 0 && edges[k - 1] == (a, b);
+            is_twice || edges.binary_search(&(b, a)).is_err()
+        })
+        .count();
+    if n_open == 0 && n_edges > 0 { Ok(()) } else { Err(ShapeFault::NotClosed { n_open, n_edges }) }
+}
+
+/// Volume, centre of mass, and ∫ x xᵀ dV about it.
+fn moments(vertices: &[Vec3], triangles: &[[u32; 3]]) -> (Real, Vec3, Mat3) {
+    // From a point of the surface rounding stays small however far away the origin is.
+    let origin = vertices[0];
+    let (mut volume, mut first, mut second) = (0.0, Vec3::zeros(), Mat3::zeros());
+    for triangle in triangles {
+        let [a, b, c] = triangle.map(|v| vertices[v as usize] - origin);
+        let (s, t) = (a.dot(&b.cross(&c)), a + b + c);
+        volume += s / 6.0;
+        first += t * (s / 24.0);
+        let squares = a * a.transpose() + b * b.transpose() + c * c.transpose();
+        second += (squares + t * t.transpose()) * (s / 120.0);
+    }
+    let centre = first / volume;
+    (volume, origin + centre, second - centre * centre.transpose() * volume)
+}

@@ -1,0 +1,67 @@
+//! Contacts between grains: the pair pass.
+
+use rayon::prelude::*;
+
+use super::law::{self, Touch};
+use crate::{
+    base::Vec3,
+    physics::{
+        Model,
+        scratch::PairForce,
+        state::{Grains, State},
+    },
+};
+
+/// Pairs a thread takes at a time.
+const CHUNK: usize = 512;
+
+/// Forces of all pairs; carries their springs on by one substep.
+pub fn forces(model: &Model, state: &mut State, pair_forces: &mut Vec<PairForce>) {
+    let State { grains, pairs, .. } = state;
+    pair_forces.resize(pairs.ids.len(), PairForce::default());
+    pairs
+        .ids
+        .par_chunks(CHUNK)
+        .zip(pairs.springs.par_chunks_mut(CHUNK))
+        .zip(pair_forces.par_chunks_mut(CHUNK))
+        .for_each(|((ids, springs), forces)| {
+            for k in 0..ids.len() {
+                forces[k] = of_pair(model, grains, ids[k], &mut springs[k]);
+            }
+        });
+}
+
+#[inline]
+fn of_pair(model: &Model, grains: &Grains, ids: [u32; 2], spring: &mut Vec3) -> PairForce {
+    let [i, j] = ids.map(|id| id as usize);
+    let apart = grains.positions[i] - grains.positions[j];
+    let (radius_i, radius_j) = (grains.radii[i], grains.radii[j]);
+    let reach = radius_i + radius_j;
+    let distance_squared = apart.norm_squared();
+    if distance_squared >= reach * reach {
+        *spring = Vec3::zeros();
+        return PairForce::default();
+    }
+    let distance = distance_squared.sqrt();
+    let overlap = reach - distance;
+    let normal = apart / distance;
+    // Levers from the centres to the contact point: −(R_i − ξ/2) n and +(R_j − ξ/2) n.
+    let spin = grains.spins[i] * (radius_i - overlap / 2.0)
+        + grains.spins[j] * (radius_j - overlap / 2.0);
+    let velocity = grains.velocities[i] - grains.velocities[j] - spin.cross(&normal);
+    let (mass_i, mass_j) = (grains.masses[i], grains.masses[j]);
+    let touch = Touch {
+        overlap,
+        normal,
+        velocity,
+        radius: radius_i * radius_j / reach,
+        mass: mass_i * mass_j / (mass_i + mass_j),
+    };
+    let force = law::force(&model.grain_law, &touch, model.substep, spring);
+    PairForce {
+        force: normal * force.normal + force.tangential,
+        couple: normal.cross(&force.tangential),
+        overlap,
+        signed_normal: if force.slides { -force.normal } else { force.normal },
+    }
+}

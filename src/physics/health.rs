@@ -1,0 +1,62 @@
+//! Can the run go on? Looked at once per tick.
+
+use super::{Model, Scratch, State};
+use crate::base::{Real, Vec3};
+
+/// Why a run cannot go on.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("tick {tick}: {what} {which} is at {value:e}, beyond {limit:e}; {remedy}")]
+pub struct Diverged {
+    /// Tick in which it was seen.
+    pub tick: u64,
+    /// What went wrong, with its unit.
+    pub what: &'static str,
+    /// Index of the grain or vertex.
+    pub which: usize,
+    /// Its value.
+    pub value: Real,
+    /// The limit it exceeded.
+    pub limit: Real,
+    /// What can be done.
+    pub remedy: &'static str,
+}
+
+/// No grain and no vertex of a working gripper is faster than this [m/s].
+const SPEED_MAX: Real = 50.0;
+
+/// Checks speeds, finiteness and leaks at the end of `tick`.
+///
+/// # Errors
+/// The first fault in a fixed order.
+pub fn check(model: &Model, state: &State, scratch: &Scratch, tick: u64) -> Result<(), Diverged> {
+    let faster = |what, velocities: &[Vec3]| {
+        let limit = SPEED_MAX;
+        // The comparison is false for NaN, which must not pass.
+        let bad = velocities.iter().position(|v| v.norm_squared().partial_cmp(&(limit * limit)) != Some(std::cmp::Ordering::Less));
+        match bad {
+            None => Ok(()),
+            Some(which) => Err(Diverged {
+                tick,
+                what,
+                which,
+                value: velocities[which].norm(),
+                limit,
+                remedy: "take a shorter substep, a slower pump or slower motion",
+            }),
+        }
+    };
+    faster("speed [m/s] of grain", &state.grains.velocities)?;
+    faster("speed [m/s] of membrane vertex", &state.membrane.velocities)?;
+    if let Some(which) = scratch.leaked {
+        let from_flange = state.grains.positions[which] - state.flange.translation.vector;
+        return Err(Diverged {
+            tick,
+            what: "the membrane leaks: distance from the flange [m] of grain",
+            which,
+            value: from_flange.norm(),
+            limit: model.membrane.mesh.positions.iter().map(|p| p.norm()).fold(0.0, Real::max),
+            remedy: "use a finer or stiffer membrane, larger grains, less pressure or slower motion",
+        });
+    }
+    Ok(())
+}

@@ -1,0 +1,109 @@
+//! What can be read off a state: energies, volumes, coordination, validity. Changes nothing.
+
+use super::{Model, Scratch, State, membrane::pressure};
+use crate::base::Real;
+
+/// State of the packing.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Packing {
+    /// Contacts between grains.
+    pub n_grain_contacts: usize,
+    /// Contacts between grains and membrane.
+    pub n_membrane_contacts: usize,
+    /// Contacts between membrane and bodies.
+    pub n_body_contacts: usize,
+    /// Mean number of contacts per grain, with grains, membrane and plate.
+    pub coordination_number: Real,
+    /// Share of grains with at least four contacts, those that can carry load.
+    pub jammed_fraction: Real,
+    /// Share of sliding contacts among contacts between grains.
+    pub sliding_fraction: Real,
+    /// Largest overlap between grains [m].
+    pub overlap_max: Real,
+    /// Largest overlap between grain and membrane [m].
+    pub membrane_overlap_max: Real,
+}
+
+/// Looks at all contacts of the last substep.
+pub fn packing(state: &State, scratch: &Scratch) -> Packing {
+    let n_grains = state.grains.len();
+    let mut packing = Packing::default();
+    let mut touching = vec![0_usize; n_grains];
+    let mut n_sliding = 0_usize;
+    for (pair, ids) in scratch.pair_forces.iter().zip(&state.pairs.ids) {
+        if pair.overlap > 0.0 {
+            packing.n_grain_contacts += 1;
+            n_sliding += usize::from(pair.signed_normal < 0.0);
+            packing.overlap_max = packing.overlap_max.max(pair.overlap);
+            for id in ids {
+                touching[*id as usize] += 1;
+            }
+        }
+    }
+    for (i, patches) in scratch.patch_forces.iter().enumerate() {
+        packing.n_membrane_contacts += patches.n;
+        touching[i] += patches.n + usize::from(scratch.plate_forces[i].normal > 0.0);
+        for patch in &patches.contacts[..patches.n] {
+            packing.membrane_overlap_max = packing.membrane_overlap_max.max(patch.overlap);
+        }
+    }
+    packing.n_body_contacts = scratch.sample_forces.iter().filter(|s| s.overlap > 0.0).count();
+    let share = |n: usize, of: usize| if of == 0 { 0.0 } else { real(n) / real(of) };
+    packing.coordination_number = share(touching.iter().sum(), n_grains);
+    packing.jammed_fraction = share(touching.iter().filter(|&&n| n >= 4).count(), n_grains);
+    packing.sliding_fraction = share(n_sliding, packing.n_grain_contacts);
+    packing
+}
+
+/// Sum of normal force magnitudes on each grain [N].
+pub fn normal_forces(state: &State, scratch: &Scratch) -> Vec<Real> {
+    let mut forces = vec![0.0; state.grains.len()];
+    for (pair, ids) in scratch.pair_forces.iter().zip(&state.pairs.ids) {
+        for id in ids {
+            forces[*id as usize] += pair.signed_normal.abs();
+        }
+    }
+    for (i, patches) in scratch.patch_forces.iter().enumerate() {
+        let of_patches: Real = patches.contacts[..patches.n].iter().map(|c| c.normal).sum();
+        forces[i] += of_patches + scratch.plate_forces[i].normal;
+    }
+    forces
+}
+
+/// Kinetic energy of grains and membrane [J].
+pub fn kinetic_energy(model: &Model, state: &State) -> Real {
+    let grains = &state.grains;
+    let of_grains: Real = (0..grains.len())
+        .map(|i| {
+            let inertia = 0.4 * grains.masses[i] * grains.radii[i].powi(2);
+            0.5 * grains.masses[i] * grains.velocities[i].norm_squared()
+                + 0.5 * inertia * grains.spins[i].norm_squared()
+        })
+        .sum();
+    let masses = &model.membrane.masses;
+    let of_membrane: Real = (masses.iter().zip(&state.membrane.velocities))
+        .map(|(mass, velocity)| 0.5 * mass * velocity.norm_squared())
+        .sum();
+    of_grains + of_membrane
+}
+
+/// Volume of all grains [m³].
+pub fn grain_volume(state: &State) -> Real {
+    state.grains.radii.iter().map(|r| 4.0 / 3.0 * std::f64::consts::PI * r.powi(3)).sum()
+}
+
+/// Mass of grains and membrane [kg].
+pub fn mass(model: &Model, state: &State) -> Real {
+    state.grains.masses.iter().sum::<Real>() + model.membrane.mass()
+}
+
+/// Volume enclosed by membrane and flange [m³].
+pub fn enclosed_volume(model: &Model, state: &State) -> Real {
+    pressure::volume(&model.membrane.mesh, &state.membrane.positions)
+}
+
+/// A count as a real number.
+#[expect(clippy::cast_precision_loss, reason = "counts stay far below 2^53")]
+pub fn real(count: usize) -> Real {
+    count as Real
+}

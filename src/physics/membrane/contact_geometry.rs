@@ -1,0 +1,171 @@
+//! The point of a triangle closest to a given point, and on which feature it lies.
+//!
+//! ```text
+//! x_c = w_1 r_1 + w_2 r_2 + w_3 r_3,   w_1 + w_2 + w_3 = 1
+//!
+//! all w > ε                face
+//! w_k ≤ ε                  an edge whose line has the point on its outer side: on it, clamped
+//! clamped within ε of end  vertex
+//! ```
+//!
+//! Source: Götz (2024) eqs. 26, 27. That text tests exact zeros; here ε = 10⁻¹² of the triangle, so
+//! that two triangles agree about a point on their common edge in spite of rounding, and a contact
+//! there is counted once. A point outside one edge only is closest to that edge; outside two, to
+//! the nearer of both. The closest point is continuous across all regions.
+
+use crate::base::{Real, Vec3};
+
+/// Where a weight counts as zero: far above rounding, far below anything that can be seen.
+const ZERO_WEIGHT: Real = 1e-12;
+
+/// A part of a triangle. Edge `k` joins vertices `k` and `k + 1`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Feature {
+    /// Vertex 0, 1 or 2.
+    Vertex(u8),
+    /// Edge 0, 1 or 2.
+    Edge(u8),
+    /// The inside.
+    Face,
+}
+
+impl Feature {
+    /// Face 3, edge 2, vertex 1: of contacts with neighbouring triangles the highest stands.
+    pub fn priority(self) -> u8 {
+        match self {
+            Self::Vertex(_) => 1,
+            Self::Edge(_) => 2,
+            Self::Face => 3,
+        }
+    }
+}
+
+/// The closest point of a triangle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Closest {
+    /// The point itself [m].
+    pub point: Vec3,
+    /// Its barycentric weights, none negative, together 1.
+    pub weights: [Real; 3],
+    /// Where it lies.
+    pub feature: Feature,
+}
+
+/// The point of `triangle` closest to `p`.
+#[inline]
+pub fn closest_on_triangle(p: &Vec3, triangle: [&Vec3; 3]) -> Closest {
+    let [a, b, c] = triangle;
+    let (ab, ac, ap) = (b - a, c - a, p - a);
+    let (bb, bc, cc) = (ab.dot(&ab), ab.dot(&ac), ac.dot(&ac));
+    let (pb, pc) = (ap.dot(&ab), ap.dot(&ac));
+    let inverse = 1.0 / (bb * cc - bc * bc);
+    let w1 = (cc * pb - bc * pc) * inverse;
+    let w2 = (bb * pc - bc * pb) * inverse;
+    let w0 = 1.0 - w1 - w2;
+    if w0.min(w1).min(w2) > ZERO_WEIGHT {
+        return Closest { point: a + ab * w1 + ac * w2, weights: [w0, w1, w2], feature: Feature::Face };
+    }
+    // Vertex k faces edge k + 1.
+    outside_edges(p, triangle, [w2 <= ZERO_WEIGHT, w0 <= ZERO_WEIGHT, w1 <= ZERO_WEIGHT])
+}
+
+/// The nearest of the edges that have `p` on their outer side.
+fn outside_edges(p: &Vec3, triangle: [&Vec3; 3], is_outside: [bool; 3]) -> Closest {
+    let mut nearest = (Real::INFINITY, 0, 0.0);
+    for edge in (0..3).filter(|&edge| is_outside[edge]) {
+        let (from, to) = (triangle[edge], triangle[(edge + 1) % 3]);
+        let side = to - from;
+        let share = ((p - from).dot(&side) / side.norm_squared()).clamp(0.0, 1.0);
+        let distance = (p - (from + side * share)).norm_squared();
+        if distance < nearest.0 {
+            nearest = (distance, edge, share);
+        }
+    }
+    let (_, edge, share) = nearest;
+    let next = (edge + 1) % 3;
+    let mut weights = [0.0; 3];
+    let (share, feature) = if share <= ZERO_WEIGHT {
+        (0.0, Feature::Vertex(NUMBER[edge]))
+    } else if share >= 1.0 - ZERO_WEIGHT {
+        (1.0, Feature::Vertex(NUMBER[next]))
+    } else {
+        (share, Feature::Edge(NUMBER[edge]))
+    };
+    weights[edge] = 1.0 - share;
+    weights[next] = share;
+    let point = triangle[edge] * weights[edge] + triangle[next] * share;
+    Closest { point, weights, feature }
+}
+
+/// Vertices and edges by their short numbers.
+const NUMBER: [u8; 3] = [0, 1, 2];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::base::random::{Random, Stream};
+
+    fn random_vector(random: &mut Random, size: Real) -> Vec3 {
+        Vec3::from_fn(|_, _| random.between(-size, size))
+    }
+
+    #[test]
+    fn no_point_of_the_triangle_is_closer() {
+        let mut random = Random::new(1, Stream::Position);
+        for _ in 0..2000 {
+            let [a, b, c]: [Vec3; 3] = std::array::from_fn(|_| random_vector(&mut random, 1.0));
+            let p = random_vector(&mut random, 2.0);
+            let found = closest_on_triangle(&p, [&a, &b, &c]);
+            // Oracle: definition of a projection on a convex set, (p − x_c)·(y − x_c) ≤ 0 for all
+            // points y of the set; by linearity the vertices suffice. Tolerance: rounding of
+            // products of lengths up to 4, amplified by slender random triangles.
+            for y in [a, b, c] {
+                assert!((p - found.point).dot(&(y - found.point)) < 1e-9, "{found:?}");
+            }
+            // Oracle: eq. 27. Tolerance: rounding of lengths about 1, slender triangles.
+            let [w0, w1, w2] = found.weights;
+            assert!((w0 + w1 + w2 - 1.0).abs() < 1e-15, "weights sum to 1: {found:?}");
+            assert!(found.weights.iter().all(|&w| w >= 0.0), "no negative weight: {found:?}");
+            assert!((a * w0 + b * w1 + c * w2 - found.point).norm() < 1e-12, "{found:?}");
+        }
+    }
+
+    #[test]
+    fn features_are_named_as_drawn() {
+        let (a, b, c) = (Vec3::zeros(), Vec3::x(), Vec3::y());
+        let at = |x, y| closest_on_triangle(&Vec3::new(x, y, 0.3), [&a, &b, &c]).feature;
+        // Oracle: the drawing of a right triangle at the origin.
+        assert_eq!(at(0.2, 0.2), Feature::Face);
+        assert_eq!(at(0.5, -0.2), Feature::Edge(0));
+        assert_eq!(at(0.8, 0.8), Feature::Edge(1));
+        assert_eq!(at(-0.2, 0.5), Feature::Edge(2));
+        assert_eq!(at(-0.1, -0.1), Feature::Vertex(0));
+        assert_eq!(at(1.5, 0.1), Feature::Vertex(1));
+        assert_eq!(at(0.1, 1.5), Feature::Vertex(2));
+        // On the border within rounding: the lower feature, the same from both sides.
+        assert_eq!(at(0.5, 1e-14), Feature::Edge(0));
+        assert_eq!(at(1e-14, -1e-14), Feature::Vertex(0));
+    }
+
+    #[test]
+    fn the_closest_point_is_continuous_across_regions() {
+        let (a, b, c) = (Vec3::zeros(), Vec3::x(), Vec3::new(-0.4, 0.3, 0.0)); // obtuse
+        let mut random = Random::new(2, Stream::Position);
+        for _ in 0..200 {
+            let (from, to) = (random_vector(&mut random, 1.5), random_vector(&mut random, 1.5));
+            let n_steps = 1000;
+            let mut last = None;
+            for step in 0..=n_steps {
+                let p = from.lerp(&to, Real::from(step) / Real::from(n_steps));
+                let point = closest_on_triangle(&p, [&a, &b, &c]).point;
+                if let Some((p_last, point_last)) = last {
+                    let (moved, went): (Vec3, Vec3) = (p - p_last, point - point_last);
+                    // Oracle: projection on a convex set never lengthens a step. Tolerance:
+                    // rounding, and the snap to features within 10⁻¹².
+                    assert!(went.norm() <= moved.norm() + 1e-11, "jump of {}", went.norm());
+                }
+                last = Some((p, point));
+            }
+        }
+    }
+}

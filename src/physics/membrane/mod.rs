@@ -1,0 +1,269 @@
+//! The flexible bag: a mesh of springs and hinges under pressure.
+//!
+//! `forces` is three passes, each of which writes its own elements from read-only data: the normal
+//! of every facet, the four forces of every link (an edge with its spring and its hinge), and the
+//! sum at every vertex in a fixed order. The bits do not depend on the number of threads.
+
+pub mod mesh;
+mod icosphere;
+pub mod stretch;
+pub mod bridson_2003;
+pub mod pressure;
+pub mod critical_step;
+pub mod contact_geometry;
+#[cfg(test)]
+mod tests;
+
+use bridson_2003::Fold;
+use mesh::{Mesh, area_normal};
+use stretch::Spring;
+
+use crate::base::{Real, Vec3, parallel};
+
+/// What the sheet is made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sheet {
+    /// Thickness d [m].
+    pub thickness: Real,
+    /// Young's modulus E [Pa].
+    pub youngs_modulus: Real,
+    /// Density ρ [kg/m³].
+    pub density: Real,
+    /// Damping ratio γ of the springs.
+    pub spring_damping: Real,
+    /// Elastic bending constant k_el of the hinges [N m]; the plate stiffness is k_el/4.
+    pub bending_stiffness: Real,
+    /// Dissipative bending constant k_diss of the hinges [N s].
+    pub bending_damping: Real,
+}
+
+/// The membrane as it stays during a run.
+#[derive(Clone, Debug)]
+pub struct MembraneModel {
+    /// Who neighbours whom, and the reference shape.
+    pub mesh: Mesh,
+    /// What the sheet is made of.
+    pub sheet: Sheet,
+    /// Mass of each vertex: ρ d times a third of the areas at it [kg].
+    pub masses: Vec<Real>,
+    /// True for the vertices that the flange holds: those of the rim. Forces on them are computed
+    /// like all others: they are what the sheet exerts on the flange.
+    pub is_clamped: Vec<bool>,
+    /// Springs and hinges, numbered like the edges.
+    links: Vec<Link>,
+}
+
+/// An edge with all that its forces need, in one place in memory.
+#[derive(Clone, Copy, Debug)]
+struct Link {
+    /// r1 to r4; on the boundary only the ends r3 and r4 count.
+    vertices: [u32; 4],
+    triangles: [u32; 2],
+    spring: Spring,
+    /// sin θ⁰/2.
+    rest_half_sine: Real,
+}
+
+/// The membrane as it moves.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MembraneState {
+    /// Position of each vertex [m]. Written by `integrate`.
+    pub positions: Vec<Vec3>,
+    /// Velocity of each vertex [m/s]. Written by `integrate`.
+    pub velocities: Vec<Vec3>,
+}
+
+/// A triangle's orientation at one instant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Facet {
+    /// Outward normal, as long as twice the area [m²].
+    pub area_normal: Vec3,
+    /// One over that length [1/m²].
+    pub inverse_norm: Real,
+}
+
+impl Facet {
+    /// Of a triangle of `mesh`.
+    #[inline(always)]
+    fn new(positions: &[Vec3], triangle: &[u32; 3]) -> Self {
+        let area_normal = area_normal(positions, triangle);
+        Self { area_normal, inverse_norm: 1.0 / area_normal.norm() }
+    }
+
+    /// Outward unit normal.
+    #[inline(always)]
+    pub fn normal(&self) -> Vec3 {
+        self.area_normal * self.inverse_norm
+    }
+}
+
+/// What `forces` computes anew in every substep.
+#[derive(Clone, Debug)]
+pub struct MembraneScratch {
+    /// Orientation of each triangle. Written by `forces`.
+    pub facets: Vec<Facet>,
+    /// Forces of each link on its four vertices [N]. Written by `forces`.
+    link_forces: Vec<[Vec3; 4]>,
+    /// Force of springs, hinges and pressure on each vertex [N]. Written by `forces`.
+    pub forces: Vec<Vec3>,
+}
+
+impl MembraneModel {
+    /// Makes `sheet` in the shape of `mesh`, free of stress there, clamped at its rim.
+    pub fn new(mesh: Mesh, sheet: Sheet) -> Self {
+        let mass_per_area = sheet.density * sheet.thickness;
+        let masses: Vec<Real> = mesh.vertex_areas().iter().map(|a| a * mass_per_area).collect();
+        let inner = stretch::stiffness(sheet.youngs_modulus, sheet.thickness);
+        let mut links = Vec::with_capacity(mesh.edges.len());
+        for (e, ends) in mesh.edges.iter().enumerate() {
+            let [a, b] = ends.map(|v| v as usize);
+            let length = (mesh.positions[b] - mesh.positions[a]).norm();
+            let stiffness = if mesh.is_boundary(e) { 0.5 * inner } else { inner };
+            let masses = [masses[a], masses[b]];
+            let mut link = Link {
+                vertices: [ends[0], ends[1], ends[0], ends[1]],
+                triangles: [0; 2],
+                spring: Spring::new(length, stiffness, sheet.spring_damping, masses),
+                rest_half_sine: 0.0,
+            };
+            if let Some(hinge) = mesh.hinges.get(e) {
+                link.vertices = hinge.vertices;
+                link.triangles = hinge.triangles;
+                let facets = hinge
+                    .triangles
+                    .map(|t| Facet::new(&mesh.positions, &mesh.triangles[t as usize]));
+                let fold = link.fold(&mesh.positions, [&facets[0], &facets[1]]);
+                link.rest_half_sine = fold.half_sine;
+            }
+            links.push(link);
+        }
+        Self { masses, is_clamped: mesh.is_on_rim.clone(), links, sheet, mesh }
+    }
+
+    /// Makes every spring's rest length `scale` times its length in the reference shape.
+    pub fn scale_rest_lengths(&mut self, scale: Real) {
+        for (link, ends) in self.links.iter_mut().zip(&self.mesh.edges) {
+            let [a, b] = ends.map(|v| self.mesh.positions[v as usize]);
+            link.spring.rest_length = scale * (b - a).norm();
+        }
+    }
+
+    /// Takes the angles of the hinges in `positions` as those at rest.
+    pub fn rest_angles_from(&mut self, positions: &[Vec3]) {
+        for link in &mut self.links[..self.mesh.hinges.len()] {
+            let facets = link
+                .triangles
+                .map(|t| Facet::new(positions, &self.mesh.triangles[t as usize]));
+            link.rest_half_sine = link.fold(positions, [&facets[0], &facets[1]]).half_sine;
+        }
+    }
+
+    /// Mass of the whole sheet [kg].
+    pub fn mass(&self) -> Real {
+        self.masses.iter().sum()
+    }
+}
+
+impl Link {
+    /// r1 to r4 of `vectors`.
+    #[inline(always)]
+    fn corners<'a>(&self, vectors: &'a [Vec3]) -> [&'a Vec3; 4] {
+        self.vertices.map(|v| &vectors[v as usize])
+    }
+
+    fn fold(&self, positions: &[Vec3], facets: [&Facet; 2]) -> Fold {
+        let r = self.corners(positions);
+        let edge = r[3] - r[2];
+        Fold::new(r, facets, &edge, edge.norm())
+    }
+}
+
+impl MembraneState {
+    /// At rest in the reference shape.
+    pub fn at_rest(mesh: &Mesh) -> Self {
+        Self { positions: mesh.positions.clone(), velocities: vec![Vec3::zeros(); mesh.n_vertices()] }
+    }
+}
+
+impl MembraneScratch {
+    /// Room for the forces of `model`.
+    pub fn new(model: &MembraneModel) -> Self {
+        let facet = Facet { area_normal: Vec3::zeros(), inverse_norm: 0.0 };
+        Self {
+            facets: vec![facet; model.mesh.triangles.len()],
+            link_forces: vec![[Vec3::zeros(); 4]; model.links.len()],
+            forces: vec![Vec3::zeros(); model.mesh.n_vertices()],
+        }
+    }
+}
+
+/// Forces of springs, hinges and `gauge_pressure` [Pa] on every vertex, into `scratch.forces`.
+pub fn forces(
+    model: &MembraneModel,
+    state: &MembraneState,
+    gauge_pressure: Real,
+    scratch: &mut MembraneScratch,
+) {
+    face(model, &state.positions, &mut scratch.facets);
+    pull_and_fold(model, state, &scratch.facets, &mut scratch.link_forces);
+    gather(model, gauge_pressure, &scratch.facets, &scratch.link_forces, &mut scratch.forces);
+}
+
+/// Orientation of every triangle.
+fn face(model: &MembraneModel, positions: &[Vec3], facets: &mut [Facet]) {
+    let triangles = &model.mesh.triangles;
+    parallel::for_each(facets, |t, facet| *facet = Facet::new(positions, &triangles[t]));
+}
+
+/// Forces of every spring and hinge on their vertices.
+fn pull_and_fold(
+    model: &MembraneModel,
+    state: &MembraneState,
+    facets: &[Facet],
+    link_forces: &mut [[Vec3; 4]],
+) {
+    let n_hinges = model.mesh.hinges.len();
+    let (elastic, dissipative) = (model.sheet.bending_stiffness, model.sheet.bending_damping);
+    parallel::for_each(link_forces, |l, out| {
+        let link = &model.links[l];
+        let (r, v) = (link.corners(&state.positions), link.corners(&state.velocities));
+        let (edge, rate) = (r[3] - r[2], v[3] - v[2]);
+        let length = edge.norm();
+        let along = edge / length;
+        let pull = along * link.spring.tension(length, along.dot(&rate));
+        let mut forces = [Vec3::zeros(); 4];
+        if l < n_hinges {
+            let sides = link.triangles.map(|t| &facets[t as usize]);
+            let fold = Fold::new(r, sides, &edge, length);
+            let opened = fold.half_sine - link.rest_half_sine;
+            let speed = fold.project(v);
+            forces = fold.spread(elastic * fold.slenderness * opened - dissipative * length * speed);
+        }
+        forces[2] += pull;
+        forces[3] -= pull;
+        *out = forces;
+    });
+}
+
+/// Sum at every vertex: the air's load, then links in the order of their numbers.
+fn gather(
+    model: &MembraneModel,
+    gauge_pressure: Real,
+    facets: &[Facet],
+    link_forces: &[[Vec3; 4]],
+    forces: &mut [Vec3],
+) {
+    let of_slot = link_forces.as_flattened();
+    let mesh = &model.mesh;
+    parallel::for_each(forces, |vertex, force| {
+        let mut load = Vec3::zeros();
+        for &t in mesh.triangles_of_vertex.of(vertex) {
+            load += facets[t as usize].area_normal;
+        }
+        let mut sum = load * (gauge_pressure / 6.0);
+        for &slot in mesh.slots_of_vertex.of(vertex) {
+            sum += of_slot[slot as usize];
+        }
+        *force = sum;
+    });
+}

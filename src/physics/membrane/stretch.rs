@@ -1,0 +1,48 @@
+//! In-plane elasticity: a damped spring along every edge.
+//!
+//! ```text
+//! F_1 = −r̂ [ k (r − r⁰) + 2 γ √(k m*) (r̂ · ṙ) ],   r = r_1 − r_2,   F_2 = −F_1
+//! k = √3/2 E d,   m* = m_1 m_2 / (m_1 + m_2)
+//!
+//! k    stiffness                          [N/m]
+//! r⁰   rest length                        [m]
+//! γ    damping ratio of the pair, 1 is critical
+//! E, d Young's modulus and thickness      [Pa], [m]
+//! ```
+//!
+//! Source: Götz (2024) eqs. 12–16, with the elastic sign such that a stretched spring pulls.
+//! A regular lattice of such springs is an isotropic sheet with modulus E d = 2/√3 k and Poisson's
+//! ratio 1/3. A boundary edge has one triangle instead of two and gets k/2, so that the sheet is
+//! the same up to its border. Valid for small strains on nearly equilateral triangles.
+
+use crate::base::Real;
+
+/// A damped spring.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spring {
+    /// Rest length [m].
+    pub rest_length: Real,
+    /// Stiffness k [N/m].
+    pub stiffness: Real,
+    /// Damping 2 γ √(k m*) [N s/m].
+    pub damping: Real,
+}
+
+impl Spring {
+    /// The spring between two vertices of mass `mass_1` and `mass_2` [kg] with damping ratio γ.
+    pub fn new(rest_length: Real, stiffness: Real, damping_ratio: Real, masses: [Real; 2]) -> Self {
+        let mass = masses[0] * masses[1] / (masses[0] + masses[1]);
+        Self { rest_length, stiffness, damping: 2.0 * damping_ratio * (stiffness * mass).sqrt() }
+    }
+
+    /// Tension [N] at `length` [m] growing with `rate` [m/s]; it pulls both ends together.
+    #[inline(always)]
+    pub fn tension(&self, length: Real, rate: Real) -> Real {
+        self.stiffness * (length - self.rest_length) + self.damping * rate
+    }
+}
+
+/// Stiffness k = √3/2 E d of an edge inside a sheet [N/m].
+pub fn stiffness(youngs_modulus: Real, thickness: Real) -> Real {
+    0.75_f64.sqrt() * youngs_modulus * thickness
+}

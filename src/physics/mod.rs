@@ -1,0 +1,27 @@
+//! Grains, membrane and chamber: pure, repeatable, without any input or output.
+//!
+//! `Model` is what the system is made of, `State` is what must be known to go on, `Controls` is
+//! what the outside wants during a substep, `Scratch` is what can be recomputed. A fifth noun,
+//! `Snapshot`, is what others may see. `substep` advances the state; it reads as a list of stages,
+//! and the stages live in the files of their names.
+
+pub mod boundary; // what grains and membrane meet besides each other
+pub mod chamber; // the air inside
+pub mod contact; // who touches, and how hard
+pub mod controls;
+pub mod fill; // grains into the bag
+pub mod health; // can the run go on?
+pub mod integrate;
+pub mod measure; // energies, stresses, coordination
+pub mod membrane; // the flexible bag
+pub mod model;
+pub mod neighbours; // who may touch whom
+pub mod scratch;
+pub mod state;
+pub mod substep;
+
+pub use controls::Controls;
+pub use model::Model;
+pub use scratch::Scratch;
+pub use state::State;
+pub use substep::substep;

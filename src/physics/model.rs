@@ -1,0 +1,73 @@
+//! Model: what the system is made of. Fixed during a run.
+
+use super::{
+    boundary::shape::Surface,
+    contact::law::PairLaw,
+    membrane::MembraneModel,
+};
+use crate::base::{Pose, Real, Vec3};
+
+/// Everything that does not change.
+#[derive(Clone)]
+pub struct Model {
+    /// Gravity [m/s²].
+    pub gravity: Vec3,
+    /// Length of a substep [s].
+    pub substep: Real,
+    /// Largest radius of a grain [m].
+    pub radius_max: Real,
+    /// Mean radius of the grains [m].
+    pub radius_mean: Real,
+    /// Distance beyond contact within which neighbours are listed [m].
+    pub skin: Real,
+    /// Law between grains.
+    pub grain_law: PairLaw,
+    /// Law between grains and the flange's plate.
+    pub plate_law: PairLaw,
+    /// Law between grains and membrane.
+    pub membrane_law: PairLaw,
+    /// The bag.
+    pub membrane: MembraneModel,
+    /// True while the whole membrane is held in its stretched shape for filling.
+    pub is_held: bool,
+    /// Positions of the clamped vertices, or of all while the membrane is held; flange frame [m].
+    pub clamped_positions: Vec<Vec3>,
+    /// The air.
+    pub chamber: ChamberModel,
+    /// Pose of the table: its surface is z = 0 of this frame.
+    pub table: Pose,
+    /// The rigid bodies that the membrane can touch, in the order of `Controls::bodies`; the table
+    /// is last.
+    pub bodies: Vec<BodyModel>,
+}
+
+/// The pump and its line.
+#[derive(Clone, Copy, Debug)]
+pub struct ChamberModel {
+    /// Share of the way to the set-point that is left after one substep.
+    pub lag_factor: Real,
+    /// Largest change of pressure in one substep [Pa].
+    pub change_max: Real,
+}
+
+/// A rigid body seen from the membrane.
+#[derive(Clone)]
+pub struct BodyModel {
+    /// Its surface.
+    pub surface: BodySurface,
+    /// Contact law with the membrane.
+    pub law: PairLaw,
+    /// Effective radius R* of a membrane sample on it [m].
+    pub contact_radius: Real,
+    /// Nothing of it is further than this from its frame's origin [m].
+    pub bounding_radius: Real,
+}
+
+/// The surface of a body, in its own frame.
+#[derive(Clone)]
+pub enum BodySurface {
+    /// A closed shape about the centre of mass.
+    Shape(Box<Surface>),
+    /// Everything below z = 0.
+    HalfSpace,
+}

@@ -1,0 +1,70 @@
+//! Triangles of the membrane that a grain may touch.
+
+use rayon::prelude::*;
+
+use super::cell_grid::{CellGrid, id};
+use crate::{
+    base::Vec3,
+    physics::{
+        Model, State,
+        membrane::contact_geometry::closest_on_triangle,
+        scratch::Neighbours,
+    },
+};
+
+/// Triangles whose grains one thread looks up at a time.
+const CHUNK: usize = 128;
+
+/// Lists, for each grain, the triangles closer than contact plus skin, ascending.
+pub fn build(model: &Model, grid: &CellGrid, state: &State, lists: &mut Neighbours) {
+    let triangles = &model.membrane.mesh.triangles;
+    let chunks: Vec<Vec<[u32; 2]>> = (0..triangles.len().div_ceil(CHUNK))
+        .into_par_iter()
+        .map(|chunk| {
+            let mut found = Vec::new();
+            for t in chunk * CHUNK..triangles.len().min((chunk + 1) * CHUNK) {
+                grains_near(model, grid, state, t, &mut found);
+            }
+            found
+        })
+        .collect();
+    let n_grains = state.grains.len();
+    let mut starts = vec![0_u32; n_grains + 1];
+    for [grain, _] in chunks.iter().flatten() {
+        starts[*grain as usize + 1] += 1;
+    }
+    for i in 0..n_grains {
+        starts[i + 1] += starts[i];
+    }
+    let mut next = starts.clone();
+    lists.triangles = vec![0; starts[n_grains] as usize];
+    // The chunks are in order of triangles, so every grain's triangles come out ascending.
+    for [grain, triangle] in chunks.iter().flatten() {
+        let slot = &mut next[*grain as usize];
+        lists.triangles[*slot as usize] = *triangle;
+        *slot += 1;
+    }
+    lists.triangle_starts = starts;
+}
+
+fn grains_near(
+    model: &Model,
+    grid: &CellGrid,
+    state: &State,
+    triangle: usize,
+    found: &mut Vec<[u32; 2]>,
+) {
+    let corners = model.membrane.mesh.triangles[triangle]
+        .map(|vertex| &state.membrane.positions[vertex as usize]);
+    let reach = Vec3::repeat(model.radius_max + model.skin);
+    let low = corners[0].inf(corners[1]).inf(corners[2]) - reach;
+    let high = corners[0].sup(corners[1]).sup(corners[2]) + reach;
+    grid.visit(&low, &high, |grain| {
+        let i = grain as usize;
+        let cut = state.grains.radii[i] + model.skin;
+        let closest = closest_on_triangle(&state.grains.positions[i], corners);
+        if (closest.point - state.grains.positions[i]).norm_squared() < cut * cut {
+            found.push([grain, id(triangle)]);
+        }
+    });
+}

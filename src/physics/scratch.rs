@@ -1,0 +1,160 @@
+//! Scratch: what can be recomputed. Never saved.
+
+use super::{Model, membrane::MembraneScratch, state::N_PATCHES};
+use crate::base::{
+    Real, Vec3,
+    real::Wrench,
+};
+
+/// Working memory of the substep.
+#[derive(Clone)]
+pub struct Scratch {
+    /// Who may touch whom. Written by `neighbours`.
+    pub neighbours: Neighbours,
+    /// Force of each pair of grains. Written by `contact::grains`.
+    pub pair_forces: Vec<PairForce>,
+    /// What the membrane does to each grain. Written by `contact::membrane`.
+    pub patch_forces: Vec<PatchForces>,
+    /// What the plate does to each grain. Written by `contact::plate`.
+    pub plate_forces: Vec<PlateForce>,
+    /// What bodies do to samples of the membrane. Written by `contact::bodies`.
+    pub sample_forces: Vec<SampleForce>,
+    /// Contact force on each vertex of the membrane [N]. Written by `contact::on_membrane`.
+    pub vertex_forces: Vec<Vec3>,
+    /// Internal forces and pressure. Written by `membrane::forces`.
+    pub membrane: MembraneScratch,
+    /// Wrench of the membrane on each body about its centre of mass, this substep [N], [N m].
+    /// Written by `contact::on_membrane`.
+    pub body_wrenches: Vec<Wrench>,
+    /// Wrench of bag and grains on the flange about its origin, world axes, this substep [N],
+    /// [N m]. Written by `contact::on_flange`.
+    pub flange_wrench: Wrench,
+    /// Grains whose centre left the bag, if any. Written by `contact::on_membrane`.
+    pub leaked: Option<usize>,
+}
+
+impl Scratch {
+    /// Working memory for `model`.
+    pub fn new(model: &Model) -> Self {
+        Self {
+            neighbours: Neighbours::default(),
+            pair_forces: Vec::new(),
+            patch_forces: Vec::new(),
+            plate_forces: Vec::new(),
+            sample_forces: Vec::new(),
+            vertex_forces: Vec::new(),
+            membrane: MembraneScratch::new(&model.membrane),
+            body_wrenches: Vec::new(),
+            flange_wrench: Wrench::zero(),
+            leaked: None,
+        }
+    }
+}
+
+/// Lists of possible contacts, valid until something has moved by half the skin.
+#[derive(Clone, Default)]
+pub struct Neighbours {
+    /// False before the first build.
+    pub is_built: bool,
+    /// Positions of the grains at the last build [m].
+    pub grain_positions: Vec<Vec3>,
+    /// Positions of the vertices at the last build [m].
+    pub vertex_positions: Vec<Vec3>,
+    /// Position of the flange at the last build [m].
+    pub flange_position: Vec3,
+    /// Pairs in which grain i is first are `first_starts[i] .. first_starts[i + 1]`.
+    pub first_starts: Vec<u32>,
+    /// Where the pairs in which grain i is second begin in `second_pairs`.
+    pub second_starts: Vec<u32>,
+    /// Indices of pairs, by their second grain.
+    pub second_pairs: Vec<u32>,
+    /// Where the candidate triangles of grain i begin in `triangles`.
+    pub triangle_starts: Vec<u32>,
+    /// Triangles that a grain may touch, by grain.
+    pub triangles: Vec<u32>,
+    /// Largest squared displacement since the last build, relative to the flange [m²].
+    pub displacement_squared_max: Real,
+    /// How often the lists were built.
+    pub n_builds: u64,
+}
+
+/// Force between two grains.
+#[derive(Clone, Copy, Default)]
+pub struct PairForce {
+    /// Force on the first grain [N].
+    pub force: Vec3,
+    /// Normal × tangential force [N]: the torque per lever arm on both grains, negated.
+    pub couple: Vec3,
+    /// Overlap [m]; no contact if not positive.
+    pub overlap: Real,
+    /// Normal force [N], negative if the contact slides.
+    pub signed_normal: Real,
+}
+
+/// Forces of the membrane on one grain.
+#[derive(Clone, Copy)]
+pub struct PatchForces {
+    /// How many contacts.
+    pub n: usize,
+    /// Torque on the grain [N m].
+    pub torque: Vec3,
+    /// The contacts.
+    pub contacts: [PatchForce; N_PATCHES],
+    /// True if the centre of the grain is outside the bag.
+    pub is_outside: bool,
+}
+
+/// Force of one membrane patch on a grain.
+#[derive(Clone, Copy)]
+pub struct PatchForce {
+    /// Triangle that carries the contact point.
+    pub triangle: u32,
+    /// Barycentric weights of the contact point.
+    pub weights: [Real; 3],
+    /// Force on the grain [N].
+    pub force: Vec3,
+    /// Overlap [m].
+    pub overlap: Real,
+    /// Normal force [N].
+    pub normal: Real,
+}
+
+impl PatchForces {
+    /// No contact.
+    pub const NONE: Self = Self {
+        n: 0,
+        torque: Vec3::new(0.0, 0.0, 0.0),
+        contacts: [PatchForce {
+            triangle: 0,
+            weights: [0.0; 3],
+            force: Vec3::new(0.0, 0.0, 0.0),
+            overlap: 0.0,
+            normal: 0.0,
+        }; N_PATCHES],
+        is_outside: false,
+    };
+}
+
+/// Force of the plate on one grain.
+#[derive(Clone, Copy, Default)]
+pub struct PlateForce {
+    /// Force on the grain [N].
+    pub force: Vec3,
+    /// Contact point relative to the grain's centre [m].
+    pub arm: Vec3,
+    /// Normal force [N], zero without contact.
+    pub normal: Real,
+}
+
+/// Force of a body on a sample of the membrane.
+#[derive(Clone, Copy, Default)]
+pub struct SampleForce {
+    /// Force on the membrane [N].
+    pub force: Vec3,
+    /// Unit normal, from body to membrane.
+    pub normal: Vec3,
+    /// Position of the sample [m].
+    pub point: Vec3,
+    /// Overlap [m]; no contact if not positive.
+    pub overlap: Real,
+}

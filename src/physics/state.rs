@@ -1,0 +1,135 @@
+//! State: all that must be known to go on. One `Vec` per quantity, index = id.
+
+use crate::base::{
+    Pose, Real, Vec3,
+    digest::Digest,
+    real::Twist,
+};
+
+use super::membrane::MembraneState;
+
+/// Membrane patches that one grain can touch at the same time, for example in a fold.
+pub const N_PATCHES: usize = 4;
+
+/// Everything that evolves.
+#[derive(Clone, Debug)]
+pub struct State {
+    /// The grains.
+    pub grains: Grains,
+    /// Positions and velocities of the membrane's vertices.
+    pub membrane: MembraneState,
+    /// Tangential springs of pairs of grains.
+    pub pairs: Pairs,
+    /// Membrane contacts of each grain. Written by `contact::membrane`.
+    pub patches: Vec<Patches>,
+    /// Tangential springs of each grain with the flange's plate [m]. Written by `contact::plate`.
+    pub plate_springs: Vec<Vec3>,
+    /// Tangential springs of membrane samples with bodies [m], body by body: all vertices, then
+    /// all facets. Written by `contact::bodies`.
+    pub body_springs: Vec<Vec3>,
+    /// Gauge pressure in the chamber, negative under vacuum [Pa]. Written by `chamber`.
+    pub gauge: Real,
+    /// Pose of the flange in the world. Written by `cosim`.
+    pub flange: Pose,
+    /// Velocity of the flange's origin [m/s], angular velocity [rad/s]. Written by `cosim`.
+    pub flange_twist: Twist,
+}
+
+/// The grains.
+#[derive(Clone, Debug, Default)]
+pub struct Grains {
+    /// Positions of the centres [m]. Written by `integrate`.
+    pub positions: Vec<Vec3>,
+    /// Velocities [m/s]. Written by `integrate`.
+    pub velocities: Vec<Vec3>,
+    /// Angular velocities [rad/s]. Written by `integrate`.
+    pub spins: Vec<Vec3>,
+    /// Radii [m]; they change only while grains grow. Written by `fill`.
+    pub radii: Vec<Real>,
+    /// Masses [kg]. Written by `fill`.
+    pub masses: Vec<Real>,
+}
+
+impl Grains {
+    /// Number of grains.
+    pub fn len(&self) -> usize {
+        self.positions.len()
+    }
+
+    /// True without any grain.
+    pub fn is_empty(&self) -> bool {
+        self.positions.is_empty()
+    }
+}
+
+/// Pairs of grains that may touch, sorted by first and then second grain, first < second.
+#[derive(Clone, Debug, Default)]
+pub struct Pairs {
+    /// The pairs. Written by `neighbours`.
+    pub ids: Vec<[u32; 2]>,
+    /// Tangential spring of each pair, zero without contact [m]. Written by `contact::grains`.
+    pub springs: Vec<Vec3>,
+}
+
+/// One patch of membrane that a grain touches: the contact lives on while the grain slides from
+/// triangle to triangle.
+#[derive(Clone, Copy, Debug)]
+pub struct Patch {
+    /// Tangential spring [m].
+    pub spring: Vec3,
+    /// Normal at the last substep, from membrane to grain.
+    pub normal: Vec3,
+}
+
+/// The membrane contacts of one grain.
+#[derive(Clone, Copy, Debug)]
+pub struct Patches {
+    /// How many of the slots are in use.
+    pub n: usize,
+    /// The contacts.
+    pub slots: [Patch; N_PATCHES],
+}
+
+impl Patches {
+    /// No contact.
+    pub const NONE: Self = Self {
+        n: 0,
+        slots: [Patch { spring: Vec3::new(0.0, 0.0, 0.0), normal: Vec3::new(0.0, 0.0, 0.0) };
+            N_PATCHES],
+    };
+}
+
+impl State {
+    /// Adds every number of the state in a fixed order.
+    pub fn digest(&self, digest: &mut Digest) {
+        digest.vectors(&self.grains.positions);
+        digest.vectors(&self.grains.velocities);
+        digest.vectors(&self.grains.spins);
+        digest.reals(&self.grains.radii);
+        digest.vectors(&self.membrane.positions);
+        digest.vectors(&self.membrane.velocities);
+        self.digest_springs(digest);
+        digest.real(self.gauge);
+        digest.reals(self.flange.translation.vector.as_slice());
+        digest.reals(self.flange.rotation.coords.as_slice());
+        digest.vectors(&[self.flange_twist.linear, self.flange_twist.angular]);
+    }
+
+    /// Only loaded springs count: which empty pairs are listed is not part of the physics.
+    fn digest_springs(&self, digest: &mut Digest) {
+        for (ids, spring) in self.pairs.ids.iter().zip(&self.pairs.springs) {
+            if *spring != Vec3::zeros() {
+                digest.integer(u64::from(ids[0]) << 32 | u64::from(ids[1]));
+                digest.reals(spring.as_slice());
+            }
+        }
+        for patches in &self.patches {
+            digest.integer(patches.n as u64);
+            for patch in &patches.slots[..patches.n] {
+                digest.vectors(&[patch.spring, patch.normal]);
+            }
+        }
+        digest.vectors(&self.plate_springs);
+        digest.vectors(&self.body_springs);
+    }
+}

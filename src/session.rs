@@ -1,0 +1,171 @@
+//! One run in memory: tick, look, save, resume.
+
+use crate::{
+    base::{Tick, digest::Digest, real::Wrench},
+    command::{Command, CommandRecord, apply::{Desk, Frames}},
+    cosim::{
+        Coupled, Inputs, Means,
+        compile::{Compiled, StartState, StartStateError},
+    },
+    physics::{
+        fill::{self, Progress},
+        health::{self, Diverged},
+        measure,
+    },
+    scene::Scene,
+};
+
+/// A run.
+pub struct Session {
+    scene: Scene,
+    coupled: Coupled,
+    desk: Desk,
+    tick: Tick,
+    means: Means,
+    records: Vec<CommandRecord>,
+    digest: u64,
+    normal_forces: Vec<f64>,
+    pool: rayon::ThreadPool,
+}
+
+impl Session {
+    /// Fills the bag of a compiled scene; this takes a while, so `on_progress` is told.
+    ///
+    /// # Errors
+    /// If the filling blows up or leaks.
+    pub fn settle(
+        compiled: Compiled,
+        on_progress: &mut (dyn FnMut(Progress) + Send),
+    ) -> Result<Self, Diverged> {
+        let Compiled { scene, model, pool, .. } = &compiled;
+        let state = pool.install(|| fill::fill(scene, model, on_progress))?;
+        Ok(Self::start(compiled, state))
+    }
+
+    /// Goes on from a start state that was settled before.
+    ///
+    /// # Errors
+    /// If the bytes are not a start state of this scene.
+    pub fn from_start_state(compiled: Compiled, bytes: &[u8]) -> Result<Self, StartStateError> {
+        let state = StartState::read(&compiled, bytes)?;
+        Ok(Self::start(compiled, state))
+    }
+
+    fn start(compiled: Compiled, mut state: crate::physics::State) -> Self {
+        let Compiled { scene, model, plan, bulks, limits, pool, .. } = compiled;
+        let n_samples = model.membrane.mesh.n_vertices() + model.membrane.mesh.triangles.len();
+        state.body_springs = vec![crate::base::Vec3::zeros(); n_samples * model.bodies.len()];
+        let step = plan.tick / measure::real(plan.n_substeps / plan.n_per_exchange);
+        let world = crate::cosim::rapier_world::RapierWorld::new(&scene, &model, bulks, step);
+        let n_objects = scene.objects.len();
+        let desk = Desk::new(&scene);
+        let coupled = Coupled::new(model, plan, state, world, limits);
+        let still = vec![Wrench::zero(); n_objects];
+        let mut session = Self {
+            scene,
+            coupled,
+            desk,
+            tick: Tick(0),
+            means: Means {
+                membrane_on_objects: still.clone(),
+                contacts_on_objects: still,
+                objects_on_gripper: Wrench::zero(),
+                gripper_on_mount: Wrench::zero(),
+            },
+            records: Vec::new(),
+            digest: 0,
+            normal_forces: Vec::new(),
+            pool,
+        };
+        session.digest = session.take_digest();
+        session
+    }
+
+    /// Advances by one tick under the commands that arrived since the last.
+    ///
+    /// # Errors
+    /// If the system cannot go on; the state is then that of the fault.
+    pub fn tick(&mut self, commands: &[Command]) -> Result<(), Diverged> {
+        let now_ns = self.time_ns();
+        let frames = self.frames();
+        let (inputs, records) = self.desk.take(commands, &frames, now_ns);
+        self.records = records;
+        self.advance(&inputs);
+        self.tick = self.tick.next();
+        let Coupled { model, state, scratch, .. } = &self.coupled;
+        self.normal_forces = measure::normal_forces(state, scratch);
+        self.digest = self.take_digest();
+        health::check(model, state, scratch, self.tick.0)
+    }
+
+    fn advance(&mut self, inputs: &Inputs) {
+        let Self { coupled, pool, means, .. } = self;
+        *means = pool.install(|| coupled.advance(inputs));
+    }
+
+    fn frames(&self) -> Frames {
+        let world = &self.coupled.world;
+        Frames {
+            flange: self.coupled.state.flange,
+            objects: (0..self.coupled.n_objects()).map(|i| world.motion(i).pose).collect(),
+        }
+    }
+
+    fn take_digest(&self) -> u64 {
+        let mut digest = Digest::new();
+        digest.integer(self.tick.0);
+        self.coupled.state.digest(&mut digest);
+        self.coupled.world.digest(&mut digest);
+        digest.finish()
+    }
+
+    /// The last tick that ended.
+    pub fn now(&self) -> Tick {
+        self.tick
+    }
+
+    /// Simulated time [ns].
+    pub fn time_ns(&self) -> u64 {
+        self.tick.time_ns(self.scene.time.tick_ns)
+    }
+
+    /// Digest of the whole state.
+    pub fn digest(&self) -> u64 {
+        self.digest
+    }
+
+    /// The scene of this run.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// The coupled system, to look at.
+    pub fn coupled(&self) -> &Coupled {
+        &self.coupled
+    }
+
+    /// Means over the last tick.
+    pub fn means(&self) -> &Means {
+        &self.means
+    }
+
+    /// Commands of the last tick, with their fate.
+    pub fn records(&self) -> &[CommandRecord] {
+        &self.records
+    }
+
+    /// The desk, for its counts.
+    pub fn desk(&self) -> &Desk {
+        &self.desk
+    }
+
+    /// Sum of normal force magnitudes on each grain at the end of the last tick [N].
+    pub fn normal_forces(&self) -> &[f64] {
+        &self.normal_forces
+    }
+
+    /// The settled start state as bytes for a cache. Only meaningful before the first tick.
+    pub fn start_state(&self) -> Vec<u8> {
+        StartState::write(&self.coupled.state)
+    }
+}
