@@ -2,7 +2,10 @@
 
 use crate::{
     base::{Tick, digest::Digest, real::Wrench},
-    command::{Command, CommandRecord, apply::{Desk, Frames}},
+    command::{
+        Command, CommandRecord,
+        apply::{Desk, Frames},
+    },
     cosim::{
         Coupled, Inputs, Means,
         compile::{Compiled, StartState, StartStateError},

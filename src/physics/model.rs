@@ -1,10 +1,6 @@
 //! Model: what the system is made of. Fixed during a run.
 
-use super::{
-    boundary::shape::Surface,
-    contact::law::PairLaw,
-    membrane::MembraneModel,
-};
+use super::{boundary::shape::Surface, contact::law::PairLaw, membrane::MembraneModel};
 use crate::base::{Pose, Real, Vec3};
 
 /// Everything that does not change.

@@ -1,10 +1,7 @@
 //! Scratch: what can be recomputed. Never saved.
 
 use super::{Model, membrane::MembraneScratch, state::N_PATCHES};
-use crate::base::{
-    Real, Vec3,
-    real::Wrench,
-};
+use crate::base::{Real, Vec3, real::Wrench};
 
 /// Working memory of the substep.
 #[derive(Clone)]

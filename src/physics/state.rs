@@ -1,10 +1,6 @@
 //! State: all that must be known to go on. One `Vec` per quantity, index = id.
 
-use crate::base::{
-    Pose, Real, Vec3,
-    digest::Digest,
-    real::Twist,
-};
+use crate::base::{Pose, Real, Vec3, digest::Digest, real::Twist};
 
 use super::membrane::MembraneState;
 

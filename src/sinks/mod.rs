@@ -3,6 +3,13 @@
 //! A sink runs on its own thread behind a bounded queue, so that a slow or dead reader never slows
 //! or stops the physics. The encoding to ROS 2 messages is made once, by whichever sink asks first.
 
+#[cfg(feature = "bag")]
+pub mod bag; // rosbag2 recordings
+#[cfg(feature = "bag")]
+mod bag_metadata; // what a recording says about itself
+#[cfg(feature = "bag")]
+mod disk; // a file that can be completed on a full disk
+pub mod fanout; // one thread and one queue per sink
 pub mod reach;
 #[cfg(feature = "ros")]
 pub mod ros;
@@ -49,6 +56,14 @@ pub trait Sink: Send {
     /// # Errors
     /// Whatever the place says; the text names place, value, limit and remedy.
     fn write(&mut self, packet: &Packet) -> Result<(), Box<dyn std::error::Error + Send + Sync>>;
+
+    /// Called about once a second of wall time while no packets come.
+    ///
+    /// # Errors
+    /// As for `write`.
+    fn idle(&mut self) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
+        Ok(())
+    }
 
     /// Completes what was written. Called once, after the last packet.
     ///

@@ -9,9 +9,9 @@ use jamgrip::sinks::ros::RosNode;
 use serde_json::Value;
 
 use crate::{
+    by_tick::{N_GRAINS, N_VERTICES, example, main_scene},
     peers,
     private_network::{cyclone_config, inside, inside_with_peers, reach},
-    synthetic::{N_GRAINS, N_VERTICES, example, main_scene},
     toy_run,
 };
 

@@ -31,9 +31,9 @@ use jamgrip::{
 };
 
 use crate::{
+    by_tick::{Synthetic, scene},
     peers,
     private_network::{cyclone_config, inside, inside_with_peers, reach},
-    synthetic::{Synthetic, scene},
 };
 
 #[expect(clippy::disallowed_methods, reason = "a limit on how long a test waits")]

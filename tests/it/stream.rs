@@ -10,7 +10,7 @@ use jamgrip::{
     wire::rows::StateRow,
 };
 
-use crate::synthetic::{N_GRAINS, N_VERTICES, Synthetic, example, number};
+use crate::by_tick::{N_GRAINS, N_VERTICES, Synthetic, example, number};
 
 /// A name that no other test on this host uses.
 fn prefix(what: &str) -> String {

@@ -15,7 +15,7 @@ use jamgrip::{
     wire::to_ros::Encoder,
 };
 
-use crate::synthetic::{Synthetic, scene};
+use crate::by_tick::{Synthetic, scene};
 
 const BAG_LENGTH: f64 = 0.04;
 const OBJECT_REST: f64 = 0.035;

@@ -261,16 +261,14 @@ fn critical_step(
     let grains = &scene.grains;
     let material = &grains.material;
     let shear_modulus = material.youngs_modulus / (2.0 * (1.0 + material.poisson_ratio));
-    let rayleigh = std::f64::consts::PI * grains.radius_min * (material.density / shear_modulus).sqrt()
-        / (0.1631 * material.poisson_ratio + 0.8766);
+    let rayleigh =
+        std::f64::consts::PI * grains.radius_min * (material.density / shear_modulus).sqrt()
+            / (0.1631 * material.poisson_ratio + 0.8766);
     // Under the strongest vacuum a grain carries the pressure on its square of sheet, a sample
     // that on its share of the sheet.
     let pressure = scene.chamber.gauge_min.abs().max(scene.chamber.gauge_max);
-    let of_grain = stiffness(
-        &laws.membrane,
-        grains.radius_max,
-        pressure * 4.0 * grains.radius_max.powi(2),
-    );
+    let of_grain =
+        stiffness(&laws.membrane, grains.radius_max, pressure * 4.0 * grains.radius_max.powi(2));
     let area = membrane.mesh.vertex_areas().into_iter().fold(0.0, Real::max);
     let of_body = bodies
         .iter()

@@ -142,9 +142,7 @@ fn vectors(arrays: &[[Real; 3]]) -> Vec<Vec3> {
 }
 
 fn patch_rows(patches: &Patches) -> Vec<[Real; 6]> {
-    let row = |p: &Patch| {
-        [p.spring.x, p.spring.y, p.spring.z, p.normal.x, p.normal.y, p.normal.z]
-    };
+    let row = |p: &Patch| [p.spring.x, p.spring.y, p.spring.z, p.normal.x, p.normal.y, p.normal.z];
     patches.slots[..patches.n].iter().map(row).collect()
 }
 

@@ -121,7 +121,8 @@ impl Polyhedron {
 
     /// Box along the axes that holds all vertices.
     pub fn aabb(&self) -> Aabb {
-        let mut aabb = Aabb { min: Vec3::repeat(Real::INFINITY), max: Vec3::repeat(-Real::INFINITY) };
+        let mut aabb =
+            Aabb { min: Vec3::repeat(Real::INFINITY), max: Vec3::repeat(-Real::INFINITY) };
         for vertex in self.vertices() {
             aabb.min = aabb.min.inf(&vertex);
             aabb.max = aabb.max.sup(&vertex);

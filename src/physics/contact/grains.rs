@@ -46,8 +46,8 @@ fn of_pair(model: &Model, grains: &Grains, ids: [u32; 2], spring: &mut Vec3) -> 
     let overlap = reach - distance;
     let normal = apart / distance;
     // Levers from the centres to the contact point: −(R_i − ξ/2) n and +(R_j − ξ/2) n.
-    let spin = grains.spins[i] * (radius_i - overlap / 2.0)
-        + grains.spins[j] * (radius_j - overlap / 2.0);
+    let spin =
+        grains.spins[i] * (radius_i - overlap / 2.0) + grains.spins[j] * (radius_j - overlap / 2.0);
     let velocity = grains.velocities[i] - grains.velocities[j] - spin.cross(&normal);
     let (mass_i, mass_j) = (grains.masses[i], grains.masses[j]);
     let touch = Touch {

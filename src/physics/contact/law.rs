@@ -252,7 +252,8 @@ mod tests {
             radius: 1e-3,
             mass: 3e-5,
         };
-        let turned = Touch { normal: turn * touch.normal, velocity: turn * touch.velocity, ..touch };
+        let turned =
+            Touch { normal: turn * touch.normal, velocity: turn * touch.velocity, ..touch };
         let mut spring = Vec3::new(1e-7, 2e-7, -1.5e-7);
         let mut spring_turned = turn * spring;
         let f = force(&law, &touch, 1e-6, &mut spring);

@@ -8,12 +8,7 @@ use crate::{
 
 /// Force of the plate on grain `i`; carries its spring on by one substep.
 #[inline]
-pub fn force(
-    model: &Model,
-    state: &State,
-    i: usize,
-    spring: &mut Vec3,
-) -> PlateForce {
+pub fn force(model: &Model, state: &State, i: usize, spring: &mut Vec3) -> PlateForce {
     let State { grains, flange, flange_twist, .. } = state;
     let down = -(flange.rotation * Vec3::z());
     let from_flange = grains.positions[i] - flange.translation.vector;
@@ -23,15 +18,10 @@ pub fn force(
         return PlateForce::default();
     }
     let arm = down * -(grains.radii[i] - overlap / 2.0);
-    let velocity = grains.velocities[i] + grains.spins[i].cross(&arm)
-        - flange_twist.at(&(from_flange + arm));
-    let touch = Touch {
-        overlap,
-        normal: down,
-        velocity,
-        radius: grains.radii[i],
-        mass: grains.masses[i],
-    };
+    let velocity =
+        grains.velocities[i] + grains.spins[i].cross(&arm) - flange_twist.at(&(from_flange + arm));
+    let touch =
+        Touch { overlap, normal: down, velocity, radius: grains.radii[i], mass: grains.masses[i] };
     let force = law::force(&model.plate_law, &touch, model.substep, spring);
     PlateForce { force: down * force.normal + force.tangential, arm, normal: force.normal }
 }

@@ -95,7 +95,8 @@ fn apply(model: &MembraneModel, part: Part, x: &[Vec3]) -> Vec<Vec3> {
         y[at[3]] += pull;
         y[at[2]] -= pull;
         if l < mesh.hinges.len() {
-            let facets = link.triangles.map(|t| Facet::new(&mesh.positions, &mesh.triangles[t as usize]));
+            let facets =
+                link.triangles.map(|t| Facet::new(&mesh.positions, &mesh.triangles[t as usize]));
             let fold = link.fold(&mesh.positions, [&facets[0], &facets[1]]);
             let strength = match part {
                 // d(sin θ/2)/dθ = cos(θ/2)/2.

@@ -151,9 +151,8 @@ impl MembraneModel {
     /// Takes the angles of the hinges in `positions` as those at rest.
     pub fn rest_angles_from(&mut self, positions: &[Vec3]) {
         for link in &mut self.links[..self.mesh.hinges.len()] {
-            let facets = link
-                .triangles
-                .map(|t| Facet::new(positions, &self.mesh.triangles[t as usize]));
+            let facets =
+                link.triangles.map(|t| Facet::new(positions, &self.mesh.triangles[t as usize]));
             link.rest_half_sine = link.fold(positions, [&facets[0], &facets[1]]).half_sine;
         }
     }
@@ -181,7 +180,10 @@ impl Link {
 impl MembraneState {
     /// At rest in the reference shape.
     pub fn at_rest(mesh: &Mesh) -> Self {
-        Self { positions: mesh.positions.clone(), velocities: vec![Vec3::zeros(); mesh.n_vertices()] }
+        Self {
+            positions: mesh.positions.clone(),
+            velocities: vec![Vec3::zeros(); mesh.n_vertices()],
+        }
     }
 }
 
@@ -237,7 +239,8 @@ fn pull_and_fold(
             let fold = Fold::new(r, sides, &edge, length);
             let opened = fold.half_sine - link.rest_half_sine;
             let speed = fold.project(v);
-            forces = fold.spread(elastic * fold.slenderness * opened - dissipative * length * speed);
+            forces =
+                fold.spread(elastic * fold.slenderness * opened - dissipative * length * speed);
         }
         forces[2] += pull;
         forces[3] -= pull;

@@ -81,7 +81,8 @@ fn meshes_have_the_published_numbers() {
         // Oracle: construction. Tolerance: rounding of a normalised vector.
         assert!((position.norm() - 0.04).abs() < 1e-16, "vertex {v} off the sphere");
     }
-    let edge_mean = half.edges.iter().map(|e| length(&half, e)).sum::<Real>() / half.edges.len() as Real;
+    let edge_mean =
+        half.edges.iter().map(|e| length(&half, e)).sum::<Real>() / half.edges.len() as Real;
     // Oracle: section 4 quotes 3.0 mm to two digits.
     assert!((edge_mean - 3.0e-3).abs() < 0.05e-3, "mean edge {edge_mean}");
 }
@@ -164,7 +165,8 @@ fn a_patch_has_the_modulus_and_poisson_ratio_of_the_lattice() {
             let (s, c) = direction.sin_cos();
             let along = Vec3::new(c, s, 0.0);
             let across = Vec3::new(-s, c, 0.0);
-            let pull = along * along.transpose() * strain - across * across.transpose() * (strain / 3.0);
+            let pull =
+                along * along.transpose() * strain - across * across.transpose() * (strain / 3.0);
             let stress = stress_at(&model, &(Mat3::identity() + pull), area);
             // Oracle: uniaxial tension of an isotropic sheet with E d = 2/√3 k, ν = 1/3: the strain
             // (ε, −ε/3) makes the stress (E d ε, 0). Tolerance: second order in ε, and rounding of
@@ -177,7 +179,9 @@ fn a_patch_has_the_modulus_and_poisson_ratio_of_the_lattice() {
         // Oracle: U10, T = √3 k ε in every direction under isotropic stretch. Same tolerance.
         let stress = stress_at(&model, &(Mat3::identity() * (1.0 + strain)), area);
         let tension = 3.0_f64.sqrt() * k * strain;
-        assert!((stress.m11 / tension - 1.0).abs() < 1e-5 && (stress.m22 / tension - 1.0).abs() < 1e-5);
+        assert!(
+            (stress.m11 / tension - 1.0).abs() < 1e-5 && (stress.m22 / tension - 1.0).abs() < 1e-5
+        );
     }
 }
 
@@ -198,8 +202,7 @@ fn stress_at(model: &MembraneModel, deformation: &Mat3, area: Real) -> Mat3 {
         *position = deformation * *position;
     }
     let forces = forces_on(model, &state, 0.0);
-    let virial: Mat3 =
-        state.positions.iter().zip(&forces).map(|(r, f)| r * f.transpose()).sum();
+    let virial: Mat3 = state.positions.iter().zip(&forces).map(|(r, f)| r * f.transpose()).sum();
     -virial / area
 }
 
@@ -310,7 +313,11 @@ fn bending_restores_from_both_sides_and_leaves_lengths_alone() {
                 // own triangle's share. The shared edge has both. Tolerance: rounding.
                 let own = (f[b] - f[a]).dot(&side);
                 let other = [[0, 2], [0, 3]].contains(&[a, b]);
-                let across = if other { fold_of(&model, &positions).0.u2 } else { fold_of(&model, &positions).0.u1 };
+                let across = if other {
+                    fold_of(&model, &positions).0.u2
+                } else {
+                    fold_of(&model, &positions).0.u1
+                };
                 let foreign = across.dot(&side).abs() * f[1].norm().max(f[0].norm());
                 assert!(own.abs() <= 2.0 * foreign + 1e-18);
             }
@@ -418,7 +425,8 @@ fn the_volume_under_a_lid_has_its_gradient() {
     // Oracle: volume does not change under translation and rotation. Tolerance: rounding.
     assert!(force < 1e-13 * size && torque < 1e-13 * size);
     let mut scratch = MembraneScratch::new(&model);
-    let slack = MembraneModel::new(model.mesh.clone(), Sheet { youngs_modulus: 0.0, ..rubber(0.0, 0.0) });
+    let slack =
+        MembraneModel::new(model.mesh.clone(), Sheet { youngs_modulus: 0.0, ..rubber(0.0, 0.0) });
     forces(&slack, &state, p, &mut scratch);
     for v in (0..model.mesh.n_vertices()).filter(|&v| !model.mesh.is_on_rim[v]) {
         // Oracle: inside the sheet, load = p · gradient. Tolerance: rounding.

@@ -37,13 +37,7 @@ pub fn build(model: &Model, grid: &CellGrid, state: &mut State, lists: &mut Neig
 }
 
 /// Partners of grain `i` with higher ids, ascending.
-fn partners(
-    model: &Model,
-    grid: &CellGrid,
-    grains: &Grains,
-    i: usize,
-    found: &mut Vec<[u32; 2]>,
-) {
+fn partners(model: &Model, grid: &CellGrid, grains: &Grains, i: usize, found: &mut Vec<[u32; 2]>) {
     let (position, radius) = (grains.positions[i], grains.radii[i]);
     let reach = Vec3::repeat(radius + model.radius_max + model.skin);
     let begin = found.len();

@@ -64,6 +64,11 @@ impl Encoder {
         &self.topics
     }
 
+    /// Length of a tick [ns].
+    pub fn tick_ns(&self) -> u64 {
+        self.scene.time.tick_ns
+    }
+
     /// Messages to commands and back.
     pub fn commands(&self) -> &CommandCodec {
         &self.commands
