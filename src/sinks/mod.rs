@@ -3,9 +3,26 @@
 //! A sink runs on its own thread behind a bounded queue, so that a slow or dead reader never slows
 //! or stops the physics. The encoding to ROS 2 messages is made once, by whichever sink asks first.
 
+#[cfg(feature = "bag")]
+pub mod bag; // rosbag2 recordings
+#[cfg(feature = "bag")]
+mod bag_metadata; // what a recording says about itself
+#[cfg(feature = "bag")]
+mod disk; // a file that can be completed on a full disk
+pub mod fanout; // one thread and one queue per sink
+pub mod reach;
+#[cfg(feature = "ros")]
+pub mod ros;
+#[cfg(feature = "shm")]
+pub mod shm;
+
 use std::sync::OnceLock;
 
-use crate::{snapshot::Snapshot, wire::topics::Message};
+pub use crate::snapshot::run::{RunStatistics, SinkCounters};
+use crate::{
+    snapshot::Snapshot,
+    wire::{to_ros::Encoder, topics::Message},
+};
 
 /// What a sink is given: a snapshot and its messages.
 pub struct Packet {
@@ -23,42 +40,10 @@ impl Packet {
         Self { snapshot, run, messages: OnceLock::new() }
     }
 
-    /// The messages; `encode` makes them if nobody has yet.
-    pub fn messages(&self, encode: impl FnOnce(&Self) -> Vec<Message>) -> &[Message] {
-        self.messages.get_or_init(|| encode(self))
+    /// The messages; `encoder` makes them if nobody has yet.
+    pub fn messages(&self, encoder: &Encoder) -> &[Message] {
+        self.messages.get_or_init(|| encoder.encode(&self.snapshot, self.run.as_ref()))
     }
-}
-
-/// How a run goes, seen from outside.
-#[derive(Clone, Debug, Default)]
-pub struct RunStatistics {
-    /// Wall time since the first tick [s].
-    pub wall_time_s: f64,
-    /// Simulated over wall time, over the last second of wall time.
-    pub real_time_factor: f64,
-    /// Simulated over wall time, since the first tick.
-    pub real_time_factor_mean: f64,
-    /// Length of a substep [s].
-    pub substep_s: f64,
-    /// Seed of the scene.
-    pub seed: u64,
-    /// What the controller is doing, if the built-in one runs.
-    pub phase: String,
-    /// Per sink: name, packets written, packets dropped, errors.
-    pub sinks: Vec<SinkCounters>,
-}
-
-/// What became of the packets given to a sink.
-#[derive(Clone, Debug, Default)]
-pub struct SinkCounters {
-    /// Name of the sink.
-    pub name: &'static str,
-    /// Packets it wrote.
-    pub n_written: u64,
-    /// Packets its queue dropped.
-    pub n_dropped: u64,
-    /// Packets it failed on.
-    pub n_failed: u64,
 }
 
 /// A place where snapshots go. Runs on a thread of its own.
@@ -71,6 +56,14 @@ pub trait Sink: Send {
     /// # Errors
     /// Whatever the place says; the text names place, value, limit and remedy.
     fn write(&mut self, packet: &Packet) -> Result<(), Box<dyn std::error::Error + Send + Sync>>;
+
+    /// Called about once a second of wall time while no packets come.
+    ///
+    /// # Errors
+    /// As for `write`.
+    fn idle(&mut self) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
+        Ok(())
+    }
 
     /// Completes what was written. Called once, after the last packet.
     ///

@@ -1,3 +1,7 @@
 //! Bytes for the outside; pure functions from snapshots to messages and back to commands.
 
+pub mod from_ros;
+pub mod messages;
+pub mod rows;
+pub mod to_ros;
 pub mod topics;

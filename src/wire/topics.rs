@@ -1,4 +1,20 @@
 //! The closed list of topics, and messages encoded once for all who carry them.
+//!
+//! First come the topics that every scene has, in the order of `Common`, then those of each
+//! object, in the order of `OfObject`. So the index of a topic is known without looking it up.
+
+use super::messages::{
+    MessageType, RosMessage, diagnostic_msgs::DiagnosticArray, geometry_msgs::PoseStamped,
+    geometry_msgs::TwistStamped, geometry_msgs::WrenchStamped, jamgrip_msgs::ContactArray,
+    jamgrip_msgs::ObjectCommand, jamgrip_msgs::ObjectDetectionStatus, jamgrip_msgs::Statistics,
+    jamgrip_msgs::VacuumState, rosgraph_msgs::Clock, sensor_msgs::FluidPressure,
+    sensor_msgs::JointState, sensor_msgs::PointCloud2, shape_msgs::Mesh, std_msgs::Float64,
+    tf2_msgs::TFMessage, visualization_msgs::Marker, visualization_msgs::MarkerArray,
+};
+use crate::scene::Scene;
+
+/// Name of the ROS 2 node; names that start with `~/` are below it.
+pub const NODE: &str = "/jamgrip";
 
 /// A ROS 2 topic.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -7,6 +23,8 @@ pub struct Topic {
     pub name: String,
     /// ROS 2 type, such as `geometry_msgs/msg/WrenchStamped`.
     pub type_name: &'static str,
+    /// All that ROS 2 knows about the type.
+    pub message_type: MessageType,
     /// How it is offered.
     pub qos: Qos,
     /// True for topics that carry commands to us.
@@ -24,8 +42,20 @@ pub struct Qos {
     pub is_latched: bool,
 }
 
+impl Qos {
+    /// Reliable, volatile.
+    const fn reliable(depth: u32) -> Self {
+        Self { is_reliable: true, depth, is_latched: false }
+    }
+
+    /// Reliable, transient local: who comes late gets the last one.
+    const fn latched() -> Self {
+        Self { is_reliable: true, depth: 1, is_latched: true }
+    }
+}
+
 /// One message, encoded once: ROS 2 and bags carry the same bytes.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Message {
     /// Index into the list of topics.
     pub topic: usize,
@@ -33,4 +63,180 @@ pub struct Message {
     pub time_ns: u64,
     /// The body in CDR, little endian, without the four bytes that name the encoding.
     pub cdr: Vec<u8>,
+}
+
+/// The topics that every scene has. The value is the index into the list of topics.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Common {
+    /// Simulated time, each tick.
+    Clock,
+    /// Force of the objects on the gripper, at the flange, in its axes.
+    Wrench,
+    /// Pose of the flange in the world.
+    FlangePose,
+    /// Velocity of the flange, world axes.
+    FlangeTwist,
+    /// What the gripper puts on its mount, as a wrist sensor reads it.
+    FlangeWrench,
+    /// Contacts between membrane and objects.
+    Contacts,
+    /// The same as arrows.
+    ContactMarkers,
+    /// Vertices of the membrane.
+    Membrane,
+    /// Triangles of the membrane, once.
+    MembraneMesh,
+    /// The membrane as a surface to look at.
+    MembraneMarker,
+    /// The grains.
+    Grains,
+    /// Absolute pressure in the membrane.
+    Pressure,
+    /// Pressure, volume, jamming.
+    VacuumState,
+    /// Whether something is held.
+    ObjectDetectionStatus,
+    /// Vacuum and flange as joints.
+    JointStates,
+    /// How the run goes.
+    Statistics,
+    /// The same for the diagnostics tools of ROS.
+    Diagnostics,
+    /// Moving frames.
+    Tf,
+    /// Frames that stay.
+    TfStatic,
+    /// Command: gauge pressure.
+    VacuumCommand,
+    /// Command: pose of the flange.
+    FlangePoseCommand,
+    /// Command: drive or release an object.
+    ObjectCommand,
+}
+
+/// The topics of each object. The value is the place among the object's topics.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OfObject {
+    /// Total contact wrench about the centre of mass, world axes, gravity excluded.
+    ContactWrench,
+    /// Pose of the body frame in the world.
+    Pose,
+    /// Velocity of the body frame, world axes.
+    Twist,
+    /// Command: pose that drives the object.
+    PoseCommand,
+}
+
+/// A row of the list: what, name, type, quality of service, whether it carries commands to us.
+type Row<T> = (T, &'static str, MessageType, Qos, bool);
+
+const COMMON: [Row<Common>; 22] = [
+    (Common::Clock, "/clock", Clock::TYPE, Qos::reliable(1), false),
+    (Common::Wrench, "~/wrench", WrenchStamped::TYPE, Qos::reliable(10), false),
+    (Common::FlangePose, "~/flange/pose", PoseStamped::TYPE, Qos::reliable(10), false),
+    (Common::FlangeTwist, "~/flange/twist", TwistStamped::TYPE, Qos::reliable(10), false),
+    (Common::FlangeWrench, "~/flange/wrench", WrenchStamped::TYPE, Qos::reliable(10), false),
+    (Common::Contacts, "~/contacts", ContactArray::TYPE, Qos::reliable(5), false),
+    (Common::ContactMarkers, "~/contact_markers", MarkerArray::TYPE, Qos::reliable(1), false),
+    (Common::Membrane, "~/membrane", PointCloud2::TYPE, Qos::reliable(5), false),
+    (Common::MembraneMesh, "~/membrane/mesh", Mesh::TYPE, Qos::latched(), false),
+    (Common::MembraneMarker, "~/membrane/marker", Marker::TYPE, Qos::reliable(1), false),
+    (Common::Grains, "~/grains", PointCloud2::TYPE, Qos::reliable(1), false),
+    (Common::Pressure, "~/pressure", FluidPressure::TYPE, Qos::reliable(10), false),
+    (Common::VacuumState, "~/vacuum_state", VacuumState::TYPE, Qos::reliable(10), false),
+    (
+        Common::ObjectDetectionStatus,
+        "~/object_detection_status",
+        ObjectDetectionStatus::TYPE,
+        Qos::latched(),
+        false,
+    ),
+    (Common::JointStates, "~/joint_states", JointState::TYPE, Qos::reliable(10), false),
+    (Common::Statistics, "~/statistics", Statistics::TYPE, Qos::reliable(1), false),
+    (Common::Diagnostics, "/diagnostics", DiagnosticArray::TYPE, Qos::reliable(10), false),
+    (Common::Tf, "/tf", TFMessage::TYPE, Qos::reliable(100), false),
+    (Common::TfStatic, "/tf_static", TFMessage::TYPE, Qos::latched(), false),
+    (Common::VacuumCommand, "~/vacuum_cmd", Float64::TYPE, Qos::reliable(1), true),
+    (Common::FlangePoseCommand, "~/flange/pose_cmd", PoseStamped::TYPE, Qos::reliable(1), true),
+    // Two commands in a row, such as release and drive, must both arrive.
+    (Common::ObjectCommand, "~/object_cmd", ObjectCommand::TYPE, Qos::reliable(10), true),
+];
+
+/// Names are below `~/object/<name>/`.
+const OF_OBJECT: [Row<OfObject>; 4] = [
+    (OfObject::ContactWrench, "contact_wrench", WrenchStamped::TYPE, Qos::reliable(10), false),
+    (OfObject::Pose, "pose", PoseStamped::TYPE, Qos::reliable(10), false),
+    (OfObject::Twist, "twist", TwistStamped::TYPE, Qos::reliable(10), false),
+    (OfObject::PoseCommand, "pose_cmd", PoseStamped::TYPE, Qos::reliable(1), true),
+];
+
+/// All topics of a scene, inputs and outputs.
+pub fn topics(scene: &Scene) -> Vec<Topic> {
+    let common = COMMON.iter().map(|&(_, name, message_type, qos, is_input)| Topic {
+        name: name.replacen('~', NODE, 1),
+        type_name: message_type.name,
+        message_type,
+        qos,
+        is_input,
+    });
+    let of_objects = scene.objects.iter().flat_map(|object| {
+        OF_OBJECT.iter().map(|&(_, name, message_type, qos, is_input)| Topic {
+            name: format!("{NODE}/object/{}/{name}", object.name),
+            type_name: message_type.name,
+            message_type,
+            qos,
+            is_input,
+        })
+    });
+    common.chain(of_objects).collect()
+}
+
+/// Index of a topic that every scene has.
+pub fn common(topic: Common) -> usize {
+    topic as usize
+}
+
+/// Index of a topic of the object with this place in the scene.
+pub fn of_object(object: usize, topic: OfObject) -> usize {
+    COMMON.len() + object * OF_OBJECT.len() + topic as usize
+}
+
+/// What the topic with this index is: one that every scene has, or one of an object.
+pub fn place(topic: usize) -> Place {
+    match COMMON.get(topic) {
+        Some(&(common, ..)) => Place::Common(common),
+        None => {
+            let beyond = topic - COMMON.len();
+            let (of_object, ..) = OF_OBJECT[beyond % OF_OBJECT.len()];
+            Place::OfObject(beyond / OF_OBJECT.len(), of_object)
+        }
+    }
+}
+
+/// Where a topic stands in the list.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// One that every scene has.
+    Common(Common),
+    /// One of the object with this place in the scene.
+    OfObject(usize, OfObject),
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_stand_where_their_index_says() {
+        // Oracle: `common` and `place` are inverse to each other; a row out of order breaks that.
+        for (index, (topic, ..)) in COMMON.iter().enumerate() {
+            assert_eq!(common(*topic), index);
+            assert_eq!(place(index), Place::Common(*topic));
+        }
+        for object in 0..3 {
+            for (topic, ..) in OF_OBJECT {
+                assert_eq!(place(of_object(object, topic)), Place::OfObject(object, topic));
+            }
+        }
+    }
 }

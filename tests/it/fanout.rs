@@ -1,0 +1,210 @@
+//! Sinks behind their queues: order, dropping, waiting, failure, panic, hanging, closing.
+
+use std::{
+    error::Error,
+    sync::{
+        Arc, Mutex,
+        mpsc::{Receiver, Sender, channel},
+    },
+    time::Duration,
+};
+
+use jamgrip::sinks::{
+    Packet, Sink,
+    fanout::{Delivery, Fanout},
+};
+
+use crate::synthetic;
+
+/// Longer than anything here takes; only a fault makes a test wait so long.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+type Outcome = Result<(), Box<dyn Error + Send + Sync>>;
+
+/// What a memory sink has seen.
+#[derive(Clone, Default)]
+struct Seen(Arc<Mutex<Vec<u64>>>);
+
+impl Seen {
+    fn ticks(&self) -> Vec<u64> {
+        self.0.lock().unwrap().clone()
+    }
+}
+
+/// Keeps the ticks it is given; `at_write` and `at_close` decide how it behaves.
+struct Memory<W, C> {
+    seen: Seen,
+    at_write: W,
+    at_close: C,
+}
+
+impl<W, C> Sink for Memory<W, C>
+where
+    W: FnMut(u64) -> Outcome + Send,
+    C: FnMut() -> Outcome + Send,
+{
+    fn name(&self) -> &'static str {
+        "memory"
+    }
+
+    fn write(&mut self, packet: &Packet) -> Outcome {
+        let tick = packet.snapshot.tick.0;
+        (self.at_write)(tick)?;
+        self.seen.0.lock().unwrap().push(tick);
+        Ok(())
+    }
+
+    fn close(&mut self) -> Outcome {
+        (self.at_close)()
+    }
+}
+
+fn start<W>(delivery: Delivery, at_write: W) -> (Fanout, Seen)
+where
+    W: FnMut(u64) -> Outcome + Send + 'static,
+{
+    let (mut fanout, seen) = (Fanout::new(), Seen::default());
+    let sink = Memory { seen: seen.clone(), at_write, at_close: || Ok(()) };
+    fanout.add(Box::new(sink), delivery).unwrap();
+    (fanout, seen)
+}
+
+fn publish(fanout: &Fanout, ticks: std::ops::RangeInclusive<u64>) {
+    for tick in ticks {
+        fanout.publish(&synthetic::packet(tick));
+    }
+}
+
+/// A sink that waits at each packet until it is allowed to go on, and says that it waits.
+fn gate() -> (impl FnMut(u64) -> Outcome + Send, Receiver<u64>, Sender<()>) {
+    let (arrived, at_gate) = channel();
+    let (open, opened) = channel::<()>();
+    let at_write = move |tick| {
+        arrived.send(tick).unwrap();
+        opened.recv()?;
+        Ok(())
+    };
+    (at_write, at_gate, open)
+}
+
+#[test]
+fn every_packet_arrives_in_order() {
+    let (fanout, seen) = start(Delivery::Every { depth: 4 }, |_| Ok(()));
+    publish(&fanout, 1..=500);
+    let (ends, faults) = fanout.close(PATIENCE);
+    // Oracle: what was published; `Every` may drop nothing.
+    assert_eq!(seen.ticks(), (1..=500).collect::<Vec<u64>>());
+    assert!(ends[0].is_closed && faults.is_empty());
+    let counters = &ends[0].counters;
+    assert_eq!((counters.n_written, counters.n_dropped, counters.n_failed), (500, 0, 0));
+}
+
+#[test]
+fn a_slow_sink_gets_the_latest_and_drops_are_counted() {
+    let (at_write, at_gate, open) = gate();
+    let (fanout, seen) = start(Delivery::Latest { depth: 3 }, at_write);
+    publish(&fanout, 1..=1);
+    assert_eq!(at_gate.recv_timeout(PATIENCE), Ok(1), "the sink works on tick 1");
+    // This returns although the sink stands still: physics is never slowed.
+    publish(&fanout, 2..=10);
+    assert_eq!(fanout.counters()[0].n_dropped, 6);
+    (0..4).for_each(|_| open.send(()).unwrap());
+    let (ends, _) = fanout.close(PATIENCE);
+    // Oracle: the packet in hand, then the three latest of those that came meanwhile.
+    assert_eq!(seen.ticks(), [1, 8, 9, 10]);
+    let counters = &ends[0].counters;
+    assert_eq!((counters.n_written, counters.n_dropped, counters.n_failed), (4, 6, 0));
+}
+
+#[test]
+fn a_full_queue_of_every_makes_the_run_wait() {
+    let (at_write, at_gate, open) = gate();
+    let (fanout, seen) = start(Delivery::Every { depth: 2 }, at_write);
+    let (said, published) = channel();
+    let run = std::thread::spawn(move || {
+        for tick in 1..=6 {
+            fanout.publish(&synthetic::packet(tick));
+            said.send(tick).unwrap();
+        }
+        fanout.close(PATIENCE)
+    });
+    assert_eq!(at_gate.recv_timeout(PATIENCE), Ok(1));
+    // One packet is in hand and two are queued; the fourth waits until the gate opens.
+    for tick in 1..=3 {
+        assert_eq!(published.recv_timeout(PATIENCE), Ok(tick));
+    }
+    assert!(published.try_recv().is_err(), "the fourth packet must wait");
+    (0..6).for_each(|_| open.send(()).unwrap());
+    let (ends, _) = run.join().unwrap();
+    assert_eq!(seen.ticks(), [1, 2, 3, 4, 5, 6]);
+    assert_eq!(ends[0].counters.n_dropped, 0);
+}
+
+#[test]
+fn a_failing_sink_is_counted_and_goes_on() {
+    let at_write = |tick| if tick % 2 == 0 { Err("disk on fire".into()) } else { Ok(()) };
+    let (fanout, seen) = start(Delivery::Every { depth: 8 }, at_write);
+    publish(&fanout, 1..=10);
+    let (ends, faults) = fanout.close(PATIENCE);
+    assert_eq!(seen.ticks(), [1, 3, 5, 7, 9]);
+    let counters = &ends[0].counters;
+    assert_eq!((counters.n_written, counters.n_failed), (5, 5));
+    // The same complaint five times is one.
+    assert_eq!(faults.len(), 1);
+    assert_eq!((faults[0].sink, faults[0].text.as_str()), ("memory", "disk on fire"));
+}
+
+#[test]
+fn a_sink_that_panics_is_out_and_the_others_go_on() {
+    let at_write = |tick| {
+        assert!(tick < 3, "bug at tick {tick}");
+        Ok(())
+    };
+    let (mut fanout, broken) = start(Delivery::Every { depth: 2 }, at_write);
+    let healthy = Seen::default();
+    let sink = Memory { seen: healthy.clone(), at_write: |_| Ok(()), at_close: || Ok(()) };
+    fanout.add(Box::new(sink), Delivery::Every { depth: 2 }).unwrap();
+    // `Every` must not wait for a sink that is gone: this returns.
+    publish(&fanout, 1..=20);
+    let (ends, faults) = fanout.close(PATIENCE);
+    assert_eq!(broken.ticks(), [1, 2]);
+    assert_eq!(healthy.ticks().len(), 20);
+    assert_eq!((ends[0].counters.n_written, ends[0].counters.n_failed), (2, 18));
+    assert_eq!(faults.len(), 1);
+    assert!(faults[0].text.contains("bug at tick 3"), "{}", faults[0].text);
+}
+
+#[test]
+fn a_sink_that_hangs_is_left_behind() {
+    let (at_write, at_gate, open) = gate();
+    let (fanout, _) = start(Delivery::Latest { depth: 4 }, at_write);
+    publish(&fanout, 1..=3);
+    at_gate.recv_timeout(PATIENCE).unwrap();
+    let (ends, faults) = fanout.close(Duration::from_millis(50));
+    assert!(!ends[0].is_closed);
+    assert!(faults[0].text.contains("left behind with 2 results unwritten"), "{}", faults[0].text);
+    drop(open); // lets its thread end
+}
+
+#[test]
+fn a_fault_while_closing_is_told() {
+    let mut fanout = Fanout::new();
+    let at_close = || Err("no room for the index".into());
+    let sink = Memory { seen: Seen::default(), at_write: |_| Ok(()), at_close };
+    fanout.add(Box::new(sink), Delivery::Latest { depth: 4 }).unwrap();
+    publish(&fanout, 1..=1);
+    let (ends, faults) = fanout.close(PATIENCE);
+    assert!(ends[0].is_closed);
+    assert_eq!(faults[0].text, "no room for the index");
+}
+
+#[test]
+fn queued_packets_are_written_before_closing() {
+    let (at_write, at_gate, open) = gate();
+    let (fanout, seen) = start(Delivery::Latest { depth: 8 }, at_write);
+    publish(&fanout, 1..=5);
+    at_gate.recv_timeout(PATIENCE).unwrap();
+    (0..5).for_each(|_| open.send(()).unwrap());
+    fanout.close(PATIENCE);
+    assert_eq!(seen.ticks(), [1, 2, 3, 4, 5]);
+}

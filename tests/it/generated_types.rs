@@ -1,0 +1,269 @@
+//! The checked-in message types are what `roslibrust_codegen` reads in `msgs/`.
+//!
+//! After a change of a .msg file: `JAMGRIP_UPDATE=1 cargo test --release generated_types`.
+
+use std::{
+    collections::BTreeMap,
+    fmt::Write,
+    fs,
+    path::{Path, PathBuf},
+};
+
+use roslibrust_codegen::{ArrayType, ConstantInfo, FieldInfo, MessageFile};
+
+const GENERATED: &str = "src/wire/messages/generated.rs";
+const SEPARATOR: &str =
+    "================================================================================";
+
+/// Hashes that the library computes wrongly, because it takes `byte` for a nested type. These are
+/// the ones of the type store of PyPI's `rosbags`; `peers.rs` compares all hashes with it.
+const HASHES_OF_TYPES_WITH_BYTE: [(&str, &str); 2] = [
+    (
+        "diagnostic_msgs/DiagnosticArray",
+        "RIHS01_5a8a36efb05fb25070fa0fb3810290c0e6cd4862b54a8fb975a1ee8dc55a333e",
+    ),
+    (
+        "diagnostic_msgs/DiagnosticStatus",
+        "RIHS01_b0e3e692ea2d54a8af2f4ef1930e81556a2db55216b771f8a7d2724ed47bf0e4",
+    ),
+];
+
+type Messages = BTreeMap<String, MessageFile>;
+
+#[test]
+fn checked_in_types_are_those_of_the_message_files() {
+    let expected = source(&messages());
+    if std::env::var_os("JAMGRIP_UPDATE").is_some() {
+        fs::write(GENERATED, &expected).unwrap();
+    }
+    let found = fs::read_to_string(GENERATED).unwrap();
+    // Oracle: the types generated anew.
+    assert!(
+        found == expected,
+        "{GENERATED} is not what msgs/ says; \
+         run `JAMGRIP_UPDATE=1 cargo test --release generated_types` and look at the difference"
+    );
+}
+
+/// All messages of `msgs/`, by `package/Type`.
+///
+/// The library wants one folder with a package.xml per package, so the files are copied to such.
+fn messages() -> Messages {
+    let staging = tempfile::tempdir().unwrap();
+    stage(Path::new("msgs/msg"), "jamgrip_msgs", staging.path());
+    for package in fs::read_dir("msgs/standard").unwrap().map(|entry| entry.unwrap().path()) {
+        if package.is_dir() {
+            let name = package.file_name().unwrap().to_str().unwrap();
+            stage(&package.join("msg"), name, staging.path());
+        }
+    }
+    let folders = [staging.path().to_path_buf()];
+    let (parsed, _, _) = roslibrust_codegen::find_and_parse_ros_messages(&folders).unwrap();
+    let ours: Vec<String> = parsed.iter().map(|it| it.get_full_name()).collect();
+    let (resolved, _) = roslibrust_codegen::resolve_dependency_graph(parsed, Vec::new()).unwrap();
+    let all = resolved.into_iter().map(|it| (it.get_full_name(), it));
+    all.filter(|(name, _)| ours.contains(name)).collect()
+}
+
+fn stage(messages: &Path, package: &str, staging: &Path) {
+    let folder = staging.join(package);
+    fs::create_dir_all(folder.join("msg")).unwrap();
+    let xml = format!(
+        "<package format=\"3\"><name>{package}</name>\
+         <buildtool_depend>ament_cmake</buildtool_depend></package>"
+    );
+    fs::write(folder.join("package.xml"), xml).unwrap();
+    let files: Vec<PathBuf> =
+        fs::read_dir(messages).unwrap().map(|entry| entry.unwrap().path()).collect();
+    for file in files {
+        fs::copy(&file, folder.join("msg").join(file.file_name().unwrap())).unwrap();
+    }
+}
+
+/// The whole generated file.
+fn source(messages: &Messages) -> String {
+    let mut out = String::from(
+        "//! ROS 2 message types: generated from `msgs/`, never edited by hand.\n\
+         //!\n\
+         //! `tests/it/generated_types.rs` writes this file and tests that it is up to date.\n",
+    );
+    let mut packages: Vec<String> = messages.values().map(|it| it.get_package_name()).collect();
+    packages.dedup();
+    for package in packages {
+        writeln!(out, "\n/// Messages of `{package}`.\npub mod {package} {{").unwrap();
+        out.push_str("    use crate::wire::messages::{MessageType, RosMessage};\n");
+        for message in messages.values().filter(|it| it.get_package_name() == package) {
+            out.push_str(&structure(message));
+            out.push_str(&description(message, messages));
+        }
+        out.push_str("}\n");
+    }
+    out
+}
+
+/// The struct of a message and its constants.
+fn structure(message: &MessageFile) -> String {
+    let name = message.get_short_name();
+    let comments = Comments::of(&message.parsed.source);
+    let mut out = String::from("\n");
+    comments.head.iter().for_each(|line| doc(&mut out, 1, line));
+    if comments.head.is_empty() {
+        doc(&mut out, 1, &format!("`{}/msg/{name}`.", message.get_package_name()));
+    }
+    out.push_str(
+        "    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]\n",
+    );
+    writeln!(out, "    pub struct {name} {{").unwrap();
+    for field in message.get_fields() {
+        comments.write(&mut out, &field.field_name, &declaration(field));
+        if is_bytes(field) {
+            out.push_str("        #[serde(with = \"serde_bytes\")]\n");
+        }
+        writeln!(out, "        pub r#{}: {},", field.field_name, rust_type(field)).unwrap();
+    }
+    out.push_str("    }\n");
+    if !message.get_constants().is_empty() {
+        writeln!(out, "\n    impl {name} {{").unwrap();
+        for constant in message.get_constants() {
+            comments.write(&mut out, &constant.constant_name, &constant_declaration(constant));
+            let ConstantInfo { constant_type, constant_name, constant_value } = constant;
+            let r#type = rust_primitive(constant_type);
+            writeln!(out, "        pub const {constant_name}: {type} = {constant_value};").unwrap();
+        }
+        out.push_str("    }\n");
+    }
+    out
+}
+
+/// The `impl RosMessage` of a message.
+fn description(message: &MessageFile, messages: &Messages) -> String {
+    let (package, name) = (message.get_package_name(), message.get_short_name());
+    let full_name = message.get_full_name();
+    let corrected = HASHES_OF_TYPES_WITH_BYTE.iter().find(|(name, _)| *name == full_name);
+    let hash = corrected.map_or(message.ros2_hash.to_hash_string(), |(_, hash)| (*hash).to_owned());
+    let definition = definition(message, messages);
+    format!(
+        "
+    impl RosMessage for {name} {{
+        const TYPE: MessageType = MessageType {{
+            name: \"{package}/msg/{name}\",
+            dds_name: \"{package}::msg::dds_::{name}_\",
+            type_hash: \"{hash}\",
+            definition: r##\"{definition}\"##,
+        }};
+    }}
+"
+    )
+}
+
+/// Text of a message and of all it contains, each once, in the order they are met.
+fn definition(message: &MessageFile, messages: &Messages) -> String {
+    let mut contained: Vec<String> = Vec::new();
+    let mut open = vec![message];
+    while let Some(next) = open.pop() {
+        for field in next.get_fields().iter().filter(|it| it.field_type.package_name.is_some()) {
+            let name = field.get_full_type_name();
+            if !contained.contains(&name) {
+                open.push(&messages[&name]);
+                contained.push(name);
+            }
+        }
+    }
+    let mut text = message.parsed.source.trim().to_owned() + "\n";
+    for name in contained {
+        let source = messages[&name].parsed.source.trim();
+        write!(text, "{SEPARATOR}\nMSG: {name}\n{source}\n").unwrap();
+    }
+    text
+}
+
+fn rust_type(field: &FieldInfo) -> String {
+    let of = &field.field_type;
+    let one = match &of.package_name {
+        Some(package) if *package == of.source_package => of.field_type.clone(),
+        Some(package) => format!("super::{package}::{}", of.field_type),
+        None => rust_primitive(&of.field_type).to_owned(),
+    };
+    match of.array_info {
+        ArrayType::NotArray => one,
+        ArrayType::FixedLength(length) => format!("[{one}; {length}]"),
+        ArrayType::Bounded(_) | ArrayType::Unbounded => format!("Vec<{one}>"),
+    }
+}
+
+fn rust_primitive(ros: &str) -> &'static str {
+    match ros {
+        "bool" => "bool",
+        "int8" => "i8",
+        "uint8" | "byte" | "char" => "u8",
+        "int16" => "i16",
+        "uint16" => "u16",
+        "int32" => "i32",
+        "uint32" => "u32",
+        "int64" => "i64",
+        "uint64" => "u64",
+        "float32" => "f32",
+        "float64" => "f64",
+        "string" => "String",
+        other => panic!("no Rust type for `{other}`: add it here"),
+    }
+}
+
+/// True for lists of bytes, which are written as one block.
+fn is_bytes(field: &FieldInfo) -> bool {
+    rust_type(field) == "Vec<u8>"
+}
+
+fn declaration(field: &FieldInfo) -> String {
+    let of = &field.field_type;
+    match &of.package_name {
+        Some(package) => format!("{package}/{of} {}", field.field_name),
+        None => format!("{of} {}", field.field_name),
+    }
+}
+
+fn constant_declaration(constant: &ConstantInfo) -> String {
+    format!("{} {}", constant.constant_type, constant.constant_name)
+}
+
+fn doc(out: &mut String, depth: usize, line: &str) {
+    let indent = "    ".repeat(depth);
+    let text = line.replace('[', "\\[").replace(']', "\\]").replace('<', "\\<");
+    writeln!(out, "{}", format!("{indent}/// {text}").trim_end()).unwrap();
+}
+
+/// What a .msg file says in words: on top about itself, then above each line about that line.
+struct Comments {
+    head: Vec<String>,
+    of: BTreeMap<String, Vec<String>>,
+}
+
+impl Comments {
+    fn of(source: &str) -> Self {
+        let mut head = Vec::new();
+        let mut of = BTreeMap::new();
+        let mut pending: Vec<String> = Vec::new();
+        for line in source.lines().map(str::trim) {
+            if let Some(comment) = line.strip_prefix('#') {
+                pending.push(comment.trim().to_owned());
+            } else if line.is_empty() {
+                if !head.is_empty() && !pending.is_empty() {
+                    head.push(String::new());
+                }
+                head.append(&mut pending);
+            } else {
+                let name = line.split([' ', '=']).nth(1).unwrap_or_default().to_owned();
+                of.insert(name, std::mem::take(&mut pending));
+            }
+        }
+        Self { head, of }
+    }
+
+    /// The comment of a line; its declaration if it has none.
+    fn write(&self, out: &mut String, name: &str, declaration: &str) {
+        match self.of.get(name).filter(|lines| !lines.is_empty()) {
+            Some(lines) => lines.iter().for_each(|line| doc(out, 2, line)),
+            None => writeln!(out, "        /// `{declaration}`").unwrap(),
+        }
+    }
+}
