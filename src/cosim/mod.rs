@@ -75,13 +75,7 @@ pub struct Coupled {
 
 impl Coupled {
     /// Couples a settled state with the rigid world. The last body of `model` is the table.
-    pub fn new(
-        model: Model,
-        plan: Plan,
-        state: State,
-        world: RapierWorld,
-        limits: Limits,
-    ) -> Self {
+    pub fn new(model: Model, plan: Plan, state: State, world: RapierWorld, limits: Limits) -> Self {
         let n_objects = model.bodies.len() - 1;
         let table = BodyMotion { pose: model.table, twist: Twist::zero() };
         let mut bodies: Vec<BodyMotion> = (0..n_objects).map(|i| world.motion(i)).collect();

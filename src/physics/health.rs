@@ -32,7 +32,9 @@ pub fn check(model: &Model, state: &State, scratch: &Scratch, tick: u64) -> Resu
     let faster = |what, velocities: &[Vec3]| {
         let limit = SPEED_MAX;
         // The comparison is false for NaN, which must not pass.
-        let bad = velocities.iter().position(|v| v.norm_squared().partial_cmp(&(limit * limit)) != Some(std::cmp::Ordering::Less));
+        let bad = velocities.iter().position(|v| {
+            v.norm_squared().partial_cmp(&(limit * limit)) != Some(std::cmp::Ordering::Less)
+        });
         match bad {
             None => Ok(()),
             Some(which) => Err(Diverged {

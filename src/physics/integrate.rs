@@ -19,12 +19,7 @@ pub fn advance(model: &Model, controls: &Controls, scratch: &mut Scratch, state:
 }
 
 /// Returns the largest squared displacement since the lists were built [m²].
-fn advance_grains(
-    model: &Model,
-    scratch: &Scratch,
-    state: &mut State,
-    carried: &Vec3,
-) -> Real {
+fn advance_grains(model: &Model, scratch: &Scratch, state: &mut State, carried: &Vec3) -> Real {
     let dt = model.substep;
     let mut positions = std::mem::take(&mut state.grains.positions);
     let mut velocities = std::mem::take(&mut state.grains.velocities);
@@ -75,7 +70,8 @@ fn advance_membrane(
             for k in 0..positions.len() {
                 let v = chunk * CHUNK + k;
                 if model.is_held || model.membrane.is_clamped[v] {
-                    positions[k] = controls.flange * nalgebra::Point3::from(model.clamped_positions[v])
+                    positions[k] = controls.flange
+                        * nalgebra::Point3::from(model.clamped_positions[v])
                         - nalgebra::Point3::origin();
                     velocities[k] = sums::flange_velocity(controls, &positions[k]);
                 } else {

@@ -99,7 +99,7 @@ impl Check<'_> {
                     object.name.clone(),
                     "is no name for ROS 2 topics and frames".to_owned(),
                     "begin with a letter, then letters, digits and single _, and not one of \
-                     world, gripper_flange, gripper_membrane",
+                     world, gripper_flange, membrane",
                 );
             }
         }
@@ -313,5 +313,5 @@ fn is_ros_name(name: &str) -> bool {
         && name.chars().all(is_letter)
         && !name.contains("__")
         && !name.ends_with('_')
-        && !["world", "gripper_flange", "gripper_membrane"].contains(&name)
+        && !["world", "gripper_flange", "membrane"].contains(&name)
 }

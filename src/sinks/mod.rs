@@ -10,6 +10,11 @@ mod bag_metadata; // what a recording says about itself
 #[cfg(feature = "bag")]
 mod disk; // a file that can be completed on a full disk
 pub mod fanout; // one thread and one queue per sink
+pub mod reach;
+#[cfg(feature = "ros")]
+pub mod ros;
+#[cfg(feature = "shm")]
+pub mod shm;
 
 use std::sync::OnceLock;
 

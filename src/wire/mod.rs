@@ -2,5 +2,6 @@
 
 pub mod from_ros;
 pub mod messages;
+pub mod rows;
 pub mod to_ros;
 pub mod topics;

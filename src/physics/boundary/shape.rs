@@ -265,11 +265,8 @@ fn cuboid(p: &Vec3, half: &Vec3) -> Signed {
 #[inline]
 fn cylinder(p: &Vec3, radius: Real, half_height: Real) -> Signed {
     let from_axis = (p.x * p.x + p.y * p.y).sqrt();
-    let radial = if from_axis > 0.0 {
-        Vec3::new(p.x / from_axis, p.y / from_axis, 0.0)
-    } else {
-        Vec3::x()
-    };
+    let radial =
+        if from_axis > 0.0 { Vec3::new(p.x / from_axis, p.y / from_axis, 0.0) } else { Vec3::x() };
     let axial = Vec3::new(0.0, 0.0, 1.0_f64.copysign(p.z));
     let (beyond_side, beyond_end) = (from_axis - radius, p.z.abs() - half_height);
     if beyond_side > 0.0 && beyond_end > 0.0 {

@@ -30,7 +30,8 @@ fn cube(size: Real, centre: Vec3) -> (Vec<Vec3>, Vec<[u32; 3]>) {
         let side = |bit: u32| if k >> bit & 1 == 1 { 0.5 * size } else { -0.5 * size };
         centre + Vec3::new(side(0), side(1), side(2))
     };
-    let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let faces =
+        [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
     let halves = |[a, b, c, d]: [u32; 4]| [[a, b, c], [a, c, d]];
     ((0..8).map(corner).collect(), faces.into_iter().flat_map(halves).collect())
 }
@@ -108,7 +109,8 @@ fn normals_hold_at_no_distance() {
             let foot = far.surface_point(&p);
             for distance in [1e-9, -1e-9, 1e-13, 0.0] {
                 let near = surface.distance(&(foot + far.normal * distance));
-                let is_smooth = !matches!(surface, Surface::Cuboid { .. } | Surface::Cylinder { .. });
+                let is_smooth =
+                    !matches!(surface, Surface::Cuboid { .. } | Surface::Cylinder { .. });
                 if is_smooth || near.distance.abs() > 1e-10 && far.distance < 0.0 {
                     // Oracle: the normal of the same foot from afar. Tolerance: rounding of the
                     // foot over the radius of curvature, and over the distance near an axis.

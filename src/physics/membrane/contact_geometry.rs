@@ -52,7 +52,7 @@ pub struct Closest {
 }
 
 /// The point of `triangle` closest to `p`.
-#[inline]
+#[inline(always)]
 pub fn closest_on_triangle(p: &Vec3, triangle: [&Vec3; 3]) -> Closest {
     let [a, b, c] = triangle;
     let (ab, ac, ap) = (b - a, c - a, p - a);
@@ -63,7 +63,11 @@ pub fn closest_on_triangle(p: &Vec3, triangle: [&Vec3; 3]) -> Closest {
     let w2 = (bb * pc - bc * pb) * inverse;
     let w0 = 1.0 - w1 - w2;
     if w0.min(w1).min(w2) > ZERO_WEIGHT {
-        return Closest { point: a + ab * w1 + ac * w2, weights: [w0, w1, w2], feature: Feature::Face };
+        return Closest {
+            point: a + ab * w1 + ac * w2,
+            weights: [w0, w1, w2],
+            feature: Feature::Face,
+        };
     }
     // Vertex k faces edge k + 1.
     outside_edges(p, triangle, [w2 <= ZERO_WEIGHT, w0 <= ZERO_WEIGHT, w1 <= ZERO_WEIGHT])

@@ -127,7 +127,9 @@ pub enum MeshFault {
         count: usize,
     },
     /// Two neighbours that disagree about which side is outside.
-    #[error("triangles {first} and {second} run the same way along edge {from}-{to}: turn one over")]
+    #[error(
+        "triangles {first} and {second} run the same way along edge {from}-{to}: turn one over"
+    )]
     Orientation {
         /// One end of the edge.
         from: u32,
@@ -209,9 +211,8 @@ impl Mesh {
 
     fn add_hinge(&mut self, up: Side, down: Side) {
         let edge = index(self.edges.len());
-        let opposite = |side: Side| {
-            self.triangles[side.triangle as usize][(side.place as usize + 2) % 3]
-        };
+        let opposite =
+            |side: Side| self.triangles[side.triangle as usize][(side.place as usize + 2) % 3];
         self.hinges.push(Hinge {
             vertices: [opposite(up), opposite(down), up.low, up.high],
             triangles: [up.triangle, down.triangle],

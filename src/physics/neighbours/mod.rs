@@ -18,10 +18,8 @@ pub fn refresh(model: &Model, state: &mut State, scratch: &mut Scratch) {
         return;
     }
     let lists = &mut scratch.neighbours;
-    let grid = cell_grid::CellGrid::new(
-        &state.grains.positions,
-        2.0 * model.radius_max + model.skin,
-    );
+    let grid =
+        cell_grid::CellGrid::new(&state.grains.positions, 2.0 * model.radius_max + model.skin);
     verlet_list::build(model, &grid, state, lists);
     triangle_list::build(model, &grid, state, lists);
     lists.grain_positions.clone_from(&state.grains.positions);

@@ -5,11 +5,7 @@ use rayon::prelude::*;
 use super::cell_grid::{CellGrid, id};
 use crate::{
     base::Vec3,
-    physics::{
-        Model, State,
-        membrane::contact_geometry::closest_on_triangle,
-        scratch::Neighbours,
-    },
+    physics::{Model, State, membrane::contact_geometry::closest_on_triangle, scratch::Neighbours},
 };
 
 /// Triangles whose grains one thread looks up at a time.

@@ -1,0 +1,128 @@
+//! The only file that reads a clock: how fast the run goes, and waiting where it is too fast.
+
+#![expect(clippy::disallowed_methods, reason = "this is the one file that may read clocks")]
+
+use std::{
+    collections::VecDeque,
+    thread,
+    time::{Duration, Instant, SystemTime, UNIX_EPOCH},
+};
+
+/// Wall time over which the present real-time factor is taken.
+const WINDOW: Duration = Duration::from_secs(1);
+
+/// Measures wall time against simulated time.
+pub struct Pacer {
+    start: Instant,
+    is_real_time: bool,
+    time_ns: u64,
+    /// Wall and simulated time now and then in the last second.
+    marks: VecDeque<(Instant, u64)>,
+}
+
+impl Pacer {
+    /// A pacer whose wall time starts now. In real time, the run waits when it is ahead.
+    pub fn start(is_real_time: bool) -> Self {
+        let start = Instant::now();
+        Self { start, is_real_time, time_ns: 0, marks: VecDeque::from([(start, 0)]) }
+    }
+
+    /// Notes that simulated time has come to `time_ns`, and waits for it in real time.
+    pub fn wait_until(&mut self, time_ns: u64) {
+        self.time_ns = time_ns;
+        if self.is_real_time {
+            let due = self.start + Duration::from_nanos(time_ns);
+            thread::sleep(due.saturating_duration_since(Instant::now()));
+        }
+        self.mark(Instant::now());
+    }
+
+    fn mark(&mut self, now: Instant) {
+        let is_due = |last: &(Instant, u64)| WINDOW / 20 <= now - last.0;
+        if self.marks.back().is_none_or(is_due) {
+            self.marks.push_back((now, self.time_ns));
+        }
+        while 2 < self.marks.len() && WINDOW < now - self.marks[0].0 {
+            self.marks.pop_front();
+        }
+    }
+
+    /// Wall time since the start [s].
+    pub fn wall_time_s(&self) -> f64 {
+        self.start.elapsed().as_secs_f64()
+    }
+
+    /// Simulated over wall time since the start.
+    pub fn real_time_factor_mean(&self) -> f64 {
+        ratio(self.time_ns, self.start.elapsed())
+    }
+
+    /// Simulated over wall time, over the last second of wall time.
+    pub fn real_time_factor(&self) -> f64 {
+        let (wall, time_ns) = self.marks[0];
+        ratio(self.time_ns - time_ns, wall.elapsed())
+    }
+}
+
+fn ratio(time_ns: u64, wall: Duration) -> f64 {
+    let wall = wall.as_secs_f64();
+    if wall == 0.0 { 0.0 } else { Duration::from_nanos(time_ns).as_secs_f64() / wall }
+}
+
+/// A short pause while the run waits for someone.
+pub fn pause() {
+    thread::sleep(Duration::from_millis(5));
+}
+
+/// Wall time as a word for folder names, in UTC: `2026-11-22_15-43-50`.
+pub fn utc_stamp() -> String {
+    let since_epoch = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+    stamp_text(since_epoch.as_secs())
+}
+
+/// Calendar date and time of day of a number of seconds since 1970.
+fn stamp_text(seconds: u64) -> String {
+    let (hour, minute, second) = (seconds / 3600 % 24, seconds / 60 % 60, seconds % 60);
+    let mut day = seconds / 86_400;
+    let mut year = 1970;
+    while days_in_year(year) <= day {
+        day -= days_in_year(year);
+        year += 1;
+    }
+    let february = days_in_year(year) - 337;
+    let months = [31, february, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31];
+    let mut month = 0;
+    while months[month] <= day {
+        day -= months[month];
+        month += 1;
+    }
+    format!("{year}-{:02}-{:02}_{hour:02}-{minute:02}-{second:02}", month + 1, day + 1)
+}
+
+fn days_in_year(year: u64) -> u64 {
+    let is_leap = year % 4 == 0 && (year % 100 != 0 || year % 400 == 0);
+    365 + u64::from(is_leap)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Oracle: `date -u -d @SECONDS`.
+    #[test]
+    fn stamps() {
+        assert_eq!(stamp_text(0), "1970-01-01_00-00-00");
+        assert_eq!(stamp_text(1_709_210_096), "2024-02-29_12-34-56");
+        assert_eq!(stamp_text(1_798_761_599), "2026-12-31_23-59-59");
+    }
+
+    /// Oracle: in real time 50 ms of simulated time take at least 50 ms of wall time.
+    #[test]
+    fn real_time_waits() {
+        let mut pacer = Pacer::start(true);
+        pacer.wait_until(50_000_000);
+        assert!(0.05 <= pacer.wall_time_s());
+        assert!(pacer.real_time_factor_mean() <= 1.0);
+        assert!(pacer.real_time_factor() <= 1.0);
+    }
+}

@@ -1,0 +1,79 @@
+//! Which parts of a snapshot are due at which tick.
+
+use crate::scene::Outputs;
+pub use crate::snapshot::Parts;
+
+/// Rates in simulated time, cut to ticks.
+#[derive(Clone, Copy, Debug)]
+pub struct Schedule {
+    membrane: Rhythm,
+    grains: Rhythm,
+    contacts: Rhythm,
+    statistics: Rhythm,
+}
+
+impl Schedule {
+    /// The rates of `outputs` for ticks of `tick_ns`.
+    pub fn new(outputs: &Outputs, tick_ns: u64) -> Self {
+        let rhythm = |rate| Rhythm::new(rate, tick_ns);
+        Self {
+            membrane: rhythm(outputs.membrane_rate),
+            grains: rhythm(outputs.grains_rate),
+            contacts: rhythm(outputs.contacts_rate),
+            statistics: rhythm(outputs.statistics_rate),
+        }
+    }
+
+    /// What is due at `time_ns`, the end of a tick.
+    pub fn parts(&self, time_ns: u64) -> Parts {
+        Parts {
+            membrane: self.membrane.is_due(time_ns),
+            grains: self.grains.is_due(time_ns),
+            contacts: self.contacts.is_due(time_ns),
+        }
+    }
+
+    /// True if statistics are due at `time_ns`.
+    pub fn statistics(&self, time_ns: u64) -> bool {
+        self.statistics.is_due(time_ns)
+    }
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Rhythm {
+    period_ns: u64,
+    tick_ns: u64,
+}
+
+impl Rhythm {
+    fn new(rate: f64, tick_ns: u64) -> Self {
+        #[expect(clippy::cast_possible_truncation, reason = "it saturates: slower than ever seen")]
+        #[expect(clippy::cast_sign_loss, reason = "rates are checked to be positive")]
+        let period_ns = (1e9 / rate).round() as u64;
+        Self { period_ns: period_ns.max(tick_ns), tick_ns }
+    }
+
+    /// Due in the first tick and then in the first tick of each period.
+    fn is_due(self, time_ns: u64) -> bool {
+        let Some(start_ns) = time_ns.checked_sub(self.tick_ns) else { return true };
+        start_ns % self.period_ns < self.tick_ns
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Oracle: counting. 30 Hz over 10 s are 300 times, though 33.3 ms is no whole tick.
+    #[test]
+    fn rates_are_kept_on_average() {
+        let count = |rate| {
+            let rhythm = Rhythm::new(rate, 1_000_000);
+            (1..=10_000_u64).filter(|tick| rhythm.is_due(tick * 1_000_000)).count()
+        };
+        assert_eq!(count(30.0), 301, "the first tick and 300 periods more, the last cut off");
+        assert_eq!(count(1000.0), 10_000);
+        assert_eq!(count(2.0), 20);
+        assert_eq!(count(0.01), 1);
+    }
+}

@@ -1,0 +1,100 @@
+//! A network of its own for every test that speaks DDS: nothing leaves the host, nothing comes in.
+//!
+//! A test runs its body by starting this very binary again, for this one test, in a network
+//! namespace that has nothing but a loopback interface. Where the system does not allow such a
+//! namespace the test fails and says what to change: it never passes without having run.
+
+use std::{
+    path::PathBuf,
+    process::{Command, Stdio},
+};
+
+use jamgrip::sinks::reach::{Extent, Reach};
+
+/// Set inside the namespace.
+const INSIDE: &str = "JAMGRIP_TEST_PRIVATE_NETWORK";
+/// Printed once the namespace is made and its loopback interface is up.
+const READY: &str = "private network is ready";
+
+/// Brings loopback up and becomes the test. Bare systems have no `ip`; Python does it as well.
+const ENTER: &str = r#"
+ip link set lo up 2>/dev/null || python3 -c '
+import fcntl, socket, struct
+s = socket.socket()
+IFF_UP, SIOCGIFFLAGS, SIOCSIFFLAGS = 1, 0x8913, 0x8914
+flags = struct.unpack("16sh14x", fcntl.ioctl(s, SIOCGIFFLAGS, struct.pack("16sh14x", b"lo", 0)))[1]
+fcntl.ioctl(s, SIOCSIFFLAGS, struct.pack("16sh14x", b"lo", flags | IFF_UP))
+' || exit 1
+echo "private network is ready"
+exec "$0" "$@"
+"#;
+
+/// Runs `body` for the test of this name, inside a private network.
+pub(crate) fn inside(test: &str, body: impl FnOnce()) {
+    if std::env::var_os(INSIDE).is_some() {
+        return body();
+    }
+    let here = std::env::current_exe().unwrap();
+    let first = if is_root() { "-n" } else { "-rn" };
+    let mut tried = String::new();
+    for option in [first, "-rn"] {
+        let output = Command::new("unshare")
+            .args([option, "sh", "-c", ENTER])
+            .arg(&here)
+            .args(["--exact", test, "--nocapture"])
+            .env(INSIDE, "1")
+            .stdin(Stdio::null())
+            .output()
+            .unwrap_or_else(|it| panic!("`unshare` (util-linux) is not there: {it}; install it"));
+        let said = String::from_utf8_lossy(&output.stdout).into_owned();
+        let fault = String::from_utf8_lossy(&output.stderr).into_owned();
+        if said.contains(READY) {
+            assert!(said.contains("1 passed") || !output.status.success(), "no test `{test}`");
+            assert!(output.status.success(), "in its own network `{test}` said:\n{said}\n{fault}");
+            return;
+        }
+        tried += &format!("unshare {option}: {}\n", fault.trim());
+    }
+    panic!(
+        "`{test}` DID NOT RUN: this system allows no private network, and DDS tests never use \
+         another.\n{tried}Run as root, with CAP_SYS_ADMIN in a container, or allow unprivileged user \
+         namespaces (sysctl kernel.unprivileged_userns_clone=1, \
+         kernel.apparmor_restrict_unprivileged_userns=0)."
+    );
+}
+
+/// As `inside`, with the Python peers set up while there is still a network to get them from.
+pub(crate) fn inside_with_peers(test: &str, body: impl FnOnce()) {
+    crate::peers::python();
+    inside(test, body);
+}
+
+/// A domain of this process alone, on this host alone.
+pub(crate) fn reach() -> Reach {
+    let id = u16::try_from(std::process::id() % 200).unwrap();
+    Reach { domain_id: 1 + id, extent: Extent::Host }
+}
+
+/// A file for CycloneDDS: loopback only, found without multicast.
+pub(crate) fn cyclone_config(folder: &std::path::Path) -> PathBuf {
+    let path = folder.join("cyclonedds.xml");
+    let text = r#"<CycloneDDS><Domain id="any">
+  <General>
+    <Interfaces><NetworkInterface name="lo" multicast="false"/></Interfaces>
+    <AllowMulticast>false</AllowMulticast>
+  </General>
+  <Discovery>
+    <ParticipantIndex>auto</ParticipantIndex>
+    <MaxAutoParticipantIndex>32</MaxAutoParticipantIndex>
+    <Peers><Peer address="127.0.0.1"/></Peers>
+  </Discovery>
+</Domain></CycloneDDS>
+"#;
+    std::fs::write(&path, text).unwrap();
+    path
+}
+
+fn is_root() -> bool {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    status.lines().any(|it| it.starts_with("Uid:\t0\t"))
+}
