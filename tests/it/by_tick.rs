@@ -5,10 +5,11 @@ use jamgrip::{
         Pose, Tick, Vec3,
         real::{Twist, Wrench},
     },
+    command::CommandCounts,
     scene,
     snapshot::{
-        BodySnapshot, ChamberSnapshot, CommandCounts, GrainsSnapshot, JammingSnapshot,
-        MembraneSnapshot, ObjectSnapshot, Snapshot, view::View,
+        BodySnapshot, ChamberSnapshot, GrainsSnapshot, JammingSnapshot, MembraneSnapshot,
+        ObjectSnapshot, Snapshot, view::View,
     },
 };
 

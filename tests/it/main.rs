@@ -8,4 +8,5 @@ mod synthetic; // a scene and snapshots made up for tests
 mod peers; // Python, with other people's implementations of what we speak
 mod private_network; // where tests may speak DDS
 mod ros_loop; // what goes out reaches others, what others say comes in
+mod scenes; // scenes that run, scenes that are refused
 mod stream; // what other processes read in shared memory

@@ -7,15 +7,15 @@ use jamgrip::{
         Pose, Quat, Tick, Vec3,
         real::{Twist, Wrench},
     },
-    command::{Command, CommandRecord, Outcome, PoseCommand, Refusal},
+    command::{Command, CommandCounts, CommandRecord, Outcome, PoseCommand, Refusal},
     scene::{
         Bag, Chamber, Controller, Flange, Grains, Material, Membrane, Object, OnError, OnFull,
         Outputs, Ros, Scene, Shape, Table, Time,
     },
     sinks::{Packet, RunStatistics, SinkCounters},
     snapshot::{
-        BodySnapshot, ChamberSnapshot, CommandCounts, ContactSnapshot, GrainsSnapshot,
-        JammingSnapshot, MembraneSnapshot, ObjectSnapshot, Snapshot,
+        BodySnapshot, ChamberSnapshot, ContactSnapshot, GrainsSnapshot, JammingSnapshot,
+        MembraneSnapshot, ObjectSnapshot, Snapshot,
     },
     wire::to_ros::Encoder,
 };
