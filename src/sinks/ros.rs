@@ -15,9 +15,10 @@ use std::{
 };
 
 use ros2_client::{
-    Context, MessageTypeName, Name, Node, NodeName, NodeOptions, Publisher, Subscription,
+    Context, MessageTypeName, Name, Node, NodeName, NodeOptions,
     qos::{Durability, History, QosProfile, Reliability, WhenFull},
 };
+pub use ros2_client::{Publisher, Subscription};
 use rustdds::DomainParticipantBuilder;
 use serde::{Serialize, Serializer, ser::SerializeTuple};
 
@@ -156,7 +157,7 @@ impl RosNode {
         writers.iter().filter(|it| it.publication_topic_data.topic_name == name).count()
     }
 
-    /// Opens a topic for writing.
+    /// Opens a topic for writing. The port is good for as long as the node is kept.
     ///
     /// # Errors
     /// When its name or type is not one of ROS 2.
@@ -164,7 +165,7 @@ impl RosNode {
         self.open(topic, |node, it| node.create_publisher(it, None))
     }
 
-    /// Opens a topic for reading.
+    /// Opens a topic for reading. The port is good for as long as the node is kept.
     ///
     /// # Errors
     /// When its name or type is not one of ROS 2.

@@ -1,12 +1,14 @@
 //! A made-up system whose every number follows from its tick, so that readers can check them.
 
+use std::path::{Path, PathBuf};
+
 use jamgrip::{
     base::{
         Pose, Tick, Vec3,
         real::{Twist, Wrench},
     },
     command::CommandCounts,
-    scene,
+    scene::{Scene, load},
     snapshot::{
         BodySnapshot, ChamberSnapshot, GrainsSnapshot, JammingSnapshot, MembraneSnapshot,
         ObjectSnapshot, Snapshot, view::View,
@@ -91,6 +93,11 @@ impl Synthetic {
         }
     }
 
+    /// Puts all grains and vertices at one height.
+    pub(crate) fn lift_lists_to(&mut self, height: f64) {
+        self.positions.iter_mut().chain(&mut self.vertices).for_each(|it| it.z = height);
+    }
+
     /// The grains as a snapshot has them when they are due.
     pub(crate) fn grains(&self) -> GrainsSnapshot {
         GrainsSnapshot {
@@ -127,87 +134,26 @@ impl Synthetic {
     }
 }
 
-/// A scene whose only object is called `cylinder`; what leaves the process follows from its rates.
-pub(crate) fn scene() -> scene::Scene {
-    let material = scene::Material { youngs_modulus: 1e9, poisson_ratio: 0.3, density: 7800.0 };
-    scene::Scene {
-        name: "synthetic".to_owned(),
-        seed: 1,
-        time: scene::Time { tick_ns: 1_000_000, substep: None, safety: 0.2 },
-        gravity: Vec3::new(0.0, 0.0, -9.81),
-        grains: scene::Grains {
-            count: N_GRAINS,
-            radius_min: 0.0015,
-            radius_max: 0.0025,
-            material,
-            friction: 0.3,
-            dissipation_time: 1e-6,
-            tangential_damping: 0.1,
-        },
-        membrane: scene::Membrane {
-            radius: 0.04,
-            frequency: 16,
-            thickness: 0.0003,
-            material,
-            friction: 0.5,
-            spring_damping: 0.1,
-            bending_stiffness: 1e-6,
-            bending_damping: 1e-9,
-            rest_length_shrink: 0.0,
-            fill_stretch: 1.0,
-            dissipation_time: 1e-6,
-            tangential_damping: 0.1,
-        },
-        chamber: scene::Chamber {
-            ambient: 101_325.0,
-            gauge_min: -90e3,
-            gauge_max: 5e3,
-            lag: 0.05,
-            rate_max: 1e6,
-        },
-        flange: scene::Flange {
-            pose: Pose::identity(),
-            speed_max: 0.2,
-            acceleration_max: 2.0,
-            angular_speed_max: 1.0,
-            angular_acceleration_max: 10.0,
-        },
-        table: scene::Table { height: 0.0, friction: 0.5 },
-        objects: vec![scene::Object {
-            name: "cylinder".to_owned(),
-            shape: scene::Shape::Cylinder { radius: 0.015, height: 0.04 },
-            material,
-            friction: 0.5,
-            pose: Pose::identity(),
-            drive_timeout: 0.5,
-        }],
-        controller: scene::Controller::Topics { duration: None },
-        outputs: outputs(),
-    }
+/// The scene of the main job; its object is called `cylinder`.
+pub(crate) fn scene() -> Scene {
+    load(&main_scene(), &["outputs.state_rate=250 Hz".to_owned()]).unwrap()
 }
 
-fn outputs() -> scene::Outputs {
-    scene::Outputs {
-        state_rate: 250.0,
-        pressure_rate: 100.0,
-        membrane_rate: 30.0,
-        grains_rate: 30.0,
-        contacts_rate: 30.0,
-        statistics_rate: 1.0,
-        grains_count_max: 5000,
-        ros: scene::Ros { enabled: true, domain_id: None, lan: false },
-        stream: true,
-        bag: scene::Bag {
-            enabled: false,
-            folder: None,
-            on_full: scene::OnFull::Wait,
-            on_error: scene::OnError::Continue,
-        },
-        real_time: false,
-    }
+/// The file of the main job's scene.
+pub(crate) fn main_scene() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("launch_configs/pick_and_lift.yaml")
 }
 
 /// Whole numbers as reals, exact.
 pub(crate) fn number(count: u64) -> f64 {
     f64::from(u32::try_from(count).unwrap())
+}
+
+/// An example that `cargo test` has built beside this binary.
+pub(crate) fn example(name: &str) -> PathBuf {
+    let here = std::env::current_exe().unwrap();
+    let profile = here.parent().and_then(|it| it.parent()).unwrap();
+    let path = profile.join("examples").join(name);
+    assert!(path.exists(), "{} is missing: run the whole of `cargo test`", path.display());
+    path
 }

@@ -1,7 +1,6 @@
 //! Zero-copy streams: what a reader on this host sees, and that no reader can hold up the writer.
 
 use std::{
-    path::PathBuf,
     process::{Command, Stdio},
     time::{Duration, Instant},
 };
@@ -11,7 +10,7 @@ use jamgrip::{
     wire::rows::StateRow,
 };
 
-use crate::by_tick::{N_GRAINS, N_VERTICES, Synthetic, number};
+use crate::by_tick::{N_GRAINS, N_VERTICES, Synthetic, example, number};
 
 /// A name that no other test on this host uses.
 fn prefix(what: &str) -> String {
@@ -140,15 +139,6 @@ fn a_second_writer_is_told_how_to_choose_a_name() {
     let _first = Stream::open(&prefix, 1, 1).unwrap();
     let error = Stream::open(&prefix, 1, 1).err().expect("one writer per name").to_string();
     assert!(error.contains(&prefix) && error.contains(PREFIX_VARIABLE), "{error}");
-}
-
-/// An example that `cargo test` has built beside this binary.
-fn example(name: &str) -> PathBuf {
-    let here = std::env::current_exe().unwrap();
-    let profile = here.parent().and_then(|it| it.parent()).unwrap();
-    let path = profile.join("examples").join(name);
-    assert!(path.exists(), "{} is missing: run the whole of `cargo test`", path.display());
-    path
 }
 
 /// Equal bit by bit: the streams copy, they do not compute.

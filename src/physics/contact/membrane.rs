@@ -6,13 +6,26 @@
 //! the rule of priorities (face before edge before vertex) of Götz (2024), section 3.2.3, stated
 //! by depth, so that force, direction and point are continuous when a grain moves over an edge.
 //!
-//! In the flat valley between two triangles both faces can hold a local minimum with almost the
-//! same normal: that is one patch of a smooth sheet, and only its deepest point counts. The
-//! friction spring belongs to the patch, not to the triangle: it is handed on by direction.
+//! In the valley between two triangles both faces can hold a local minimum. If their normals are
+//! nearly the same, that is one patch of a smooth sheet and must not count twice; if they are far
+//! apart, the grain lies in a fold and is held from both sides. In between, and while a minimum
+//! wanders into a face over its edge, the forces are shared out without a jump:
+//!
+//! ```text
+//! F_i = c_i F(ξ_i),   c_i = q_i / (q_i + Σ_(j≠i) s_ij q_j),   q_i = ξ_i g_i
+//! ```
+//!
+//! s_ij falls from 1 to nearly 0 as the angle between the normals grows from 10° to 45°, and g_i
+//! grows with the distance of the contact point from the edge of its triangle. A contact that is
+//! alone has c = 1. A jump here would be a force of the order of 1 N on a vertex of 5 mg.
+//!
+//! The friction spring belongs to the patch, not to the triangle: it is handed on by direction.
+
+use arrayvec::ArrayVec;
 
 use super::law::{self, Touch};
 use crate::{
-    base::{Real, Vec3},
+    base::{Real, Vec3, parallel},
     physics::{
         Model,
         membrane::contact_geometry::{Feature, closest_on_triangle},
@@ -21,8 +34,16 @@ use crate::{
     },
 };
 
-/// Cosine of the angle between normals below which two contacts are patches of their own (20°).
-const SAME_PATCH: Real = 0.94;
+/// Cosine of the angle between normals up to which two contacts are one patch (10°).
+const ONE_PATCH: Real = 0.985;
+/// Cosine of the angle beyond which they are two (45°).
+const TWO_PATCHES: Real = 0.707;
+/// What two patches far apart still know of each other: makes a new one grow in smoothly.
+const APART: Real = 0.05;
+/// Share g of a contact on an edge or a vertex.
+const ON_EDGE: Real = 0.03;
+/// Barycentric distance from the edge at which a contact on a face has its full share.
+const ON_FACE: Real = 0.15;
 /// Cosine of the angle to its former normal within which a patch is recognised (45°).
 const SAME_HISTORY: Real = 0.7;
 /// Squared distances that differ by less than this share are equal.
@@ -40,44 +61,81 @@ struct Touched {
     distance_squared: Real,
 }
 
-/// Forces of the membrane on grain `i`; carries its springs on by one substep.
+/// Forces of the membrane on all grains; carries their springs on by one substep.
 pub fn forces(
     model: &Model,
     state: &State,
     lists: &Neighbours,
+    springs: &mut [Patches],
+    patch_forces: &mut Vec<PatchForces>,
+) {
+    patch_forces.resize(springs.len(), PatchForces::NONE);
+    parallel::for_each_of_two(patch_forces, springs, |i, force, patches| {
+        let range = lists.triangle_starts[i] as usize..lists.triangle_starts[i + 1] as usize;
+        if range.is_empty() {
+            // Most grains are inside the packing: nothing but the counts is touched.
+            (force.n, patches.n) = (0, 0);
+        } else {
+            on_grain(model, state, i, &lists.triangles[range], patches, force);
+        }
+    });
+}
+
+fn on_grain(
+    model: &Model,
+    state: &State,
     i: usize,
+    candidates: &[u32],
     patches: &mut Patches,
-) -> PatchForces {
-    let range = lists.triangle_starts[i] as usize..lists.triangle_starts[i + 1] as usize;
-    let mut touched = [None; N_TOUCHED];
-    let n = touching(model, state, i, &lists.triangles[range], &mut touched);
-    let mut result = PatchForces::NONE;
-    let before = *patches;
-    patches.n = 0;
-    if n == 0 {
-        return result;
+    result: &mut PatchForces,
+) {
+    let touched = touching(model, state, i, candidates);
+    let mut contacts = ArrayVec::<(&Touched, Vec3), N_PATCHES>::new();
+    for contact in &touched {
+        if !contacts.is_full() && is_local_minimum(model, contact, &touched) {
+            contacts.push((contact, contact.from_membrane / contact.distance_squared.sqrt()));
+        }
     }
-    for contact in touched[..n].iter().flatten() {
-        if result.n == N_PATCHES {
-            break;
-        }
-        let normal = contact.from_membrane / contact.distance_squared.sqrt();
-        let is_local = is_local_minimum(model, contact, &touched[..n]);
-        let known = patches.slots[..patches.n].iter().any(|p| p.normal.dot(&normal) > SAME_PATCH);
-        if !is_local || known {
-            continue;
-        }
-        let spring = spring_of(&before, &normal);
-        let mut patch = Patch { spring, normal };
+    let (before, n_before) = (patches.slots, patches.n);
+    patches.n = contacts.len();
+    result.n = contacts.len();
+    result.torque = Vec3::zeros();
+    result.is_outside = false;
+    for (slot, (contact, normal)) in contacts.iter().enumerate() {
+        let share = share(slot, &contacts, state.grains.radii[i]);
+        let spring = spring_of(&before[..n_before], normal);
+        let mut patch = Patch { spring, normal: *normal };
         let (force, torque) = of_patch(model, state, i, contact, &mut patch);
         result.is_outside |= contact.is_outside(model, state);
-        result.contacts[result.n] = force;
-        result.torque += torque;
-        result.n += 1;
-        patches.slots[patches.n] = patch;
-        patches.n += 1;
+        result.contacts[slot] =
+            PatchForce { force: force.force * share, normal: force.normal * share, ..force };
+        result.torque += torque * share;
+        patches.slots[slot] = patch;
     }
-    result
+}
+
+/// Share c of the force that contact `slot` takes.
+fn share(slot: usize, contacts: &[(&Touched, Vec3)], radius: Real) -> Real {
+    if contacts.len() == 1 {
+        return 1.0;
+    }
+    let weight = |contact: &Touched| {
+        let overlap = radius - contact.distance_squared.sqrt();
+        let from_edge = contact.weights.iter().copied().fold(1.0, Real::min);
+        overlap * (ON_EDGE + (1.0 - ON_EDGE) * (from_edge / ON_FACE).min(1.0))
+    };
+    let (own, normal) = &contacts[slot];
+    let own = weight(own);
+    let mut all = own;
+    for (other, (contact, other_normal)) in contacts.iter().enumerate() {
+        if other != slot {
+            let likeness = (normal.dot(other_normal) - TWO_PATCHES) / (ONE_PATCH - TWO_PATCHES);
+            let likeness = likeness.clamp(0.0, 1.0);
+            let smooth = likeness * likeness * (3.0 - 2.0 * likeness);
+            all += (APART + (1.0 - APART) * smooth) * weight(contact);
+        }
+    }
+    own / all
 }
 
 /// Triangles that grain `i` overlaps, deepest first.
@@ -86,17 +144,16 @@ fn touching(
     state: &State,
     i: usize,
     candidates: &[u32],
-    touched: &mut [Option<Touched>; N_TOUCHED],
-) -> usize {
+) -> ArrayVec<Touched, N_TOUCHED> {
     let (position, radius) = (state.grains.positions[i], state.grains.radii[i]);
-    let mut n = 0;
+    let mut touched = ArrayVec::<Touched, N_TOUCHED>::new();
     for &triangle in candidates {
         let corners = model.membrane.mesh.triangles[triangle as usize]
             .map(|vertex| &state.membrane.positions[vertex as usize]);
         let closest = closest_on_triangle(&position, corners);
         let from_membrane = position - closest.point;
         let distance_squared = from_membrane.norm_squared();
-        if distance_squared >= radius * radius || distance_squared == 0.0 || n == N_TOUCHED {
+        if distance_squared >= radius * radius || distance_squared == 0.0 || touched.is_full() {
             continue;
         }
         let contact = Touched {
@@ -106,20 +163,16 @@ fn touching(
             from_membrane,
             distance_squared,
         };
-        let deeper = |other: &Option<Touched>| {
-            other.is_some_and(|other| other.distance_squared <= distance_squared)
-        };
-        let place = touched[..n].iter().position(|other| !deeper(other)).unwrap_or(n);
-        touched.copy_within(place..n, place + 1);
-        touched[place] = Some(contact);
-        n += 1;
+        let is_deeper = |other: &Touched| distance_squared < other.distance_squared;
+        let place = touched.iter().position(is_deeper).unwrap_or(touched.len());
+        touched.insert(place, contact);
     }
-    n
+    touched
 }
 
 /// True if no triangle that shares the contact's edge or vertex has a closer point, or holds the
 /// same point with higher priority.
-fn is_local_minimum(model: &Model, contact: &Touched, touched: &[Option<Touched>]) -> bool {
+fn is_local_minimum(model: &Model, contact: &Touched, touched: &[Touched]) -> bool {
     let triangles = &model.membrane.mesh.triangles;
     let corners = triangles[contact.triangle as usize];
     let shared: [Option<u32>; 2] = match contact.feature {
@@ -143,13 +196,13 @@ fn is_local_minimum(model: &Model, contact: &Touched, touched: &[Option<Touched>
             || (difference <= tolerance
                 && (yours > mine || (yours == mine && other.triangle < contact.triangle)))
     };
-    !touched.iter().flatten().any(beats)
+    !touched.iter().any(beats)
 }
 
 /// The spring of the patch that had nearly this normal, if there was one.
-fn spring_of(before: &Patches, normal: &Vec3) -> Vec3 {
+fn spring_of(before: &[Patch], normal: &Vec3) -> Vec3 {
     let mut best = (SAME_HISTORY, Vec3::zeros());
-    for patch in &before.slots[..before.n] {
+    for patch in before {
         let likeness = patch.normal.dot(normal);
         if likeness > best.0 {
             best = (likeness, patch.spring);

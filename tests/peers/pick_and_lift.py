@@ -1,0 +1,217 @@
+"""Commands the whole pick-and-lift over ROS 2 topics, from an independent DDS implementation.
+
+An own small controller, not the project's: it comes down until it feels the object, pushes in,
+evacuates, lifts, holds, puts back and lets go. Meanwhile it reads force, poses, vacuum, membrane
+and grains. Prints one JSON line with what it saw.
+"""
+
+import json
+import math
+import sys
+import time
+
+import ros_types as t
+from ros_node import Node, columns, wait_for
+
+OBJECT = sys.argv[1] if len(sys.argv) > 1 else "cylinder"
+TRAVEL_M_S, PUSH_M_S = 0.05, 0.01
+TOUCH_N, PUSH_MAX_N, PUSH_M = 0.1, 60.0, 0.028
+GRIP_PA = float(sys.argv[2]) if len(sys.argv) > 2 else -90e3
+VENT_PA, SETTLE_S, HOLD_S, VENT_S = 5e3, 0.2, 1.5, 0.5
+LIFT_M, RETREAT_M = 0.100, 0.060
+PERIOD_S = 0.01
+SILENCE_S = 60.0  # wall time
+
+node = Node()
+clock = node.subscribe("/clock", t.Clock, depth=1000)
+wrench = node.subscribe("/jamgrip/wrench", t.WrenchStamped, depth=1000)
+flange = node.subscribe("/jamgrip/flange/pose", t.PoseStamped, depth=1000)
+thing = node.subscribe(f"/jamgrip/object/{OBJECT}/pose", t.PoseStamped, depth=1000)
+vacuum = node.subscribe("/jamgrip/vacuum_state", t.VacuumState, depth=1000)
+grains = node.subscribe("/jamgrip/grains", t.PointCloud2, depth=1)
+membrane = node.subscribe("/jamgrip/membrane", t.PointCloud2, depth=1)
+vacuum_cmd = node.publish("/jamgrip/vacuum_cmd", t.Float64)
+flange_cmd = node.publish("/jamgrip/flange/pose_cmd", t.PoseStamped)
+wait_for(vacuum_cmd.get_matched_subscriptions, "the vacuum's subscriber", 300.0)
+wait_for(flange_cmd.get_matched_subscriptions, "the flange's subscriber", 300.0)
+
+
+class Seen:
+    """The newest of every topic, and what was counted."""
+
+    now = None
+    force = None
+    flange = None
+    object = None
+    gauge = None
+    grain_heights = None
+    vertex_heights = None
+    n_clouds = 0
+    n_sheets = 0
+    hold_forces = []
+    holding = False
+
+    def look(self):
+        for it in clock.take(N=1000):
+            self.now = it.clock.seconds()
+        for it in wrench.take(N=1000):
+            assert it.header.frame_id == "gripper_flange", it.header.frame_id
+            self.force = it.wrench.force
+            if self.holding:
+                self.hold_forces.append(self.force.z)
+        for it in flange.take(N=1000):
+            self.flange = it.pose
+        for it in thing.take(N=1000):
+            self.object = it.pose.position
+        for it in vacuum.take(N=1000):
+            self.gauge = it.gauge
+        for it in grains.take(N=1):
+            read = columns(it)
+            self.grain_heights = read["z"]
+            assert all(math.isfinite(it) for it in read["z"] + read["fn"]), "grains are finite"
+            self.n_clouds += 1
+        for it in membrane.take(N=1):
+            read = columns(it)
+            self.vertex_heights = read["z"]
+            assert all(math.isfinite(it) for it in read["z"] + read["strain"]), "vertices are finite"
+            self.n_sheets += 1
+
+    def is_complete(self):
+        parts = (self.now, self.force, self.flange, self.object, self.gauge)
+        return all(it is not None for it in parts + (self.grain_heights, self.vertex_heights))
+
+    def push(self):
+        return math.sqrt(self.force.x**2 + self.force.y**2 + self.force.z**2)
+
+
+seen = Seen()
+heard_at = time.monotonic()
+called_at = -1e9
+while not seen.is_complete():
+    assert time.monotonic() - heard_at < 300.0, "the run did not begin"
+    if 0.5 < time.monotonic() - called_at:
+        vacuum_cmd.write(t.Float64(0.0))  # the run waits for a first command
+        called_at = time.monotonic()
+    seen.look()
+    time.sleep(0.001)
+
+position = [seen.object.x, seen.object.y, seen.flange.position.z]
+upright = seen.flange.orientation
+pressure = 0.0
+trace = []
+
+
+def run_until(is_over, speed=0.0, goal=None):
+    """Moves the set-point to height `goal` at `speed` until it is there or `is_over()`."""
+    global heard_at
+    said_at = seen.now
+    while True:
+        before = seen.now
+        seen.look()
+        if seen.now == before:
+            assert time.monotonic() - heard_at < SILENCE_S, "the clock stands still"
+            time.sleep(0.0005)
+            continue
+        heard_at = time.monotonic()
+        if is_over():
+            return True
+        step = seen.now - said_at
+        if PERIOD_S <= step:
+            said_at = seen.now
+            if goal is not None:
+                left = goal - position[2]
+                if abs(left) < 1e-9:
+                    return False
+                position[2] += math.copysign(min(abs(left), speed * step), left)
+            pose = t.Pose(t.Point(*position), upright)
+            flange_cmd.write(t.PoseStamped(t.Header(t.Time(), "world"), pose))
+            vacuum_cmd.write(t.Float64(pressure))
+
+
+def after(seconds):
+    """True when so much simulated time has passed since the call."""
+    end = seen.now + seconds
+    return lambda: end <= seen.now
+
+
+def never():
+    return False
+
+
+def mark(name):
+    trace.append([name, round(seen.now, 3), round(seen.object.z, 5), round(seen.push(), 3)])
+
+
+run_until(after(0.1))
+mark("approach")
+felt = run_until(lambda: TOUCH_N <= seen.push(), TRAVEL_M_S, seen.object.z)
+assert felt, "came down to the object's centre and felt nothing"
+mark("push")
+peak_n = 0.0
+
+
+def pushed_enough():
+    global peak_n
+    peak_n = max(peak_n, seen.push())
+    return PUSH_MAX_N <= seen.push()
+
+
+run_until(pushed_enough, PUSH_M_S, position[2] - PUSH_M)
+run_until(after(SETTLE_S))
+mark("evacuate")
+pressure = GRIP_PA
+gripped = run_until(lambda g=after(5.0): seen.gauge <= 0.95 * GRIP_PA or g())
+reached_pa = seen.gauge
+run_until(after(SETTLE_S))
+rest_z, cloud_z = seen.object.z, sum(seen.grain_heights) / len(seen.grain_heights)
+mark("lift")
+run_until(never, TRAVEL_M_S, position[2] + LIFT_M)
+run_until(after(SETTLE_S))
+mark("hold")
+hold_from, lowest, highest = seen.now, math.inf, -math.inf
+end = after(HOLD_S)
+seen.holding = True
+
+
+def held():
+    global lowest, highest
+    lowest, highest = min(lowest, seen.object.z), max(highest, seen.object.z)
+    return end()
+
+
+run_until(held)
+seen.holding = False
+held_s = seen.now - hold_from
+cloud_lifted = sum(seen.grain_heights) / len(seen.grain_heights) - cloud_z
+mark("lower")
+run_until(never, TRAVEL_M_S, position[2] - max(0.0, seen.object.z - rest_z) + 0.005)
+run_until(lambda: False, PUSH_M_S, position[2] - 0.005)
+pressure = VENT_PA
+run_until(after(VENT_S))
+mark("retreat")
+pressure = 0.0
+run_until(never, TRAVEL_M_S, position[2] + RETREAT_M)
+run_until(after(SETTLE_S))
+mark("end")
+
+print(
+    json.dumps(
+        {
+            "lifted_m": lowest - rest_z,
+            "held_s": held_s,
+            "peak_push_n": peak_n,
+            "gauge_reached_pa": reached_pa,
+            "hold_force_z_n": sum(seen.hold_forces) / len(seen.hold_forces),
+            "n_hold_forces": len(seen.hold_forces),
+            "cloud_lifted_m": cloud_lifted,
+            "n_grains": len(seen.grain_heights),
+            "n_vertices": len(seen.vertex_heights),
+            "n_clouds": seen.n_clouds,
+            "n_sheets": seen.n_sheets,
+            "put_back_m": seen.object.z - rest_z,
+            "let_go_n": seen.push(),
+            "trace": trace,
+        }
+    ),
+    flush=True,
+)
