@@ -11,6 +11,7 @@ mod main_job; // the main job, commanded from other processes
 mod peers; // independent programs in Python
 mod private_network; // where tests may speak DDS
 mod ros_loop; // what goes out reaches others, what others say comes in
+mod scenes; // scenes that run, scenes that are refused
 mod stream; // what other processes read in shared memory
 mod synthetic; // a scene and snapshots made up for tests
 mod toy_run; // a whole run with a toy for physics
