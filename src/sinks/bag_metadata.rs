@@ -42,6 +42,8 @@ pub(super) fn file_text(topics: &[Topic], contents: &Contents, file_name: &str) 
 pub(super) fn information(topics: &[Topic], contents: &Contents, file_name: &str) -> String {
     let (first, last) = contents.times.unwrap_or_default();
     let (duration, n_messages) = (last - first, contents.n_messages());
+    // A JSON string is a YAML string too, whatever characters the folder's name has.
+    let file_name = serde_json::Value::from(file_name);
     let topics: String = topics.iter().zip(&contents.counts).map(topic).collect();
     format!(
         "version: 9

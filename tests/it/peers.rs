@@ -1,34 +1,41 @@
-//! Python peers of the tests: an environment of their own under `target/peers`.
+//! Independent programs in Python that read what we write, and say what we read.
+//!
+//! Their packages live in a virtual environment of their own, `target/peers`, which is made on
+//! first use and when `tests/peers/requirements.txt` changes.
 
 use std::{
-    fs::File,
+    fs::{self, File},
     path::{Path, PathBuf},
-    process::Command,
+    process::{Command, Output},
     sync::OnceLock,
 };
 
-const REQUIREMENTS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/peers/requirements.txt");
-const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/target/peers");
+const SCRIPTS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/peers");
 
-/// The Python that has all of `tests/peers/requirements.txt`; made at first use.
+/// Python with the packages of `tests/peers/requirements.txt`.
 pub(crate) fn python() -> &'static Path {
     static PYTHON: OnceLock<PathBuf> = OnceLock::new();
     PYTHON.get_or_init(|| {
-        let folder = Path::new(FOLDER);
-        std::fs::create_dir_all(folder).unwrap();
+        let environment = Path::new(env!("CARGO_TARGET_TMPDIR")).parent().unwrap().join("peers");
+        fs::create_dir_all(&environment).unwrap();
         // Another test process may be at it too.
-        let lock = File::create(folder.join("lock")).unwrap();
+        let lock = File::create(environment.join("lock")).unwrap();
         lock.lock().unwrap();
-        let python = folder.join("bin/python");
-        let wanted = std::fs::read_to_string(REQUIREMENTS).unwrap();
-        let stamp = folder.join("installed.txt");
-        if std::fs::read_to_string(&stamp).ok().as_ref() != Some(&wanted) {
-            let bare = "Debian and Ubuntu need `apt install python3 python3-venv`";
-            run(Command::new("python3").args(["-m", "venv"]).arg(folder), bare);
-            let network = "the first run of the tests needs the network, later ones do not";
+        let (python, installed) =
+            (environment.join("bin/python"), environment.join("installed.txt"));
+        let requirements = Path::new(SCRIPTS).join("requirements.txt");
+        let wanted = fs::read_to_string(&requirements).unwrap();
+        if fs::read_to_string(&installed).ok().as_deref() != Some(&wanted) {
+            must_run(
+                Command::new("python3").args(["-m", "venv"]).arg(&environment),
+                "install the system packages python3 and python3-venv",
+            );
             let pip = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "-r"];
-            run(Command::new(&python).args(pip).arg(REQUIREMENTS), network);
-            std::fs::write(stamp, wanted).unwrap();
+            must_run(
+                Command::new(&python).args(pip).arg(requirements),
+                "the packages of tests/peers/requirements.txt come from PyPI: check the network",
+            );
+            fs::write(installed, wanted).unwrap();
         }
         python
     })
@@ -36,15 +43,37 @@ pub(crate) fn python() -> &'static Path {
 
 /// A script of `tests/peers`, ready to run.
 pub(crate) fn script(name: &str) -> Command {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/peers").join(name);
-    assert!(path.exists(), "{} is missing", path.display());
     let mut command = Command::new(python());
-    command.arg(path);
+    command.arg(Path::new(SCRIPTS).join(name));
     command
 }
 
-fn run(command: &mut Command, remedy: &str) {
-    let output = command.output().unwrap_or_else(|it| panic!("{command:?}: {it}; {remedy}"));
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{command:?} failed: {said}\n{remedy}");
+/// Runs a script of `tests/peers` and returns what it wrote; panics with its complaints if it fails.
+pub(crate) fn run(name: &str, arguments: &[&str]) -> String {
+    let output = must_run(script(name).args(arguments), "see what it says");
+    String::from_utf8(output.stdout).unwrap()
+}
+
+fn must_run(command: &mut Command, remedy: &str) -> Output {
+    let output = command.output().unwrap_or_else(|e| panic!("{command:?}: {e}; {remedy}"));
+    let (said, complained) =
+        (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    assert!(output.status.success(), "{command:?} failed: {said}{complained}; {remedy}");
+    output
+}
+
+#[test]
+fn standard_messages_are_those_of_rosbags() {
+    // Oracle: the type store of PyPI's rosbags.
+    run("standard_messages.py", &["msgs/standard", "--check"]);
+}
+
+#[test]
+fn type_hashes_are_those_of_rosbags() {
+    use jamgrip::wire::topics::topics;
+    let kinds = topics(&crate::synthetic::scene()).into_iter().map(|topic| topic.message_type);
+    let hashes: Vec<String> = kinds.map(|it| format!("{}={}", it.name, it.type_hash)).collect();
+    let arguments: Vec<&str> = hashes.iter().map(String::as_str).collect();
+    // Oracle: RIHS01 hashes that rosbags computes from the .msg files.
+    run("type_hashes.py", &arguments);
 }

@@ -128,6 +128,22 @@ pub(crate) fn packet(tick: u64) -> Arc<Packet> {
     Arc::new(Packet::new(snapshot(tick), tick.is_multiple_of(200).then(|| run(tick))))
 }
 
+/// A packet with many grains whose numbers look random, so that recordings grow quickly.
+#[cfg(feature = "bag")]
+pub(crate) fn incompressible_packet(tick: u64) -> Arc<Packet> {
+    let mut snapshot = snapshot(tick);
+    let mut noise =
+        jamgrip::base::random::Random::new(tick, jamgrip::base::random::Stream::Position);
+    let mut vector = || Vec3::from_fn(|_, _| noise.between(-1.0, 1.0));
+    snapshot.grains = Some(GrainsSnapshot {
+        positions: (0..100).map(|_| vector()).collect(),
+        velocities: (0..100).map(|_| vector()).collect(),
+        radii: (0..100).map(|_| vector().x).collect(),
+        normal_forces: (0..100).map(|_| vector().x).collect(),
+    });
+    Arc::new(Packet::new(snapshot, None))
+}
+
 /// The snapshot of a tick; its numbers depend on the tick, and none is zero.
 pub(crate) fn snapshot(tick: u64) -> Snapshot {
     let t = tick as f64 * 1e-3;

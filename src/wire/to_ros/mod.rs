@@ -19,7 +19,11 @@ use super::{
 use crate::{
     base::Vec3,
     scene::Scene,
-    snapshot::{Snapshot, run::RunStatistics},
+    snapshot::{
+        Snapshot,
+        due::{is_due, is_first_of},
+        run::RunStatistics,
+    },
 };
 
 /// The frame of everything that says nothing else.
@@ -88,16 +92,16 @@ impl Encoder {
         let mut out = Outbox { time_ns: snapshot.time_ns, messages: Vec::new() };
         out.common(Common::Clock, &run::clock(snapshot));
         let outputs = &self.scene.outputs;
-        if self.is_due(outputs.state_rate, snapshot) {
+        if is_due(outputs.state_rate, snapshot.time_ns, self.tick_ns()) {
             self.bodies(snapshot, &mut out);
         }
-        if self.is_due(outputs.pressure_rate, snapshot) {
+        if is_due(outputs.pressure_rate, snapshot.time_ns, self.tick_ns()) {
             self.chamber(snapshot, &mut out);
         }
         self.heavy(snapshot, &mut out);
         if let Some(run) = run {
             out.common(Common::Statistics, &run::statistics(snapshot, run));
-            if self.is_due_among(outputs.statistics_rate, DIAGNOSTICS_RATE, snapshot) {
+            if is_first_of(outputs.statistics_rate, DIAGNOSTICS_RATE, snapshot.time_ns) {
                 out.common(Common::Diagnostics, &run::diagnostics(snapshot, run));
             }
         }
@@ -140,7 +144,7 @@ impl Encoder {
         if let Some(membrane) = &snapshot.membrane {
             let cloud = clouds::membrane(membrane, time_ns);
             out.sized(Common::Membrane, &cloud, cloud.data.len() + 512);
-            if self.is_due_among(outputs.membrane_rate, MARKER_RATE_MAX, snapshot) {
+            if is_first_of(outputs.membrane_rate, MARKER_RATE_MAX, time_ns) {
                 let marker = clouds::surface(membrane, &self.triangles, time_ns);
                 out.sized(Common::MembraneMarker, &marker, 24 * marker.points.len() + 512);
             }
@@ -150,37 +154,6 @@ impl Encoder {
             out.sized(Common::Grains, &cloud, cloud.data.len() + 512);
         }
     }
-
-    /// True if a multiple of 1/rate lies in the tick that ended.
-    fn is_due(&self, rate: f64, snapshot: &Snapshot) -> bool {
-        let time_ns = snapshot.time_ns;
-        let before_ns = time_ns.saturating_sub(self.scene.time.tick_ns);
-        count(rate, before_ns) < count(rate, time_ns)
-    }
-
-    /// Of instants that come at `rate`, true for the first after each multiple of 1/`slower`.
-    fn is_due_among(&self, rate: f64, slower: f64, snapshot: &Snapshot) -> bool {
-        let period_ns = 1e9 / rate;
-        let time_ns = snapshot.time_ns as f64;
-        let instant = (time_ns / period_ns).floor();
-        rate <= slower
-            || count_f64(slower, (instant - 1.0) * period_ns)
-                < count_f64(slower, instant * period_ns)
-    }
-}
-
-/// How many multiples of 1/rate lie in (0, time].
-fn count(rate: f64, time_ns: u64) -> u64 {
-    #[expect(clippy::cast_possible_truncation, reason = "beyond any run")]
-    #[expect(clippy::cast_sign_loss, reason = "rates and times are not negative")]
-    {
-        count_f64(rate, time_ns as f64) as u64
-    }
-}
-
-/// As `count`; a nanosecond of grace keeps multiples that rounding put just behind.
-fn count_f64(rate: f64, time_ns: f64) -> f64 {
-    ((time_ns + 1.0) * rate * 1e-9).floor()
 }
 
 /// Messages on their way out, all with the same time.

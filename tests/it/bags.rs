@@ -1,0 +1,284 @@
+//! Recordings: what goes in comes out, in other people's libraries too; full disks lose nothing.
+
+use std::{
+    collections::BTreeMap, fs, path::Path, process::Command as Process, sync::Arc, time::Duration,
+};
+
+use jamgrip::{
+    sinks::{
+        Sink,
+        bag::{Bag, BagError, BagReport, Subject},
+        fanout::{Delivery, Fanout},
+    },
+    wire::to_ros::Encoder,
+};
+use serde_json::Value;
+
+use crate::{peers, synthetic};
+
+const SCENE_TEXT: &str = "name: synthetic\n";
+/// Digest of the state after 1000 ticks, in `synthetic::snapshot`.
+const DIGEST: u64 = 1000_u64.wrapping_mul(0x9e37_79b9_7f4a_7c15);
+
+fn subject() -> Subject {
+    Subject { scene_text: SCENE_TEXT.to_owned(), seed: 7 }
+}
+
+fn create(folder: &Path) -> Result<Bag, BagError> {
+    Bag::create(folder, synthetic::encoder(), subject())
+}
+
+/// Records a second of simulated time, as a run does.
+fn record_second(folder: &Path) -> BagReport {
+    let bag = create(folder).unwrap();
+    let reporter = bag.reporter();
+    let mut fanout = Fanout::new();
+    fanout.add(Box::new(bag), Delivery::Every { depth: 64 }).unwrap();
+    (1..=1000).for_each(|tick| fanout.publish(&synthetic::packet(tick)));
+    let (ends, faults) = fanout.close(Duration::from_secs(60));
+    assert!(ends[0].is_closed && faults.is_empty(), "{faults:?}");
+    reporter.report()
+}
+
+/// What `rosbags` and `mcap-ros2-support` find in a recording.
+fn read_back(folder: &Path) -> Value {
+    let json = peers::run("read_bag.py", &[folder.to_str().unwrap()]);
+    serde_json::from_str(&json).unwrap()
+}
+
+/// How many messages a second of the synthetic scene has on each topic.
+///
+/// Oracle: the rates in `synthetic::outputs`, the ticks at which its snapshots have heavy parts,
+/// and its five commands.
+fn expected_counts() -> BTreeMap<String, u64> {
+    let state = 100;
+    let counts = [
+        ("/clock", 1000),
+        ("/jamgrip/wrench", state),
+        ("/jamgrip/flange/pose", state),
+        ("/jamgrip/flange/twist", state),
+        ("/jamgrip/flange/wrench", state),
+        ("/jamgrip/contacts", 20),
+        ("/jamgrip/contact_markers", 20),
+        ("/jamgrip/membrane", 20),
+        ("/jamgrip/membrane/mesh", 1),
+        ("/jamgrip/membrane/marker", 10),
+        ("/jamgrip/grains", 10),
+        ("/jamgrip/pressure", 50),
+        ("/jamgrip/vacuum_state", 50),
+        ("/jamgrip/object_detection_status", 50),
+        ("/jamgrip/joint_states", state),
+        ("/jamgrip/statistics", 5),
+        ("/diagnostics", 1),
+        ("/tf", state),
+        ("/tf_static", 1),
+        ("/jamgrip/vacuum_cmd", 1),
+        ("/jamgrip/flange/pose_cmd", 1),
+        // The command for an object that does not exist, and the release.
+        ("/jamgrip/object_cmd", 2),
+        ("/jamgrip/object/cylinder/contact_wrench", state),
+        ("/jamgrip/object/cylinder/pose", state),
+        ("/jamgrip/object/cylinder/twist", state),
+        ("/jamgrip/object/cylinder/pose_cmd", 1),
+    ];
+    counts.map(|(name, count)| (name.to_owned(), count)).into()
+}
+
+#[test]
+fn a_second_has_what_the_rates_say() {
+    let folder = tempfile::tempdir().unwrap();
+    let report = record_second(&folder.path().join("bag"));
+    let found: BTreeMap<String, u64> = report.message_counts.into_iter().collect();
+    assert_eq!(found, expected_counts());
+}
+
+#[test]
+fn the_mcap_crate_reads_what_was_encoded() {
+    let folder = tempfile::tempdir().unwrap();
+    record_second(&folder.path().join("bag"));
+    let bytes = fs::read(folder.path().join("bag/bag_0.mcap")).unwrap();
+    let encoder: Arc<Encoder> = synthetic::encoder();
+    // Oracle: the encoder's messages, in the order of ticks, by topic.
+    let mut expected: BTreeMap<String, Vec<Vec<u8>>> = BTreeMap::new();
+    let mut expect = |message: &jamgrip::wire::topics::Message| {
+        let topic = &encoder.topics()[message.topic].name;
+        expected.entry(topic.clone()).or_default().push(message.cdr.clone());
+    };
+    encoder.latched(0).iter().for_each(&mut expect);
+    for packet in (1..=1000).map(synthetic::packet) {
+        for record in &packet.snapshot.commands {
+            expect(&encoder.commands().encode(&record.command, 0));
+        }
+        packet.messages(&encoder).iter().for_each(&mut expect);
+    }
+    let mut found: BTreeMap<String, Vec<Vec<u8>>> = BTreeMap::new();
+    for message in mcap::MessageStream::new(&bytes).unwrap() {
+        let message = message.unwrap();
+        assert_eq!(message.data[..4], [0, 1, 0, 0], "CDR, little endian");
+        found.entry(message.channel.topic.clone()).or_default().push(message.data[4..].to_vec());
+    }
+    assert!(found == expected);
+}
+
+#[test]
+fn other_libraries_read_every_topic() {
+    let folder = tempfile::tempdir().unwrap();
+    // A name that YAML would take for something else.
+    let bag = folder.path().join("bag: 'first', #1");
+    record_second(&bag);
+    let read = read_back(&bag);
+    let topics = read["rosbags"]["topics"].as_object().unwrap();
+    let counts: BTreeMap<String, u64> =
+        topics.iter().map(|(name, it)| (name.clone(), it["count"].as_u64().unwrap())).collect();
+    assert_eq!(counts, expected_counts());
+    // The first messages come at the start of the first tick, the last at the end of the last.
+    assert_eq!(read["rosbags"]["start_ns"], 0);
+    assert_eq!(read["rosbags"]["end_ns"].as_u64().unwrap() / 1000, 1_000_000);
+    let mcap = &read["mcap"];
+    assert_eq!(mcap["profile"], "ros2");
+    assert!(mcap["library"].as_str().unwrap().starts_with("jamgrip "));
+    assert_eq!(mcap["compressions"], serde_json::json!(["zstd"]));
+    assert_eq!(mcap["attachments"]["scene.yaml"], SCENE_TEXT);
+    assert_eq!(mcap["metadata"]["jamgrip"]["seed"], "7");
+    assert_eq!(mcap["metadata"]["jamgrip"]["state_digest"], format!("{DIGEST:016x}"));
+    let whole = mcap["metadata"]["rosbag2"]["serialized_metadata"].as_str().unwrap();
+    assert!(whole.starts_with("version: 9\nstorage_identifier: mcap\n"));
+    let qos = mcap["qos"]["/tf_static"].as_str().unwrap();
+    assert!(qos.contains("durability: transient_local") && qos.contains("depth: 1\n"), "{qos}");
+}
+
+#[test]
+fn values_arrive_in_other_libraries() {
+    let folder = tempfile::tempdir().unwrap();
+    let bag = folder.path().join("bag");
+    record_second(&bag);
+    let read = read_back(&bag);
+    let first = |topic: &str| read["rosbags"]["topics"][topic]["first"].clone();
+    // Oracle: the numbers of `synthetic::snapshot` at the first tick at which each is due.
+    assert_eq!(first("/jamgrip/wrench")["wrench"]["force"]["z"], -9.81);
+    assert_eq!(first("/jamgrip/wrench")["header"]["frame_id"], "gripper_flange");
+    assert_eq!(first("/jamgrip/pressure")["fluid_pressure"], 101_325.0 - 40_000.02);
+    assert_eq!(first("/jamgrip/vacuum_state")["object_detection"]["status"], 1);
+    assert_eq!(first("/jamgrip/statistics")["tick"], 200);
+    assert_eq!(first("/jamgrip/statistics")["sinks"][0]["name"], "bag");
+    assert_eq!(first("/jamgrip/statistics")["phase"], "lift");
+    assert_eq!(first("/jamgrip/contacts")["contacts"][0]["object"], "cylinder");
+    assert_eq!(first("/jamgrip/contacts")["contacts"][0]["tangential_force"]["y"], 0.3);
+    // 250 grains, at most 100 in a message: every third.
+    let grains = first("/jamgrip/grains");
+    assert_eq!((grains["width"].as_u64(), grains["point_step"].as_u64()), (Some(84), Some(36)));
+    assert_eq!(grains["fields"][8]["name"], "id");
+    assert_eq!(first("/jamgrip/membrane")["point_step"], 32);
+    assert_eq!(first("/jamgrip/membrane/mesh")["triangles"].as_array().unwrap().len(), 2);
+    assert_eq!(first("/jamgrip/membrane/marker")["points"].as_array().unwrap().len(), 6);
+    let frames = first("/tf")["transforms"].clone();
+    assert_eq!(frames[0]["child_frame_id"], "gripper_flange");
+    assert_eq!(frames[1]["child_frame_id"], "object/cylinder");
+    // Refused commands are there as they came.
+    assert_eq!(first("/jamgrip/flange/pose_cmd")["pose"]["position"]["z"], "nan");
+    assert_eq!(first("/jamgrip/flange/pose_cmd")["header"]["stamp"]["nanosec"], 123);
+    assert_eq!(first("/jamgrip/object_cmd")["object"], "ghost");
+}
+
+#[test]
+fn metadata_is_there_from_the_beginning() {
+    let folder = tempfile::tempdir().unwrap();
+    let bag = create(folder.path()).unwrap();
+    let text = fs::read_to_string(folder.path().join("metadata.yaml")).unwrap();
+    assert!(text.starts_with("rosbag2_bagfile_information:\n  version: 9\n"), "{text}");
+    drop(bag);
+}
+
+#[test]
+fn a_folder_in_use_is_refused_and_left_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("thesis.tex"), "years of work").unwrap();
+    let error = create(folder.path()).err().unwrap();
+    assert!(matches!(error, BagError::FolderInUse { .. }), "{error}");
+    assert!(error.to_string().contains("choose another folder"), "{error}");
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+}
+
+#[test]
+fn a_folder_that_cannot_be_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("file");
+    fs::write(&file, "").unwrap();
+    let error = create(&file.join("bag")).err().unwrap();
+    assert!(matches!(error, BagError::CannotCreate { .. }), "{error}");
+}
+
+/// Runs only inside the mount namespace that the next test makes; there it is the whole test.
+const SMALL_DISK: &str = "JAMGRIP_TEST_SMALL_DISK";
+
+/// A disk of 12 MB is filled by a recording that does not compress; what was recorded stays readable.
+#[test]
+fn on_a_full_disk_what_was_recorded_stays_readable() {
+    if let Some(disk) = std::env::var_os(SMALL_DISK) {
+        return fill(Path::new(&disk));
+    }
+    let kept = tempfile::tempdir().unwrap();
+    let myself = std::env::current_exe().unwrap();
+    let test = "bags::on_a_full_disk_what_was_recorded_stays_readable";
+    // The disk is visible to this process only, and gone with it; what was recorded is copied out.
+    let script = "mkdir \"$0/disk\" && mount -t tmpfs -o size=12m none \"$0/disk\" && \
+                  env \"$1=$0/disk\" \"$2\" --exact \"$3\" --nocapture && cp -r \"$0/disk/bag\" \"$0/\"";
+    let output = Process::new("unshare")
+        .args(["--mount", "--map-root-user", "sh", "-ec", script])
+        .arg(kept.path())
+        .args([SMALL_DISK.as_ref(), myself.as_os_str(), test.as_ref()])
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&output.stdout).into_owned()
+        + &String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{said}");
+    let bag = kept.path().join("bag");
+    let read = read_back(&bag);
+    // Oracle: the counts that the recording itself reported, written by `fill`.
+    let reported: BTreeMap<String, u64> =
+        serde_json::from_str(&fs::read_to_string(bag.join("reported.json")).unwrap()).unwrap();
+    for (topic, count) in &reported {
+        assert_eq!(read["rosbags"]["topics"][topic]["count"], *count, "{topic}");
+    }
+    assert!(100 < reported["/jamgrip/grains"], "megabytes were recorded");
+}
+
+/// Records until the disk is full, and checks what the recording says.
+fn fill(disk: &Path) {
+    let folder = disk.join("bag");
+    fs::write(disk.join("other"), vec![0; 9 << 20]).unwrap();
+    let error = create(&folder).err().unwrap();
+    assert!(error.to_string().contains("at least 4 MiB of room"), "{error}");
+    fs::remove_file(disk.join("other")).unwrap();
+    let mut bag = create(&folder).unwrap();
+    let reporter = bag.reporter();
+    let fault = (1..100_000)
+        .find_map(|tick| bag.write(&synthetic::incompressible_packet(tick)).err())
+        .unwrap();
+    let text = fault.to_string();
+    assert!(text.contains("the disk is full after") && text.contains("make room"), "{text}");
+    // The same fault for every packet from now on; closing has nothing left to do.
+    assert_eq!(bag.write(&synthetic::packet(100_000)).unwrap_err().to_string(), text);
+    bag.close().unwrap();
+    let counts: BTreeMap<String, u64> = reporter.report().message_counts.into_iter().collect();
+    fs::write(folder.join("reported.json"), serde_json::to_string(&counts).unwrap()).unwrap();
+}
+
+#[test]
+fn a_killed_recording_keeps_what_was_flushed() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut bag = create(folder.path()).unwrap();
+    (1..=300).for_each(|tick| bag.write(&synthetic::packet(tick)).unwrap());
+    bag.idle().unwrap(); // what happens each second
+    let report = bag.reporter().report();
+    let name = folder.path().file_name().unwrap().to_str().unwrap().to_owned();
+    // What a killed process leaves behind is what is in the file now.
+    let bytes = fs::read(folder.path().join(format!("{name}_0.mcap"))).unwrap();
+    let options = mcap::read::Options::IgnoreEndMagic.into();
+    let found = mcap::MessageStream::new_with_options(&bytes, options).unwrap();
+    let n_found = found.take_while(Result::is_ok).count() as u64;
+    let n_reported: u64 = report.message_counts.iter().map(|(_, count)| count).sum();
+    // Oracle: what the recording reported when it flushed.
+    assert_eq!(n_found, n_reported);
+    assert!(300 < n_found);
+}
