@@ -7,9 +7,10 @@ pub mod scene; // text to checked numbers
 pub mod physics; // grains, membrane, chamber
 pub mod cosim; // one tick of the coupled system
 pub mod command; // what the outside may ask
-pub mod snapshot; // what the outside may see
 pub mod session; // one run in memory
+pub mod snapshot; // what the outside may see
 pub mod controller; // who asks, if nobody outside does
 pub mod wire; // bytes for the outside
 pub mod sinks; // where snapshots go
 pub mod sources; // where commands come from
+pub mod node; // the running thing

@@ -1,1 +1,63 @@
-fn main() {}
+//! Command line to run.
+
+mod cli;
+
+use std::{
+    error::Error,
+    io::{self, Write},
+    process::ExitCode,
+};
+
+use clap::Parser;
+use cli::{Action, Cli};
+use jamgrip::{
+    node::{
+        cache::Cache,
+        launch::{Options, launch},
+    },
+    scene::{self, SceneError},
+};
+
+/// The middleware crates log what is no fault of anyone's; `RUST_LOG` shows it.
+const LOG_FILTER: &str = "warn,rustdds=off,ros2_client=off";
+
+/// The run could not begin or go on.
+const FAILED: u8 = 1;
+/// The scene is wrong, as clap says of a wrong command line.
+const WRONG: u8 = 2;
+
+fn main() -> ExitCode {
+    let cli = Cli::parse();
+    env_logger::Builder::from_env(env_logger::Env::default().default_filter_or(LOG_FILTER)).init();
+    let outcome = match cli.action {
+        Action::Run(args) => run(&args),
+        Action::Check(args) => check(&args),
+    };
+    outcome.unwrap_or_else(|error| {
+        // If standard error is gone there is nobody to tell.
+        drop(writeln!(io::stderr().lock(), "{error}"));
+        ExitCode::from(if error.is::<SceneError>() { WRONG } else { FAILED })
+    })
+}
+
+fn run(args: &cli::Run) -> Result<ExitCode, Box<dyn Error>> {
+    let scene = scene::load(&args.scene.scene, &args.overrides())?;
+    let options = Options {
+        n_threads: args.n_threads(),
+        duration: args.duration,
+        cache: args.cache.clone().map_or_else(Cache::of_user, Cache::new),
+        is_quiet: args.json,
+    };
+    let finished = launch(&scene, &options)?;
+    finished.summary.print(args.json)?;
+    match finished.fault {
+        Some(fault) => Err(fault.into()),
+        None => Ok(ExitCode::SUCCESS),
+    }
+}
+
+fn check(args: &cli::SceneArgs) -> Result<ExitCode, Box<dyn Error>> {
+    let scene = scene::load(&args.scene, &args.overrides())?;
+    write!(io::stdout().lock(), "{}", scene::to_yaml(&scene))?;
+    Ok(ExitCode::SUCCESS)
+}

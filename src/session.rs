@@ -57,7 +57,7 @@ impl Session {
     fn start(compiled: Compiled, mut state: crate::physics::State) -> Self {
         let Compiled { scene, model, plan, bulks, limits, pool, .. } = compiled;
         let n_samples = model.membrane.mesh.n_vertices() + model.membrane.mesh.triangles.len();
-        state.body_springs = vec![crate::base::Vec3::zeros(); n_samples * model.bodies.len()];
+        state.springs.bodies = vec![crate::base::Vec3::zeros(); n_samples * model.bodies.len()];
         let step = plan.tick / measure::real(plan.n_substeps / plan.n_per_exchange);
         let world = crate::cosim::rapier_world::RapierWorld::new(&scene, &model, bulks, step);
         let n_objects = scene.objects.len();

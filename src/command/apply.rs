@@ -71,6 +71,16 @@ impl Desk {
         self.counts
     }
 
+    /// Set-point of the gauge pressure, within the pump's range [Pa].
+    pub fn gauge_setpoint(&self) -> Real {
+        self.gauge_setpoint
+    }
+
+    /// True while pose commands drive object `i`.
+    pub fn is_driven(&self, i: usize) -> bool {
+        self.drives[i].is_some()
+    }
+
     /// Takes the commands that arrived before the tick that starts at `now_ns`.
     pub fn take(
         &mut self,

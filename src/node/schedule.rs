@@ -1,17 +1,7 @@
 //! Which parts of a snapshot are due at which tick.
 
 use crate::scene::Outputs;
-
-/// Parts of a snapshot that are large and not taken at every tick.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Parts {
-    /// The membrane's vertices.
-    pub membrane: bool,
-    /// The grains.
-    pub grains: bool,
-    /// The contacts between membrane and objects.
-    pub contacts: bool,
-}
+pub use crate::snapshot::Parts;
 
 /// Rates in simulated time, cut to ticks.
 #[derive(Clone, Copy, Debug)]

@@ -11,7 +11,7 @@ use super::{
     health::{self, Diverged},
     measure::real,
     membrane::{MembraneState, mesh::Mesh},
-    state::{Grains, Pairs, Patches},
+    state::{Grains, Springs},
     substep,
 };
 use crate::{
@@ -230,10 +230,8 @@ fn scatter(scene: &Scene, held: &Model, final_radii: &[Real], scale: Real) -> St
             radii,
         },
         membrane,
-        pairs: Pairs::default(),
-        patches: vec![Patches::NONE; n],
-        plate_springs: vec![Vec3::zeros(); n],
-        body_springs: Vec::new(),
+        springs: Springs::none(n, 0),
+        pair_ids: Vec::new(),
         gauge: 0.0,
         flange: pose,
         flange_twist: Twist::zero(),

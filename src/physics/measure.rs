@@ -30,7 +30,7 @@ pub fn packing(state: &State, scratch: &Scratch) -> Packing {
     let mut packing = Packing::default();
     let mut touching = vec![0_usize; n_grains];
     let mut n_sliding = 0_usize;
-    for (pair, ids) in scratch.pair_forces.iter().zip(&state.pairs.ids) {
+    for (pair, ids) in scratch.pair_forces.iter().zip(&state.pair_ids) {
         if pair.overlap > 0.0 {
             packing.n_grain_contacts += 1;
             n_sliding += usize::from(pair.signed_normal < 0.0);
@@ -58,7 +58,7 @@ pub fn packing(state: &State, scratch: &Scratch) -> Packing {
 /// Sum of normal force magnitudes on each grain [N].
 pub fn normal_forces(state: &State, scratch: &Scratch) -> Vec<Real> {
     let mut forces = vec![0.0; state.grains.len()];
-    for (pair, ids) in scratch.pair_forces.iter().zip(&state.pairs.ids) {
+    for (pair, ids) in scratch.pair_forces.iter().zip(&state.pair_ids) {
         for id in ids {
             forces[*id as usize] += pair.signed_normal.abs();
         }

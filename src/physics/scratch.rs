@@ -144,7 +144,7 @@ pub struct PlateForce {
 }
 
 /// Force of a body on a sample of the membrane.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy)]
 pub struct SampleForce {
     /// Force on the membrane [N].
     pub force: Vec3,
@@ -154,4 +154,14 @@ pub struct SampleForce {
     pub point: Vec3,
     /// Overlap [m]; no contact if not positive.
     pub overlap: Real,
+}
+
+impl SampleForce {
+    /// Out of reach.
+    pub const NONE: Self = Self {
+        force: Vec3::new(0.0, 0.0, 0.0),
+        normal: Vec3::new(0.0, 0.0, 0.0),
+        point: Vec3::new(0.0, 0.0, 0.0),
+        overlap: Real::NEG_INFINITY,
+    };
 }

@@ -14,15 +14,10 @@ pub struct State {
     pub grains: Grains,
     /// Positions and velocities of the membrane's vertices.
     pub membrane: MembraneState,
-    /// Tangential springs of pairs of grains.
-    pub pairs: Pairs,
-    /// Membrane contacts of each grain. Written by `contact::membrane`.
-    pub patches: Vec<Patches>,
-    /// Tangential springs of each grain with the flange's plate [m]. Written by `contact::plate`.
-    pub plate_springs: Vec<Vec3>,
-    /// Tangential springs of membrane samples with bodies [m], body by body: all vertices, then
-    /// all facets. Written by `contact::bodies`.
-    pub body_springs: Vec<Vec3>,
+    /// Friction springs of all contacts.
+    pub springs: Springs,
+    /// Which pairs of grains the pair springs belong to. Written by `neighbours`.
+    pub pair_ids: Vec<[u32; 2]>,
     /// Gauge pressure in the chamber, negative under vacuum [Pa]. Written by `chamber`.
     pub gauge: Real,
     /// Pose of the flange in the world. Written by `cosim`.
@@ -58,13 +53,30 @@ impl Grains {
     }
 }
 
-/// Pairs of grains that may touch, sorted by first and then second grain, first < second.
+/// Tangential springs of all contacts: the history of friction.
 #[derive(Clone, Debug, Default)]
-pub struct Pairs {
-    /// The pairs. Written by `neighbours`.
-    pub ids: Vec<[u32; 2]>,
-    /// Tangential spring of each pair, zero without contact [m]. Written by `contact::grains`.
-    pub springs: Vec<Vec3>,
+pub struct Springs {
+    /// Of each listed pair of grains, zero without contact [m]. Written by `contact::grains`.
+    pub pairs: Vec<Vec3>,
+    /// Membrane contacts of each grain. Written by `contact::membrane`.
+    pub patches: Vec<Patches>,
+    /// Of each grain with the flange's plate [m]. Written by `contact::plate`.
+    pub plate: Vec<Vec3>,
+    /// Of membrane samples with bodies [m], body by body: all vertices, then all facets. Written
+    /// by `contact::bodies`.
+    pub bodies: Vec<Vec3>,
+}
+
+impl Springs {
+    /// No contact yet, for `n_grains` grains and `n_samples` samples on all bodies.
+    pub fn none(n_grains: usize, n_samples: usize) -> Self {
+        Self {
+            pairs: Vec::new(),
+            patches: vec![Patches::NONE; n_grains],
+            plate: vec![Vec3::zeros(); n_grains],
+            bodies: vec![Vec3::zeros(); n_samples],
+        }
+    }
 }
 
 /// One patch of membrane that a grain touches: the contact lives on while the grain slides from
@@ -113,19 +125,19 @@ impl State {
 
     /// Only loaded springs count: which empty pairs are listed is not part of the physics.
     fn digest_springs(&self, digest: &mut Digest) {
-        for (ids, spring) in self.pairs.ids.iter().zip(&self.pairs.springs) {
+        for (ids, spring) in self.pair_ids.iter().zip(&self.springs.pairs) {
             if *spring != Vec3::zeros() {
                 digest.integer(u64::from(ids[0]) << 32 | u64::from(ids[1]));
                 digest.reals(spring.as_slice());
             }
         }
-        for patches in &self.patches {
+        for patches in &self.springs.patches {
             digest.integer(patches.n as u64);
             for patch in &patches.slots[..patches.n] {
                 digest.vectors(&[patch.spring, patch.normal]);
             }
         }
-        digest.vectors(&self.plate_springs);
-        digest.vectors(&self.body_springs);
+        digest.vectors(&self.springs.plate);
+        digest.vectors(&self.springs.bodies);
     }
 }

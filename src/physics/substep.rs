@@ -4,36 +4,46 @@ use super::{
     Controls, Model, Scratch, State, chamber,
     contact::{bodies, grains, membrane as sheet, plate, sums},
     integrate, membrane, neighbours,
-    scratch::{PatchForces, PlateForce},
+    state::Springs,
 };
-use crate::base::parallel;
 
 /// Advances the state by `model.substep`.
 pub fn substep(model: &Model, controls: &Controls, state: &mut State, scratch: &mut Scratch) {
     chamber::advance(&model.chamber, controls, state);
     neighbours::refresh(model, state, scratch);
-    grains::forces(model, state, &mut scratch.pair_forces);
-    grain_boundary_forces(model, state, scratch);
-    bodies::forces(model, controls, state, &mut scratch.sample_forces);
+    forces(model, controls, state, scratch);
     sums::on_membrane(model, controls, scratch);
-    membrane::forces(&model.membrane, &state.membrane, state.gauge, &mut scratch.membrane);
     sums::on_flange(model, state, scratch);
     integrate::advance(model, controls, scratch, state);
 }
 
-/// What membrane and plate do to each grain.
-fn grain_boundary_forces(model: &Model, state: &mut State, scratch: &mut Scratch) {
-    let mut patches = std::mem::take(&mut state.patches);
-    scratch.patch_forces.resize(patches.len(), PatchForces::NONE);
-    let lists = &scratch.neighbours;
-    parallel::for_each_of_two(&mut scratch.patch_forces, &mut patches, |i, forces, patches| {
-        *forces = sheet::forces(model, state, lists, i, patches);
-    });
-    state.patches = patches;
-    let mut springs = std::mem::take(&mut state.plate_springs);
-    scratch.plate_forces.resize(springs.len(), PlateForce::default());
-    parallel::for_each_of_two(&mut scratch.plate_forces, &mut springs, |i, force, spring| {
-        *force = plate::force(model, state, i, spring);
-    });
-    state.plate_springs = springs;
+/// All forces at once: each stage reads the state and writes its own springs and forces.
+fn forces(model: &Model, controls: &Controls, state: &mut State, scratch: &mut Scratch) {
+    let mut springs = std::mem::take(&mut state.springs);
+    let Springs { pairs, patches, plate: on_plate, bodies: on_bodies } = &mut springs;
+    let Scratch { neighbours, pair_forces, patch_forces, plate_forces, sample_forces, .. } =
+        scratch;
+    let sheet_scratch = &mut scratch.membrane;
+    let (state_now, lists) = (&*state, &*neighbours);
+    rayon::join(
+        || grains::forces(model, state_now, pairs, pair_forces),
+        || {
+            rayon::join(
+                || {
+                    sheet::forces(model, state_now, lists, patches, patch_forces);
+                    plate::forces(model, state_now, on_plate, plate_forces);
+                },
+                || {
+                    rayon::join(
+                        || bodies::forces(model, controls, state_now, on_bodies, sample_forces),
+                        || {
+                            let (sheet, gauge) = (&state_now.membrane, state_now.gauge);
+                            membrane::forces(&model.membrane, sheet, gauge, sheet_scratch);
+                        },
+                    )
+                },
+            )
+        },
+    );
+    state.springs = springs;
 }

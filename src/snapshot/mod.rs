@@ -4,6 +4,7 @@
 
 pub mod due;
 pub mod run;
+pub mod take;
 pub mod view;
 
 use crate::{
@@ -153,4 +154,20 @@ pub struct ContactSnapshot {
     pub normal_force: f64,
     /// Overlap [m].
     pub overlap: f64,
+}
+
+/// Parts of a snapshot that are large and not taken at every tick.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Parts {
+    /// The membrane's vertices.
+    pub membrane: bool,
+    /// The grains.
+    pub grains: bool,
+    /// The contacts between membrane and objects.
+    pub contacts: bool,
+}
+
+impl Parts {
+    /// All of them.
+    pub const ALL: Self = Self { membrane: true, grains: true, contacts: true };
 }

@@ -1,4 +1,4 @@
-//! Independent programs in Python that read what we write, and say what we read.
+//! Independent programs in Python that read what we write and speak what we hear.
 //!
 //! Their packages live in a virtual environment of their own, `target/peers`, which is made on
 //! first use and when `tests/peers/requirements.txt` changes.
@@ -10,31 +10,27 @@ use std::{
     sync::OnceLock,
 };
 
-const SCRIPTS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/peers");
+const REQUIREMENTS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/peers/requirements.txt");
+const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/target/peers");
 
 /// Python with the packages of `tests/peers/requirements.txt`.
 pub(crate) fn python() -> &'static Path {
     static PYTHON: OnceLock<PathBuf> = OnceLock::new();
     PYTHON.get_or_init(|| {
-        let environment = Path::new(env!("CARGO_TARGET_TMPDIR")).parent().unwrap().join("peers");
-        fs::create_dir_all(&environment).unwrap();
+        let folder = Path::new(FOLDER);
+        fs::create_dir_all(folder).unwrap();
         // Another test process may be at it too.
-        let lock = File::create(environment.join("lock")).unwrap();
+        let lock = File::create(folder.join("lock")).unwrap();
         lock.lock().unwrap();
-        let (python, installed) =
-            (environment.join("bin/python"), environment.join("installed.txt"));
-        let requirements = Path::new(SCRIPTS).join("requirements.txt");
-        let wanted = fs::read_to_string(&requirements).unwrap();
-        if fs::read_to_string(&installed).ok().as_deref() != Some(&wanted) {
-            must_run(
-                Command::new("python3").args(["-m", "venv"]).arg(&environment),
-                "install the system packages python3 and python3-venv",
-            );
+        let python = folder.join("bin/python");
+        let wanted = fs::read_to_string(REQUIREMENTS).unwrap();
+        let installed = folder.join("installed.txt");
+        if fs::read_to_string(&installed).ok().as_ref() != Some(&wanted) {
+            let bare = "Debian and Ubuntu need `apt-get install -y python3 python3-venv`";
+            must_run(Command::new("python3").args(["-m", "venv"]).arg(folder), bare);
+            let network = "the first run of the tests needs the network, later ones do not";
             let pip = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "-r"];
-            must_run(
-                Command::new(&python).args(pip).arg(requirements),
-                "the packages of tests/peers/requirements.txt come from PyPI: check the network",
-            );
+            must_run(Command::new(&python).args(pip).arg(REQUIREMENTS), network);
             fs::write(installed, wanted).unwrap();
         }
         python
@@ -43,8 +39,10 @@ pub(crate) fn python() -> &'static Path {
 
 /// A script of `tests/peers`, ready to run.
 pub(crate) fn script(name: &str) -> Command {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/peers").join(name);
+    assert!(path.exists(), "{} is missing", path.display());
     let mut command = Command::new(python());
-    command.arg(Path::new(SCRIPTS).join(name));
+    command.arg(path);
     command
 }
 

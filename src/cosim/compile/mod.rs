@@ -31,6 +31,8 @@ const PHYSICS_VERSION: u64 = 1;
 const SKIN_SHARE: Real = 0.25;
 /// Longest time between two steps of the rigid world [s].
 const EXCHANGE_MAX: Real = 1e-4;
+/// Effective radius R* of a sample of the sheet on the table: that of the source's object [m].
+const TABLE_CONTACT_RADIUS: Real = 0.01;
 /// Share of the Rayleigh time at which a packing under full vacuum starts to ring.
 const RAYLEIGH_SHARE: Real = 0.4;
 
@@ -91,7 +93,7 @@ impl Compiled {
         let mesh = Mesh::half_icosphere(scene.membrane.radius, scene.membrane.frequency)?;
         let mut membrane = MembraneModel::new(mesh, sheet(&scene.membrane));
         membrane.scale_rest_lengths(1.0 - scene.membrane.rest_length_shrink);
-        let (mut bodies, bulks) = bodies(scene)?;
+        let (mut bodies, bulks) = bodies(scene, membrane.longest_edge)?;
         bodies.push(table(scene));
         let laws = Laws::new(scene);
         let plan = plan(scene, &membrane, &laws, &bodies)?;
@@ -172,7 +174,7 @@ fn sheet(membrane: &scene::Membrane) -> Sheet {
     }
 }
 
-fn bodies(scene: &Scene) -> Result<(Vec<BodyModel>, Vec<Bulk>), CompileError> {
+fn bodies(scene: &Scene, longest_edge: Real) -> Result<(Vec<BodyModel>, Vec<Bulk>), CompileError> {
     let mut bodies = Vec::new();
     let mut bulks = Vec::new();
     for object in &scene.objects {
@@ -183,7 +185,7 @@ fn bodies(scene: &Scene) -> Result<(Vec<BodyModel>, Vec<Bulk>), CompileError> {
         bodies.push(BodyModel {
             law: PairLaw::between(&scene.membrane.material, &object.material, on_object),
             contact_radius: contact_radius(&object.shape, bulk.volume),
-            bounding_radius: surface.bounding_radius(),
+            reach_squared: (surface.bounding_radius() + longest_edge).powi(2),
             surface: BodySurface::Shape(Box::new(surface)),
         });
         bulks.push(bulk);
@@ -220,8 +222,8 @@ fn table(scene: &Scene) -> BodyModel {
     BodyModel {
         surface: BodySurface::HalfSpace,
         law: PairLaw::against_rigid(&scene.membrane.material, on_table),
-        contact_radius: scene.membrane.radius,
-        bounding_radius: Real::INFINITY,
+        contact_radius: TABLE_CONTACT_RADIUS,
+        reach_squared: Real::INFINITY,
     }
 }
 

@@ -9,7 +9,7 @@ use crate::{
     physics::{
         State,
         membrane::MembraneState,
-        state::{Grains, N_PATCHES, Pairs, Patch, Patches},
+        state::{Grains, N_PATCHES, Patch, Patches, Springs},
     },
 };
 
@@ -63,10 +63,10 @@ impl StartState {
             masses: state.grains.masses.clone(),
             vertex_positions: arrays(&state.membrane.positions),
             vertex_velocities: arrays(&state.membrane.velocities),
-            pair_ids: state.pairs.ids.clone(),
-            pair_springs: arrays(&state.pairs.springs),
-            patches: state.patches.iter().map(patch_rows).collect(),
-            plate_springs: arrays(&state.plate_springs),
+            pair_ids: state.pair_ids.clone(),
+            pair_springs: arrays(&state.springs.pairs),
+            patches: state.springs.patches.iter().map(patch_rows).collect(),
+            plate_springs: arrays(&state.springs.plate),
         };
         let mut bytes = postcard::to_stdvec(&numbers).expect("a list of numbers always serialises");
         bytes.extend_from_slice(&xxh3_64(&bytes).to_le_bytes());
@@ -99,10 +99,13 @@ impl StartState {
                 positions: vectors(&numbers.vertex_positions),
                 velocities: vectors(&numbers.vertex_velocities),
             },
-            pairs: Pairs { ids: numbers.pair_ids, springs: vectors(&numbers.pair_springs) },
-            patches: numbers.patches.iter().map(|rows| patches(rows)).collect(),
-            plate_springs: vectors(&numbers.plate_springs),
-            body_springs: Vec::new(),
+            springs: Springs {
+                pairs: vectors(&numbers.pair_springs),
+                patches: numbers.patches.iter().map(|rows| patches(rows)).collect(),
+                plate: vectors(&numbers.plate_springs),
+                bodies: Vec::new(),
+            },
+            pair_ids: numbers.pair_ids,
             gauge: 0.0,
             flange,
             flange_twist: Twist::zero(),

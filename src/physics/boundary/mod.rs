@@ -3,6 +3,5 @@
 pub mod body;
 mod polyhedron;
 pub mod shape;
-
 #[cfg(test)]
 mod tests;

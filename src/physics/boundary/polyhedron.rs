@@ -64,14 +64,14 @@ impl Polyhedron {
         let (volume, centre_of_mass, second_moment) = moments(&vertices, &triangles);
         let size = vertices.iter().map(|v| (v - centre_of_mass).norm()).fold(0.0, Real::max);
         // Rounding of a flat sheet with two sides stays far below this.
-        if !(volume > 1e-9 * size * size * size) {
+        if volume <= 1e-9 * size * size * size {
             return Err(ShapeFault::InsideOut);
         }
         let centred: Vec<Vector> = vertices.iter().map(|v| (v - centre_of_mass).into()).collect();
         let tree = TriMesh::with_flags(centred, triangles, TriMeshFlags::ORIENTED)
             .map_err(|_| ShapeFault::InsideOut)?;
         let normal = |triangle: parry::shape::Triangle| {
-            triangle.normal().map_or_else(Vec3::zeros, |n| Vec3::from(n))
+            triangle.normal().map_or_else(Vec3::zeros, Vec3::from)
         };
         let normals = tree.triangles().map(normal).collect();
         Ok(Self { tree, normals, bounding_radius: size, volume, centre_of_mass, second_moment })

@@ -14,6 +14,7 @@ use crate::{
     physics::{
         Controls, Model,
         boundary::body::BodyMotion,
+        membrane::MembraneState,
         model::{BodyModel, BodySurface},
         scratch::SampleForce,
         state::State,
@@ -24,41 +25,35 @@ use crate::{
 pub fn forces(
     model: &Model,
     controls: &Controls,
-    state: &mut State,
+    state: &State,
+    springs: &mut [Vec3],
     samples: &mut Vec<SampleForce>,
 ) {
-    let n_vertices = model.membrane.mesh.n_vertices();
-    let n_samples = n_vertices + model.membrane.mesh.triangles.len();
-    samples.resize(n_samples * model.bodies.len(), SampleForce::default());
-    let State { membrane, body_springs, .. } = state;
-    for (b, (body, motion)) in model.bodies.iter().zip(&controls.bodies).enumerate() {
-        let here = b * n_samples..(b + 1) * n_samples;
-        let (of_vertices, of_facets) = samples[here.clone()].split_at_mut(n_vertices);
-        let (vertex_springs, facet_springs) = body_springs[here].split_at_mut(n_vertices);
+    let mesh = &model.membrane.mesh;
+    let n_samples = mesh.n_vertices() + mesh.triangles.len();
+    samples.resize(n_samples * model.bodies.len(), SampleForce::NONE);
+    let of_bodies = samples.chunks_mut(n_samples).zip(springs.chunks_mut(n_samples));
+    for ((body, motion), (samples, springs)) in
+        model.bodies.iter().zip(&controls.bodies).zip(of_bodies)
+    {
         let contact = Contact { body, motion, dt: model.substep };
+        let (of_vertices, of_facets) = samples.split_at_mut(mesh.n_vertices());
+        let (vertex_springs, facet_springs) = springs.split_at_mut(mesh.n_vertices());
         parallel::for_each_of_two(of_vertices, vertex_springs, |v, sample, spring| {
-            let touch = SheetPoint {
-                position: membrane.positions[v],
-                velocity: membrane.velocities[v],
-                mass: model.membrane.masses[v],
-                known_overlap: 0.0,
-            };
-            *sample = contact.force(&touch, spring);
+            let point = SheetPoint::vertex(model, &state.membrane, v);
+            *sample = contact.force(&point, spring);
         });
         let of_vertices = &*of_vertices;
         parallel::for_each_of_two(of_facets, facet_springs, |t, sample, spring| {
-            let corners = model.membrane.mesh.triangles[t].map(|v| v as usize);
-            let mean = |of: &dyn Fn(usize) -> Vec3| {
-                (of(corners[0]) + of(corners[1]) + of(corners[2])) / 3.0
-            };
-            let known: Real = corners.iter().map(|&v| of_vertices[v].overlap).sum();
-            let touch = SheetPoint {
-                position: mean(&|v| membrane.positions[v]),
-                velocity: mean(&|v| membrane.velocities[v]),
-                mass: corners.iter().map(|&v| model.membrane.masses[v]).sum::<Real>() / 3.0,
-                known_overlap: known / 3.0,
-            };
-            *sample = contact.force(&touch, spring);
+            let corners = mesh.triangles[t].map(|v| v as usize);
+            let overlaps = corners.map(|v| of_vertices[v].overlap);
+            // A facet further away than its own size cannot touch.
+            if overlaps.iter().all(|&overlap| overlap < -model.membrane.longest_edge) {
+                (sample.overlap, *spring) = (Real::NEG_INFINITY, Vec3::zeros());
+                return;
+            }
+            let point = SheetPoint::facet(model, &state.membrane, corners, overlaps);
+            *sample = contact.force(&point, spring);
         });
     }
 }
@@ -68,7 +63,35 @@ struct SheetPoint {
     position: Vec3,
     velocity: Vec3,
     mass: Real,
+    /// Overlap that the facet's corners see already [m].
     known_overlap: Real,
+}
+
+impl SheetPoint {
+    fn vertex(model: &Model, sheet: &MembraneState, v: usize) -> Self {
+        Self {
+            position: sheet.positions[v],
+            velocity: sheet.velocities[v],
+            mass: model.membrane.masses[v],
+            known_overlap: 0.0,
+        }
+    }
+
+    fn facet(
+        model: &Model,
+        sheet: &MembraneState,
+        corners: [usize; 3],
+        overlaps: [Real; 3],
+    ) -> Self {
+        let [a, b, c] = corners;
+        let masses = &model.membrane.masses;
+        Self {
+            position: (sheet.positions[a] + sheet.positions[b] + sheet.positions[c]) / 3.0,
+            velocity: (sheet.velocities[a] + sheet.velocities[b] + sheet.velocities[c]) / 3.0,
+            mass: (masses[a] + masses[b] + masses[c]) / 3.0,
+            known_overlap: overlaps.map(|overlap| overlap.max(0.0)).iter().sum::<Real>() / 3.0,
+        }
+    }
 }
 
 struct Contact<'a> {
@@ -83,12 +106,12 @@ impl Contact<'_> {
         let arm = sheet.position - self.motion.pose.translation.vector;
         let Some((distance, normal)) = self.distance(&arm) else {
             *spring = Vec3::zeros();
-            return SampleForce::default();
+            return SampleForce::NONE;
         };
         let overlap = -distance - sheet.known_overlap;
         if overlap <= 0.0 {
             *spring = Vec3::zeros();
-            return SampleForce::default();
+            return SampleForce { overlap, ..SampleForce::NONE };
         }
         let touch = Touch {
             overlap,
@@ -107,7 +130,7 @@ impl Contact<'_> {
         }
     }
 
-    /// Signed distance and outward normal in world axes, if the point can be inside at all.
+    /// Signed distance and outward normal in world axes, if the point is near at all.
     #[inline]
     fn distance(&self, arm: &Vec3) -> Option<(Real, Vec3)> {
         match &self.body.surface {
@@ -116,7 +139,7 @@ impl Contact<'_> {
                 Some((normal.dot(arm), normal))
             }
             BodySurface::Shape(surface) => {
-                if arm.norm_squared() >= self.body.bounding_radius.powi(2) {
+                if arm.norm_squared() >= self.body.reach_squared {
                     return None;
                 }
                 let local = self.motion.pose.rotation.inverse_transform_vector(arm);

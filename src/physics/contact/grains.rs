@@ -16,22 +16,26 @@ use crate::{
 const CHUNK: usize = 512;
 
 /// Forces of all pairs; carries their springs on by one substep.
-pub fn forces(model: &Model, state: &mut State, pair_forces: &mut Vec<PairForce>) {
-    let State { grains, pairs, .. } = state;
-    pair_forces.resize(pairs.ids.len(), PairForce::default());
-    pairs
-        .ids
+pub fn forces(
+    model: &Model,
+    state: &State,
+    springs: &mut [Vec3],
+    pair_forces: &mut Vec<PairForce>,
+) {
+    pair_forces.resize(state.pair_ids.len(), PairForce::default());
+    state
+        .pair_ids
         .par_chunks(CHUNK)
-        .zip(pairs.springs.par_chunks_mut(CHUNK))
+        .zip(springs.par_chunks_mut(CHUNK))
         .zip(pair_forces.par_chunks_mut(CHUNK))
         .for_each(|((ids, springs), forces)| {
             for k in 0..ids.len() {
-                forces[k] = of_pair(model, grains, ids[k], &mut springs[k]);
+                forces[k] = of_pair(model, &state.grains, ids[k], &mut springs[k]);
             }
         });
 }
 
-#[inline]
+#[inline(always)]
 fn of_pair(model: &Model, grains: &Grains, ids: [u32; 2], spring: &mut Vec3) -> PairForce {
     let [i, j] = ids.map(|id| id as usize);
     let apart = grains.positions[i] - grains.positions[j];

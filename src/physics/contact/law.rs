@@ -106,7 +106,7 @@ pub struct Force {
 }
 
 /// Force on the first body; `spring` ξ_t [m] is carried on by one substep of `dt` [s].
-#[inline]
+#[inline(always)]
 pub fn force(law: &PairLaw, touch: &Touch, dt: Real, spring: &mut Vec3) -> Force {
     let contact_radius = (touch.radius * touch.overlap).sqrt();
     let v_n = touch.normal.dot(&touch.velocity);
@@ -118,24 +118,25 @@ pub fn force(law: &PairLaw, touch: &Touch, dt: Real, spring: &mut Vec3) -> Force
     let k_t = 8.0 * law.shear_modulus * contact_radius;
     let k = 2.0 / 3.0 * k_t;
     let limit = law.friction * normal;
-    let stretch = xi_t.norm();
-    let slides = k * stretch >= limit;
+    // Squares are compared: most contacts stick, and then no root is needed.
+    let stretch_squared = xi_t.norm_squared();
+    let slides = k * k * stretch_squared >= limit * limit;
     let tangential = if slides {
-        if stretch > 0.0 {
-            xi_t *= limit / (k * stretch);
+        if stretch_squared > 0.0 {
+            xi_t *= limit / (k * stretch_squared.sqrt());
         }
         -xi_t * k
     } else {
         let trial = -xi_t * k - v_t * (law.tangential_damping * (touch.mass * k_t).sqrt());
-        let length = trial.norm();
-        if length > limit { trial * (limit / length) } else { trial }
+        let squared = trial.norm_squared();
+        if squared > limit * limit { trial * (limit / squared.sqrt()) } else { trial }
     };
     *spring = xi_t;
     Force { normal, tangential, slides }
 }
 
 /// The spring turned into the tangent plane, its length kept.
-#[inline]
+#[inline(always)]
 fn into_tangent_plane(spring: &Vec3, normal: &Vec3) -> Vec3 {
     let out_of_plane = spring.dot(normal);
     let flat = spring - normal * out_of_plane;

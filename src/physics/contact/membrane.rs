@@ -10,9 +10,11 @@
 //! same normal: that is one patch of a smooth sheet, and only its deepest point counts. The
 //! friction spring belongs to the patch, not to the triangle: it is handed on by direction.
 
+use arrayvec::ArrayVec;
+
 use super::law::{self, Touch};
 use crate::{
-    base::{Real, Vec3},
+    base::{Real, Vec3, parallel},
     physics::{
         Model,
         membrane::contact_geometry::{Feature, closest_on_triangle},
@@ -40,35 +42,50 @@ struct Touched {
     distance_squared: Real,
 }
 
-/// Forces of the membrane on grain `i`; carries its springs on by one substep.
+/// Forces of the membrane on all grains; carries their springs on by one substep.
 pub fn forces(
     model: &Model,
     state: &State,
     lists: &Neighbours,
+    springs: &mut [Patches],
+    patch_forces: &mut Vec<PatchForces>,
+) {
+    patch_forces.resize(springs.len(), PatchForces::NONE);
+    parallel::for_each_of_two(patch_forces, springs, |i, force, patches| {
+        let range = lists.triangle_starts[i] as usize..lists.triangle_starts[i + 1] as usize;
+        if range.is_empty() {
+            // Most grains are inside the packing: nothing but the counts is touched.
+            (force.n, patches.n) = (0, 0);
+        } else {
+            on_grain(model, state, i, &lists.triangles[range], patches, force);
+        }
+    });
+}
+
+fn on_grain(
+    model: &Model,
+    state: &State,
     i: usize,
+    candidates: &[u32],
     patches: &mut Patches,
-) -> PatchForces {
-    let range = lists.triangle_starts[i] as usize..lists.triangle_starts[i + 1] as usize;
-    let mut touched = [None; N_TOUCHED];
-    let n = touching(model, state, i, &lists.triangles[range], &mut touched);
-    let mut result = PatchForces::NONE;
-    let before = *patches;
+    result: &mut PatchForces,
+) {
+    let touched = touching(model, state, i, candidates);
+    let (before, n_before) = (patches.slots, patches.n);
     patches.n = 0;
-    if n == 0 {
-        return result;
-    }
-    for contact in touched[..n].iter().flatten() {
+    result.n = 0;
+    result.torque = Vec3::zeros();
+    result.is_outside = false;
+    for contact in &touched {
         if result.n == N_PATCHES {
             break;
         }
         let normal = contact.from_membrane / contact.distance_squared.sqrt();
-        let is_local = is_local_minimum(model, contact, &touched[..n]);
         let known = patches.slots[..patches.n].iter().any(|p| p.normal.dot(&normal) > SAME_PATCH);
-        if !is_local || known {
+        if known || !is_local_minimum(model, contact, &touched) {
             continue;
         }
-        let spring = spring_of(&before, &normal);
-        let mut patch = Patch { spring, normal };
+        let mut patch = Patch { spring: spring_of(&before[..n_before], &normal), normal };
         let (force, torque) = of_patch(model, state, i, contact, &mut patch);
         result.is_outside |= contact.is_outside(model, state);
         result.contacts[result.n] = force;
@@ -77,7 +94,6 @@ pub fn forces(
         patches.slots[patches.n] = patch;
         patches.n += 1;
     }
-    result
 }
 
 /// Triangles that grain `i` overlaps, deepest first.
@@ -86,17 +102,16 @@ fn touching(
     state: &State,
     i: usize,
     candidates: &[u32],
-    touched: &mut [Option<Touched>; N_TOUCHED],
-) -> usize {
+) -> ArrayVec<Touched, N_TOUCHED> {
     let (position, radius) = (state.grains.positions[i], state.grains.radii[i]);
-    let mut n = 0;
+    let mut touched = ArrayVec::<Touched, N_TOUCHED>::new();
     for &triangle in candidates {
         let corners = model.membrane.mesh.triangles[triangle as usize]
             .map(|vertex| &state.membrane.positions[vertex as usize]);
         let closest = closest_on_triangle(&position, corners);
         let from_membrane = position - closest.point;
         let distance_squared = from_membrane.norm_squared();
-        if distance_squared >= radius * radius || distance_squared == 0.0 || n == N_TOUCHED {
+        if distance_squared >= radius * radius || distance_squared == 0.0 || touched.is_full() {
             continue;
         }
         let contact = Touched {
@@ -106,20 +121,16 @@ fn touching(
             from_membrane,
             distance_squared,
         };
-        let deeper = |other: &Option<Touched>| {
-            other.is_some_and(|other| other.distance_squared <= distance_squared)
-        };
-        let place = touched[..n].iter().position(|other| !deeper(other)).unwrap_or(n);
-        touched.copy_within(place..n, place + 1);
-        touched[place] = Some(contact);
-        n += 1;
+        let is_deeper = |other: &Touched| distance_squared < other.distance_squared;
+        let place = touched.iter().position(is_deeper).unwrap_or(touched.len());
+        touched.insert(place, contact);
     }
-    n
+    touched
 }
 
 /// True if no triangle that shares the contact's edge or vertex has a closer point, or holds the
 /// same point with higher priority.
-fn is_local_minimum(model: &Model, contact: &Touched, touched: &[Option<Touched>]) -> bool {
+fn is_local_minimum(model: &Model, contact: &Touched, touched: &[Touched]) -> bool {
     let triangles = &model.membrane.mesh.triangles;
     let corners = triangles[contact.triangle as usize];
     let shared: [Option<u32>; 2] = match contact.feature {
@@ -143,13 +154,13 @@ fn is_local_minimum(model: &Model, contact: &Touched, touched: &[Option<Touched>
             || (difference <= tolerance
                 && (yours > mine || (yours == mine && other.triangle < contact.triangle)))
     };
-    !touched.iter().flatten().any(beats)
+    !touched.iter().any(beats)
 }
 
 /// The spring of the patch that had nearly this normal, if there was one.
-fn spring_of(before: &Patches, normal: &Vec3) -> Vec3 {
+fn spring_of(before: &[Patch], normal: &Vec3) -> Vec3 {
     let mut best = (SAME_HISTORY, Vec3::zeros());
-    for patch in &before.slots[..before.n] {
+    for patch in before {
         let likeness = patch.normal.dot(normal);
         if likeness > best.0 {
             best = (likeness, patch.spring);

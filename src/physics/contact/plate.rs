@@ -2,13 +2,25 @@
 
 use super::law::{self, Touch};
 use crate::{
-    base::Vec3,
+    base::{Vec3, parallel},
     physics::{Model, scratch::PlateForce, state::State},
 };
 
-/// Force of the plate on grain `i`; carries its spring on by one substep.
-#[inline]
-pub fn force(model: &Model, state: &State, i: usize, spring: &mut Vec3) -> PlateForce {
+/// Forces of the plate on all grains; carries their springs on by one substep.
+pub fn forces(
+    model: &Model,
+    state: &State,
+    springs: &mut [Vec3],
+    plate_forces: &mut Vec<PlateForce>,
+) {
+    plate_forces.resize(springs.len(), PlateForce::default());
+    parallel::for_each_of_two(plate_forces, springs, |i, plate_force, spring| {
+        *plate_force = force(model, state, i, spring);
+    });
+}
+
+#[inline(always)]
+fn force(model: &Model, state: &State, i: usize, spring: &mut Vec3) -> PlateForce {
     let State { grains, flange, flange_twist, .. } = state;
     let down = -(flange.rotation * Vec3::z());
     let from_flange = grains.positions[i] - flange.translation.vector;

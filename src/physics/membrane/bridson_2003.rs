@@ -43,13 +43,13 @@ pub struct Fold {
 }
 
 impl Fold {
-    /// Folds the triangles `facets` with corners r1 to r4 about the edge e = r4 − r3, whose squared
-    /// length and inverse length are known already.
+    /// Folds the triangles `facets` with corners r1 to r4 about the edge e = r4 − r3, whose length
+    /// and inverse length are known already.
     #[inline(always)]
-    pub fn new(r: [&Vec3; 4], facets: [&Facet; 2], edge: &Vec3, length: Real) -> Self {
+    pub fn new(r: [&Vec3; 4], facets: [&Facet; 2], edge: &Vec3, lengths: [Real; 2]) -> Self {
         let [f1, f2] = facets;
-        let square = length * length;
-        let inverse_square = 1.0 / square;
+        let [length, inverse] = lengths;
+        let inverse_square = inverse * inverse;
         let both = f1.inverse_norm * f2.inverse_norm;
         let cosine = f1.area_normal.dot(&f2.area_normal) * both;
         let sine = -length * both * f1.area_normal.dot(&(r[1] - r[2]));
@@ -59,7 +59,7 @@ impl Fold {
             a1: (r[0] - r[3]).dot(edge) * inverse_square,
             a2: (r[1] - r[3]).dot(edge) * inverse_square,
             half_sine: half_sine(sine, cosine),
-            slenderness: square * both / (f1.inverse_norm + f2.inverse_norm),
+            slenderness: length * length * both / (f1.inverse_norm + f2.inverse_norm),
         }
     }
 

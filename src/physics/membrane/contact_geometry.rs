@@ -52,7 +52,7 @@ pub struct Closest {
 }
 
 /// The point of `triangle` closest to `p`.
-#[inline]
+#[inline(always)]
 pub fn closest_on_triangle(p: &Vec3, triangle: [&Vec3; 3]) -> Closest {
     let [a, b, c] = triangle;
     let (ab, ac, ap) = (b - a, c - a, p - a);

@@ -19,7 +19,8 @@
 //! The eigenvalues come from power iteration. Bounds from rows or elements of the matrix
 //! (9 k/m and 12 k/m on the lattice) were rejected: they cost 20–40 % of the speed of a run.
 
-use super::{Facet, MembraneModel};
+use super::bridson_2003::Fold;
+use super::{Facet, Link, MembraneModel};
 use crate::base::{Real, Vec3};
 
 /// Enough for the largest eigenvalue to about a percent, whatever its neighbours.
@@ -38,7 +39,9 @@ enum Part {
 /// The longest stable substep [s] of a sheet whose vertices meet contacts of `contact_stiffness`
 /// [N/m] (0 for none).
 pub fn critical_step(model: &MembraneModel, contact_stiffness: Real) -> Real {
-    let lightest = model.masses.iter().copied().fold(Real::INFINITY, Real::min);
+    let free = |v: &usize| !model.is_clamped[*v];
+    let masses = (0..model.masses.len()).filter(free).map(|v| model.masses[v]);
+    let lightest = masses.fold(Real::INFINITY, Real::min);
     let kappa = MARGIN * largest_eigenvalue(model, Part::Stiffness) + contact_stiffness / lightest;
     let c = MARGIN * largest_eigenvalue(model, Part::Damping);
     ((c * c + 4.0 * kappa).sqrt() - c) / kappa
@@ -47,6 +50,7 @@ pub fn critical_step(model: &MembraneModel, contact_stiffness: Real) -> Real {
 /// Largest eigenvalue of M⁻¹K [1/s²] or M⁻¹C [1/s] over the vertices that are not clamped.
 fn largest_eigenvalue(model: &MembraneModel, part: Part) -> Real {
     let n = model.mesh.n_vertices();
+    let folds: Vec<_> = model.links.iter().map(|link| fold(model, link)).collect();
     // Any start with a share of the stiffest mode will do; this one has no symmetry of the mesh.
     let mut x: Vec<Vec3> = (0..n)
         .map(|v| {
@@ -56,7 +60,7 @@ fn largest_eigenvalue(model: &MembraneModel, part: Part) -> Real {
         .collect();
     let mut eigenvalue = 0.0;
     for _ in 0..N_ITERATIONS {
-        let mut y = apply(model, part, &x);
+        let mut y = apply(model, part, &folds, &x);
         let (mut xkx, mut xmx, mut yy) = (0.0, 0.0, 0.0);
         for v in 0..n {
             if model.is_clamped[v] {
@@ -77,39 +81,41 @@ fn largest_eigenvalue(model: &MembraneModel, part: Part) -> Real {
     eigenvalue
 }
 
-/// K x or C x in the reference shape.
-fn apply(model: &MembraneModel, part: Part, x: &[Vec3]) -> Vec<Vec3> {
+/// The hinge of `link` in the reference shape; `None` on the boundary.
+fn fold(model: &MembraneModel, link: &Link) -> Option<Fold> {
     let mesh = &model.mesh;
+    let [t1, t2] = link.triangles.map(|t| Facet::new(&mesh.positions, &mesh.triangles[t as usize]));
+    link.is_hinge().then(|| link.fold(&mesh.positions, [&t1, &t2]))
+}
+
+/// K x or C x in the reference shape.
+fn apply(model: &MembraneModel, part: Part, folds: &[Option<Fold>], x: &[Vec3]) -> Vec<Vec3> {
     let mut y = vec![Vec3::zeros(); x.len()];
-    for (l, link) in model.links.iter().enumerate() {
-        let r = link.corners(&mesh.positions);
-        let edge = r[3] - r[2];
+    for (link, fold) in model.links.iter().zip(folds) {
+        let at = link.vertices.map(|v| v as usize);
+        let [_, _, r3, r4] = link.corners(&model.mesh.positions);
+        let edge = r4 - r3;
         let length = edge.norm();
         let along = edge / length;
         let strength = match part {
             Part::Stiffness => link.spring.stiffness,
             Part::Damping => link.spring.damping,
         };
-        let at = link.vertices.map(|v| v as usize);
         let pull = along * (strength * along.dot(&(x[at[3]] - x[at[2]])));
-        y[at[3]] += pull;
         y[at[2]] -= pull;
-        if l < mesh.hinges.len() {
-            let facets =
-                link.triangles.map(|t| Facet::new(&mesh.positions, &mesh.triangles[t as usize]));
-            let fold = link.fold(&mesh.positions, [&facets[0], &facets[1]]);
-            let strength = match part {
-                // d(sin θ/2)/dθ = cos(θ/2)/2.
-                Part::Stiffness => {
-                    let half_cosine = (1.0 - fold.half_sine * fold.half_sine).max(0.0).sqrt();
-                    0.5 * half_cosine * model.sheet.bending_stiffness * fold.slenderness
-                }
-                Part::Damping => model.sheet.bending_damping * length,
-            };
-            let turn = fold.project(link.corners(x));
-            for (vertex, force) in at.into_iter().zip(fold.spread(strength * turn)) {
-                y[vertex] += force;
+        y[at[3]] += pull;
+        let Some(fold) = fold else { continue };
+        let strength = match part {
+            // d(sin θ/2)/dθ = cos(θ/2)/2.
+            Part::Stiffness => {
+                let half_cosine = (1.0 - fold.half_sine * fold.half_sine).max(0.0).sqrt();
+                0.5 * half_cosine * model.sheet.bending_stiffness * fold.slenderness
             }
+            Part::Damping => model.sheet.bending_damping * length,
+        };
+        let turn = fold.project(link.corners(x));
+        for (vertex, force) in at.into_iter().zip(fold.spread(strength * turn)) {
+            y[vertex] += force;
         }
     }
     y

@@ -49,6 +49,9 @@ pub struct MembraneModel {
     /// True for the vertices that the flange holds: those of the rim. Forces on them are computed
     /// like all others: they are what the sheet exerts on the flange.
     pub is_clamped: Vec<bool>,
+    /// Length beyond which no edge is ever stretched: twice the longest one in the reference
+    /// shape [m].
+    pub longest_edge: Real,
     /// Springs and hinges, numbered like the edges.
     links: Vec<Link>,
 }
@@ -56,8 +59,9 @@ pub struct MembraneModel {
 /// An edge with all that its forces need, in one place in memory.
 #[derive(Clone, Copy, Debug)]
 struct Link {
-    /// r1 to r4; on the boundary only the ends r3 and r4 count.
+    /// r1 to r4; on the boundary r1 and r2 are the ends r3 and r4 once more.
     vertices: [u32; 4],
+    /// Triangles 1 and 2; on the boundary twice 0.
     triangles: [u32; 2],
     spring: Spring,
     /// sin θ⁰/2.
@@ -137,7 +141,9 @@ impl MembraneModel {
             }
             links.push(link);
         }
-        Self { masses, is_clamped: mesh.is_on_rim.clone(), links, sheet, mesh }
+        let longest = links.iter().map(|link| link.spring.rest_length).fold(0.0, Real::max);
+        let is_clamped = mesh.is_on_rim.clone();
+        Self { masses, is_clamped, longest_edge: 2.0 * longest, links, sheet, mesh }
     }
 
     /// Makes every spring's rest length `scale` times its length in the reference shape.
@@ -164,6 +170,11 @@ impl MembraneModel {
 }
 
 impl Link {
+    /// False on the boundary.
+    fn is_hinge(&self) -> bool {
+        self.triangles[0] != self.triangles[1]
+    }
+
     /// r1 to r4 of `vectors`.
     #[inline(always)]
     fn corners<'a>(&self, vectors: &'a [Vec3]) -> [&'a Vec3; 4] {
@@ -173,7 +184,7 @@ impl Link {
     fn fold(&self, positions: &[Vec3], facets: [&Facet; 2]) -> Fold {
         let r = self.corners(positions);
         let edge = r[3] - r[2];
-        Fold::new(r, facets, &edge, edge.norm())
+        Fold::new(r, facets, &edge, [edge.norm(), 1.0 / edge.norm()])
     }
 }
 
@@ -231,12 +242,13 @@ fn pull_and_fold(
         let (r, v) = (link.corners(&state.positions), link.corners(&state.velocities));
         let (edge, rate) = (r[3] - r[2], v[3] - v[2]);
         let length = edge.norm();
-        let along = edge / length;
+        let inverse = 1.0 / length;
+        let along = edge * inverse;
         let pull = along * link.spring.tension(length, along.dot(&rate));
         let mut forces = [Vec3::zeros(); 4];
         if l < n_hinges {
             let sides = link.triangles.map(|t| &facets[t as usize]);
-            let fold = Fold::new(r, sides, &edge, length);
+            let fold = Fold::new(r, sides, &edge, [length, inverse]);
             let opened = fold.half_sine - link.rest_half_sine;
             let speed = fold.project(v);
             forces =

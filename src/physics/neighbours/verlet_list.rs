@@ -5,11 +5,7 @@ use rayon::prelude::*;
 use super::cell_grid::{CellGrid, id};
 use crate::{
     base::Vec3,
-    physics::{
-        Model, State,
-        scratch::Neighbours,
-        state::{Grains, Pairs},
-    },
+    physics::{Model, State, scratch::Neighbours, state::Grains},
 };
 
 /// Grains whose partners one thread looks up at a time.
@@ -31,9 +27,10 @@ pub fn build(model: &Model, grid: &CellGrid, state: &mut State, lists: &mut Neig
         })
         .collect();
     let ids = chunks.concat();
-    let springs = carry_springs(&state.pairs, &ids);
+    let springs = carry_springs(&state.pair_ids, &state.springs.pairs, &ids);
     index_by_grain(&ids, grains.len(), lists);
-    state.pairs = Pairs { ids, springs };
+    state.pair_ids = ids;
+    state.springs.pairs = springs;
 }
 
 /// Partners of grain `i` with higher ids, ascending.
@@ -55,14 +52,14 @@ fn partners(model: &Model, grid: &CellGrid, grains: &Grains, i: usize, found: &m
 }
 
 /// Springs for the new list: both lists are sorted, so one walk over both finds them.
-fn carry_springs(old: &Pairs, ids: &[[u32; 2]]) -> Vec<Vec3> {
+fn carry_springs(old_ids: &[[u32; 2]], old: &[Vec3], ids: &[[u32; 2]]) -> Vec<Vec3> {
     let mut k = 0;
     ids.iter()
         .map(|pair| {
-            while k < old.ids.len() && old.ids[k] < *pair {
+            while k < old_ids.len() && old_ids[k] < *pair {
                 k += 1;
             }
-            if k < old.ids.len() && old.ids[k] == *pair { old.springs[k] } else { Vec3::zeros() }
+            if k < old_ids.len() && old_ids[k] == *pair { old[k] } else { Vec3::zeros() }
         })
         .collect()
 }

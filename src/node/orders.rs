@@ -1,0 +1,80 @@
+//! Everyone who may command: the built-in controller and the outside.
+
+use std::time::Duration;
+
+use crate::{
+    command::Command,
+    controller::{Observation, Phase, PickAndLift},
+    scene::{self, Controller, Scene},
+    snapshot::Snapshot,
+    sources::{Source, SourceCounters},
+};
+
+/// All sources of commands of a run.
+pub struct Orders {
+    builtin: Option<Builtin>,
+    outside: Vec<Box<dyn Source>>,
+}
+
+struct Builtin {
+    machine: PickAndLift,
+    /// Index of the object to pick.
+    object: usize,
+}
+
+impl Orders {
+    /// The built-in controller, if `scene` asks for it, and `outside`.
+    pub fn new(scene: &Scene, outside: Vec<Box<dyn Source>>) -> Self {
+        let builtin = match &scene.controller {
+            Controller::Builtin(parameters) => Some(Builtin::new(scene, parameters)),
+            Controller::Topics { .. } => None,
+        };
+        Self { builtin, outside }
+    }
+
+    /// Commands for the next tick. Those from outside come last, so that a person can overrule
+    /// the built-in controller.
+    pub fn drain(&mut self, seen: &Snapshot) -> Vec<Command> {
+        let mut commands = self.builtin.as_mut().map(|it| it.decide(seen)).unwrap_or_default();
+        commands.extend(self.outside.iter_mut().flat_map(|source| source.drain(seen)));
+        commands
+    }
+
+    /// What the built-in controller is doing.
+    pub fn phase(&self) -> Option<Phase> {
+        self.builtin.as_ref().map(|it| it.machine.phase())
+    }
+
+    /// True when the built-in controller has finished.
+    pub fn is_done(&self) -> bool {
+        self.builtin.as_ref().is_some_and(|it| it.machine.is_done())
+    }
+
+    /// True if the run must wait for a first command.
+    pub fn is_waiting(&self) -> bool {
+        self.builtin.is_none() && !self.outside.iter().any(|source| source.has_heard())
+    }
+
+    /// What became of the messages from outside, source by source.
+    pub fn counters(&self) -> Vec<(&'static str, SourceCounters)> {
+        self.outside.iter().map(|source| (source.name(), source.counters())).collect()
+    }
+}
+
+impl Builtin {
+    fn new(scene: &Scene, parameters: &scene::PickAndLift) -> Self {
+        let object = scene.objects.iter().position(|it| it.name == parameters.object);
+        Self { machine: PickAndLift::new(parameters), object: object.unwrap_or(0) }
+    }
+
+    fn decide(&mut self, seen: &Snapshot) -> Vec<Command> {
+        let Some(object) = seen.objects.get(self.object) else { return Vec::new() };
+        self.machine.decide(&Observation {
+            time_s: Duration::from_nanos(seen.time_ns).as_secs_f64(),
+            flange_pose: seen.flange.pose,
+            contact_force: seen.contact_wrench.force,
+            gauge_pa: seen.chamber.gauge,
+            object_pose: object.body.pose,
+        })
+    }
+}

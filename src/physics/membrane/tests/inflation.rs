@@ -1,0 +1,107 @@
+//! Air: resultant, power, volume, and Laplace's law.
+
+use super::super::critical_step::critical_step;
+use super::super::mesh::Mesh;
+use super::super::{
+    MembraneModel, MembraneScratch, MembraneState, Sheet, forces, pressure, stretch,
+};
+use super::{forces_on, model_of, power, rubber, run, shaken, totals};
+use crate::base::{Real, Vec3};
+
+#[test]
+fn pressure_on_a_closed_mesh_has_no_resultant_and_the_power_of_the_volume() {
+    let model = model_of(Mesh::icosphere(0.04, 6), rubber(1e-3, 0.0));
+    let p = -9e4;
+    let mut state = shaken(&model, 1e-3, 0.1);
+    for position in &mut state.positions {
+        *position += Vec3::new(0.3, -0.2, 0.5); // the origin must not matter
+    }
+    let mut loads = forces_on(&model, &state, p);
+    for (load, inner) in loads.iter_mut().zip(forces_on(&model, &state, 0.0)) {
+        *load -= inner;
+    }
+    let (force, torque, size) = totals(&state, &loads);
+    // Oracle: C5, a closed surface under uniform pressure. Tolerance: rounding of ~10³ terms, and
+    // of the internal forces that were subtracted.
+    assert!(force < 1e-12 * size && torque < 1e-12 * size, "{force} {torque} of {size}");
+    check_power(&model, &state, &loads, p);
+}
+
+#[test]
+fn the_volume_under_a_lid_has_its_gradient() {
+    let model = model_of(Mesh::half_icosphere(0.04, 6), rubber(1e-3, 0.0));
+    let state = shaken(&model, 1e-3, 0.1); // the rim as well
+    let gradient = pressure::volume_gradient(&model.mesh, &state.positions);
+    let p = 700.0;
+    let loads: Vec<Vec3> = gradient.iter().map(|g| g * p).collect();
+    check_power(&model, &state, &loads, p);
+    let (force, torque, size) = totals(&state, &gradient);
+    // Oracle: volume does not change under translation and rotation. Tolerance: rounding.
+    assert!(force < 1e-13 * size && torque < 1e-13 * size);
+    let mut scratch = MembraneScratch::new(&model);
+    let slack =
+        MembraneModel::new(model.mesh.clone(), Sheet { youngs_modulus: 0.0, ..rubber(0.0, 0.0) });
+    forces(&slack, &state, p, &mut scratch);
+    for v in (0..model.mesh.n_vertices()).filter(|&v| !model.mesh.is_on_rim[v]) {
+        // Oracle: inside the sheet, load = p · gradient. Tolerance: rounding.
+        assert!((scratch.forces[v] - loads[v]).norm() < 1e-13 * loads[v].norm().max(1e-3));
+    }
+    let lid = pressure::lid_area_vector(&model.mesh, &state.positions);
+    let on_sheet: Vec3 = scratch.forces.iter().sum();
+    // Oracle: sheet and lid together are closed. Tolerance: rounding.
+    assert!((on_sheet + lid * p).norm() < 1e-13 * on_sheet.norm());
+}
+
+/// Oracle: C5, power of the load = gauge pressure times rate of volume, by central differences.
+fn check_power(model: &MembraneModel, state: &MembraneState, loads: &[Vec3], p: Real) {
+    let h = 1e-6;
+    let at = |time: Real| {
+        let moved = state.positions.iter().zip(&state.velocities);
+        pressure::volume(&model.mesh, &moved.map(|(r, v)| r + v * time).collect::<Vec<_>>())
+    };
+    let rate = (at(h) - at(-h)) / (2.0 * h);
+    let oracle = p * rate;
+    let found = power(loads, &state.velocities);
+    // Tolerance: the volume is a cubic in time; rounding of V ~ 10⁻⁴ m³ over 2h against the rate.
+    let size: Real = loads.iter().zip(&state.velocities).map(|(f, v)| f.dot(v).abs()).sum();
+    assert!((found - oracle).abs() < 1e-6 * size, "{found} for {oracle}");
+}
+
+#[test]
+fn the_volume_of_the_whole_and_half_sphere_meet() {
+    let whole = Mesh::icosphere(0.04, 16).unwrap();
+    let half = Mesh::half_icosphere(0.04, 16).unwrap();
+    let (v_whole, v_half) =
+        (pressure::volume(&whole, &whole.positions), pressure::volume(&half, &half.positions));
+    let sphere = 4.0 / 3.0 * std::f64::consts::PI * 0.04_f64.powi(3);
+    // Oracle: 4/3 π R³. Tolerance: chords of 3 mm lie up to a²/8R below the sphere, 0.5 % of V.
+    assert!((v_whole / sphere - 1.0).abs() < 5e-3 && v_whole < sphere);
+    // Oracle: symmetry. Tolerance: rounding.
+    assert!((2.0 * v_half / v_whole - 1.0).abs() < 1e-13);
+}
+
+#[test]
+fn a_sphere_under_pressure_obeys_laplace() {
+    let p = 10.0;
+    let sheet = Sheet { spring_damping: 0.5, ..rubber(0.0, 0.0) };
+    let model = model_of(Mesh::icosphere(0.04, 8), sheet);
+    let mut state = MembraneState::at_rest(&model.mesh);
+    let dt = 0.5 * critical_step(&model, 0.0);
+    let mut last = Real::INFINITY;
+    for _ in 0..40 {
+        run(&model, &mut state, dt, 50, p);
+        last = state.velocities.iter().map(|v| v.norm()).fold(0.0, Real::max);
+        // Slow modes are barely damped by springs: take out what they have gained.
+        for velocity in &mut state.velocities {
+            *velocity *= 0.3;
+        }
+    }
+    let volume = |r: &[Vec3]| pressure::volume(&model.mesh, r);
+    let ratio = volume(&state.positions) / volume(&model.mesh.positions);
+    let found = ratio.cbrt() - 1.0;
+    let oracle = p * 0.04 / (2.0 * 3.0_f64.sqrt() * stretch::stiffness(1.25e6, 0.3e-3));
+    // Oracle: U13, ΔR/R = p R/(2√3 k) = 3.556·10⁻⁴. Tolerance: 1 % for the mesh at frequency 8.
+    assert!((oracle - 3.556e-4).abs() < 1e-7);
+    assert!(last < 1e-4, "still moving at {last} m/s");
+    assert!((found / oracle - 1.0).abs() < 0.01, "{found} for {oracle}");
+}

@@ -1,0 +1,71 @@
+//! The sheet against lattice elasticity, plate theory, Laplace's law and conservation laws.
+
+mod mesh;
+mod stretching;
+mod bending;
+mod inflation;
+mod motion;
+
+use super::mesh::{Mesh, MeshFault};
+use super::{MembraneModel, MembraneScratch, MembraneState, Sheet, forces};
+use crate::base::random::{Random, Stream};
+use crate::base::{Real, Vec3};
+
+/// Material of the seeds' gripper; bending can be switched off by 0.
+fn rubber(bending_stiffness: Real, bending_damping: Real) -> Sheet {
+    Sheet {
+        thickness: 0.3e-3,
+        youngs_modulus: 1.25e6,
+        density: 2000.0,
+        spring_damping: 0.3,
+        bending_stiffness,
+        bending_damping,
+    }
+}
+
+fn model_of(mesh: Result<Mesh, MeshFault>, sheet: Sheet) -> MembraneModel {
+    MembraneModel::new(mesh.unwrap(), sheet)
+}
+
+fn shaken(model: &MembraneModel, distance: Real, speed: Real) -> MembraneState {
+    let mut random = Random::new(7, Stream::Position);
+    let mut draw = |size: Real| Vec3::from_fn(|_, _| random.between(-size, size));
+    let mut state = MembraneState::at_rest(&model.mesh);
+    for (position, velocity) in state.positions.iter_mut().zip(&mut state.velocities) {
+        *position += draw(distance);
+        *velocity = draw(speed);
+    }
+    state
+}
+
+fn forces_on(model: &MembraneModel, state: &MembraneState, gauge_pressure: Real) -> Vec<Vec3> {
+    let mut scratch = MembraneScratch::new(model);
+    forces(model, state, gauge_pressure, &mut scratch);
+    scratch.forces
+}
+
+fn power(forces: &[Vec3], velocities: &[Vec3]) -> Real {
+    forces.iter().zip(velocities).map(|(f, v)| f.dot(v)).sum()
+}
+
+/// Sum of forces, of torques about the origin, and of their lengths.
+fn totals(state: &MembraneState, forces: &[Vec3]) -> (Real, Real, Real) {
+    let force: Vec3 = forces.iter().sum();
+    let torque: Vec3 = state.positions.iter().zip(forces).map(|(r, f)| r.cross(f)).sum();
+    (force.norm(), torque.norm(), forces.iter().map(|f| f.norm()).sum())
+}
+
+/// A short semi-implicit Euler run; returns the largest speed at its end.
+fn run(model: &MembraneModel, state: &mut MembraneState, dt: Real, steps: usize, p: Real) -> Real {
+    let mut scratch = MembraneScratch::new(model);
+    for _ in 0..steps {
+        forces(model, state, p, &mut scratch);
+        for v in (0..model.mesh.n_vertices()).filter(|&v| !model.is_clamped[v]) {
+            state.velocities[v] += scratch.forces[v] * (dt / model.masses[v]);
+            state.positions[v] += state.velocities[v] * dt;
+        }
+    }
+    // Unlike Real::max this keeps a NaN.
+    let larger = |a: Real, b: Real| if b > a || b.is_nan() { b } else { a };
+    state.velocities.iter().map(|v| v.norm()).fold(0.0, larger)
+}

@@ -1,0 +1,79 @@
+//! The whole sheet: conservation, dissipation, threads, and the longest stable step.
+
+use super::super::critical_step::critical_step;
+use super::super::mesh::Mesh;
+use super::super::{Sheet, stretch};
+use super::{forces_on, model_of, power, rubber, run, shaken, totals};
+use crate::base::{Real, Vec3, parallel};
+
+#[test]
+fn damping_takes_energy_and_internal_forces_keep_momentum() {
+    let sheet = rubber(1e-3, 1e-4);
+    for mesh in [Mesh::half_icosphere(0.04, 6), Mesh::hexagonal_patch(3e-3, 4)] {
+        let model = model_of(mesh, sheet);
+        for speed in [0.01, 1.0] {
+            let mut state = shaken(&model, 5e-4, speed);
+            let moving = forces_on(&model, &state, 0.0);
+            let (force, torque, size) = totals(&state, &moving);
+            // Oracle: internal forces have no resultant. Tolerance: rounding of ~10³ terms.
+            assert!(force < 1e-13 * size, "net force {force} of {size}");
+            assert!(torque < 1e-13 * size * 0.04, "net torque {torque}");
+            let velocities = std::mem::replace(
+                &mut state.velocities,
+                vec![Vec3::zeros(); model.mesh.n_vertices()],
+            );
+            let still = forces_on(&model, &state, 0.0);
+            // Oracle: C3 d, power of the dissipative part is negative for any velocities.
+            assert!(power(&moving, &velocities) - power(&still, &velocities) < 0.0);
+        }
+    }
+}
+
+#[test]
+fn the_bits_do_not_depend_on_the_number_of_threads() {
+    let model = model_of(Mesh::half_icosphere(0.04, 16), rubber(1e-3, 1e-4));
+    let state = shaken(&model, 1e-4, 0.1);
+    let on = |n| parallel::pool(n).unwrap().install(|| forces_on(&model, &state, -9e4));
+    let bits = |forces: Vec<Vec3>| -> Vec<[u64; 3]> {
+        forces.iter().map(|f| [f.x.to_bits(), f.y.to_bits(), f.z.to_bits()]).collect()
+    };
+    // Oracle: the same computation on one thread, bit by bit.
+    assert_eq!(bits(on(1)), bits(on(3)));
+}
+
+#[test]
+fn the_critical_step_of_a_lattice_is_known() {
+    let sheet = Sheet { spring_damping: 0.0, ..rubber(0.0, 0.0) };
+    let model = model_of(Mesh::hexagonal_patch(3e-3, 12), sheet);
+    let inner = model.masses.iter().copied().fold(0.0, Real::max);
+    let found = critical_step(&model, 0.0);
+    let oracle = 2.0 / (6.0 * stretch::stiffness(1.25e6, 0.3e-3) / inner).sqrt();
+    // Oracle: U11, 2/ω with ω² = 6 k/m. Tolerance: 1 % of margin in the step, the finite patch, and
+    // power iteration from below.
+    assert!((found / oracle - 1.0).abs() < 0.03, "{found} for {oracle}");
+}
+
+#[test]
+fn the_critical_step_separates_rest_from_blow_up() {
+    for sheet in [
+        Sheet { spring_damping: 0.0, ..rubber(0.0, 0.0) },
+        rubber(0.0, 0.0),
+        Sheet { spring_damping: 0.0, ..rubber(1e-3, 0.0) },
+        rubber(1e-3, 1e-5),
+        rubber(1e-3, 1e-4),
+    ] {
+        let model = model_of(Mesh::half_icosphere(0.04, 8), sheet);
+        let limit = critical_step(&model, 0.0);
+        let speed_after = |share: Real| {
+            let mut state = shaken(&model, 1e-8, 0.0);
+            run(&model, &mut state, share * limit, 3000, 0.0)
+        };
+        let stable = speed_after(0.98);
+        let unstable = speed_after(1.15);
+        // Oracle: definition of the limit. A displacement of 10⁻⁸ m at ω ~ 10⁵/s cannot pass
+        // 10⁻² m/s while the scheme is stable. Above the limit the stiffest mode grows by some
+        // 10 % in each step. 15 %: margin, and κ and c from different modes.
+        assert!(stable < 1e-2, "{sheet:?} at 0.98: {stable} m/s");
+        assert!(unstable.is_nan() || unstable > 1.0, "{sheet:?} at 1.15: {unstable} m/s");
+    }
+}
