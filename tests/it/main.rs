@@ -7,11 +7,16 @@ mod by_tick; // a made-up system whose numbers follow from its tick
 mod commands; // commands from ROS 2 messages
 mod fanout; // sinks behind their queues: order, drops, failure, closing
 mod generated_types; // msgs/*.msg and the Rust types agree
+#[cfg(feature = "ros")]
 mod main_job; // the main job, commanded from other processes
 mod peers; // independent programs in Python
+#[cfg(feature = "ros")]
 mod private_network; // where tests may speak DDS
+#[cfg(feature = "ros")]
 mod ros_loop; // what goes out reaches others, what others say comes in
 mod scenes; // scenes that run, scenes that are refused
+#[cfg(feature = "shm")]
 mod stream; // what other processes read in shared memory
 mod synthetic; // a scene and snapshots made up for tests
+#[cfg(feature = "ros")]
 mod toy_run; // a whole run with a toy for physics

@@ -14,11 +14,11 @@ import ros_types as t
 from ros_node import Node, columns, wait_for
 
 OBJECT = sys.argv[1] if len(sys.argv) > 1 else "cylinder"
-TRAVEL_M_S, PUSH_M_S = 0.05, 0.01
+TRAVEL_M_S, PUSH_M_S = 0.10, 0.02
 TOUCH_N, PUSH_MAX_N, PUSH_M = 0.1, 60.0, 0.028
 GRIP_PA = float(sys.argv[2]) if len(sys.argv) > 2 else -90e3
-VENT_PA, SETTLE_S, HOLD_S, VENT_S = 5e3, 0.2, 1.5, 0.5
-LIFT_M, RETREAT_M = 0.100, 0.060
+VENT_PA, SETTLE_S, HOLD_S, VENT_S = 5e3, 0.2, 1.2, 0.5
+LIFT_M, RETREAT_M = 0.100, 0.040
 PERIOD_S = 0.01
 SILENCE_S = 60.0  # wall time
 

@@ -174,10 +174,7 @@ fn sheet(membrane: &scene::Membrane) -> Sheet {
     }
 }
 
-fn bodies(
-    scene: &Scene,
-    longest_edge: Real,
-) -> Result<(Vec<BodyModel>, Vec<Bulk>), CompileError> {
+fn bodies(scene: &Scene, longest_edge: Real) -> Result<(Vec<BodyModel>, Vec<Bulk>), CompileError> {
     let mut bodies = Vec::new();
     let mut bulks = Vec::new();
     for object in &scene.objects {
