@@ -10,8 +10,7 @@ const LINES_MAX: usize = 500;
 /// Written by a program, not by people.
 const GENERATED: &[&str] = &["src/wire/messages/generated.rs"];
 const NO_SUCH_ROOM: &[&str] = &["utils", "util", "helpers", "common", "misc", "manager", "types"];
-const PURE: &[&str] =
-    &["base", "physics", "cosim", "command", "session", "snapshot", "controller"];
+const PURE: &[&str] = &["base", "physics", "cosim", "command", "session", "snapshot", "controller"];
 const NOT_IN_PURE: &[&str] =
     &["std::fs", "std::net", "thread::sleep", "Instant", "SystemTime", "log::", "std::env"];
 /// Files whose numbers are read by everyone: each says its unit.
@@ -25,8 +24,23 @@ const DATA_FILES: &[&str] = &[
 ];
 /// Numbers without a dimension say so by one of these words.
 const DIMENSIONLESS: &[&str] = &[
-    "number", "fraction", "share", "ratio", "friction", "normal", "strain", "factor", "damping",
-    "overlap", "radius the bag", "over enclosed", "inverse", "weights", "coordination", "sliding", "rotation",
+    "number",
+    "fraction",
+    "share",
+    "ratio",
+    "friction",
+    "normal",
+    "strain",
+    "factor",
+    "damping",
+    "overlap",
+    "radius the bag",
+    "over enclosed",
+    "inverse",
+    "weights",
+    "coordination",
+    "sliding",
+    "rotation",
 ];
 
 /// Each foreign crate enters by one door, or by the doors of both ends of one wire.
@@ -203,9 +217,8 @@ fn mentions(line: &str, module: &str) -> bool {
 /// True for `name::` at the start of a path.
 fn names_crate(line: &str, name: &str) -> bool {
     let path = format!("{name}::");
-    let is_start = |at: usize| {
-        !line[..at].ends_with(|c: char| c.is_alphanumeric() || c == '_' || c == ':')
-    };
+    let is_start =
+        |at: usize| !line[..at].ends_with(|c: char| c.is_alphanumeric() || c == '_' || c == ':');
     line.match_indices(&path).any(|(at, _)| is_start(at))
 }
 
