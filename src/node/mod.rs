@@ -167,3 +167,6 @@ impl Crew {
         Packet::new(snapshot, run)
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -7,6 +7,7 @@ use super::{
     Controller, Object, PickAndLift, Scene, Shape, extent,
     fault::{Fault, Problem},
     quantity::{Dimension, FREQUENCY, LENGTH, PRESSURE, SPEED, TIME},
+    text::DEFAULTS_FILE,
     tree::{Node, Place},
 };
 use crate::base::{Pose, Real};
@@ -53,10 +54,13 @@ impl Check<'_> {
         self.tree.at(key).unwrap_or(self.tree).place.clone()
     }
 
+    /// Of two keys that do not fit each other, the one that is not a default is at fault.
     fn conflict(&mut self, pair: &Pair) {
         let print = |value| pair.dimension.print(value);
+        let is_default = |key: &str| self.place(key).source.as_ref() == DEFAULTS_FILE;
+        let is_limit_at_fault = is_default(pair.key) && !is_default(pair.limit_key);
         self.faults.push(Fault {
-            place: self.place(pair.key),
+            place: self.place(if is_limit_at_fault { pair.limit_key } else { pair.key }),
             key: pair.key.to_owned(),
             problem: Problem::Conflict {
                 value: print(pair.value),
@@ -232,15 +236,17 @@ impl Check<'_> {
     /// The object stands on the table, not in it, and not in the bag.
     fn room_at_start(&mut self, scene: &Scene, object: &Object) {
         let (low, high) = extent::heights(&object.shape, &object.pose);
-        self.below(Pair {
-            key: "object.position",
-            value: low + TOUCHING,
-            relation: "the height of its lowest point, inside the table, below",
-            limit_key: "table.height",
-            limit: scene.table.height,
-            dimension: &LENGTH,
-            remedy: "raise the object",
-        });
+        if low + TOUCHING < scene.table.height {
+            self.conflict(&Pair {
+                key: "object.position",
+                value: to_micrometres(low),
+                relation: "the height of its lowest point, inside the table, below",
+                limit_key: "table.height",
+                limit: scene.table.height,
+                dimension: &LENGTH,
+                remedy: "raise the object",
+            });
+        }
         let bag = scene.membrane.radius * scene.membrane.fill_stretch;
         let flange = scene.flange.pose.translation.vector;
         let offset = flange - object.pose.translation.vector;
@@ -251,8 +257,8 @@ impl Check<'_> {
                 key: "flange.position",
                 value: flange.z,
                 relation: "too low: the hanging bag would start inside the object; the least is",
-                limit_key: "membrane.radius",
-                limit: high + bag,
+                limit_key: "object.position",
+                limit: to_micrometres(high + bag),
                 dimension: &LENGTH,
                 remedy: "raise the flange",
             });
@@ -304,6 +310,11 @@ impl Check<'_> {
             remedy: "push less deep",
         });
     }
+}
+
+/// Heights in messages need no more digits.
+fn to_micrometres(length: Real) -> Real {
+    (length * 1e6).round() / 1e6
 }
 
 /// True for names that may stand in a topic and as a frame of their own.

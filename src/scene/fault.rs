@@ -31,7 +31,7 @@ pub enum SceneError {
 
 /// One thing wrong with a scene.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{place}: {key}: {problem}")]
+#[error("{place}: {}{problem}", prefix(.key))]
 pub struct Fault {
     /// Where.
     pub place: Place,
@@ -115,6 +115,10 @@ pub enum Problem {
         /// What to do.
         remedy: &'static str,
     },
+}
+
+fn prefix(key: &str) -> String {
+    if key.is_empty() { String::new() } else { format!("{key}: ") }
 }
 
 fn one_per_line(faults: &[Fault]) -> String {

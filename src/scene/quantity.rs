@@ -19,6 +19,8 @@ pub struct Unit {
     pub exponent: i32,
     /// What is left where the scale is not a power of ten.
     pub factor: Real,
+    /// True if quantities are printed in it; others are only read.
+    pub is_printed: bool,
 }
 
 /// A physical dimension with the units it may be written in; the first one is SI.
@@ -31,11 +33,15 @@ pub struct Dimension {
 }
 
 const fn ten(name: &'static str, exponent: i32) -> Unit {
-    Unit { name, exponent, factor: 1.0 }
+    Unit { name, exponent, factor: 1.0, is_printed: true }
+}
+
+const fn only_read(name: &'static str, exponent: i32) -> Unit {
+    Unit { name, exponent, factor: 1.0, is_printed: false }
 }
 
 const fn scaled(name: &'static str, factor: Real) -> Unit {
-    Unit { name, exponent: 0, factor }
+    Unit { name, exponent: 0, factor, is_printed: true }
 }
 
 const DEGREE: Real = PI / 180.0;
@@ -43,7 +49,7 @@ const DEGREE: Real = PI / 180.0;
 /// Lengths [m].
 pub static LENGTH: Dimension = Dimension {
     name: "length",
-    units: &[ten("m", 0), ten("cm", -2), ten("mm", -3), ten("um", -6)],
+    units: &[ten("m", 0), only_read("cm", -2), ten("mm", -3), ten("um", -6)],
 };
 /// Times [s].
 pub static TIME: Dimension =
@@ -56,21 +62,21 @@ pub static PRESSURE: Dimension = Dimension {
         ten("kPa", 3),
         ten("MPa", 6),
         ten("GPa", 9),
-        ten("mbar", 2),
-        ten("bar", 5),
+        only_read("mbar", 2),
+        only_read("bar", 5),
     ],
 };
 /// Rates of pressure [Pa/s].
 pub static PRESSURE_RATE: Dimension = Dimension {
     name: "pressure rate",
-    units: &[ten("Pa/s", 0), ten("kPa/s", 3), ten("MPa/s", 6), ten("bar/s", 5)],
+    units: &[ten("Pa/s", 0), ten("kPa/s", 3), ten("MPa/s", 6), only_read("bar/s", 5)],
 };
 /// Mass densities [kg/m³].
 pub static DENSITY: Dimension =
-    Dimension { name: "density", units: &[ten("kg/m^3", 0), ten("g/cm^3", 3)] };
+    Dimension { name: "density", units: &[ten("kg/m^3", 0), only_read("g/cm^3", 3)] };
 /// Speeds [m/s].
 pub static SPEED: Dimension =
-    Dimension { name: "speed", units: &[ten("m/s", 0), ten("cm/s", -2), ten("mm/s", -3)] };
+    Dimension { name: "speed", units: &[ten("m/s", 0), only_read("cm/s", -2), ten("mm/s", -3)] };
 /// Accelerations [m/s²].
 pub static ACCELERATION: Dimension =
     Dimension { name: "acceleration", units: &[ten("m/s^2", 0), ten("mm/s^2", -3)] };
@@ -159,10 +165,13 @@ impl Dimension {
         Ok(unit.to_si(number))
     }
 
-    /// The shortest text that reads back as exactly `value`.
+    /// The shortest text that reads back as exactly `value`; of equally short ones that whose
+    /// number is everyday.
     pub fn print(&self, value: Real) -> String {
-        let candidates = self.units.iter().filter_map(|unit| unit.print(value));
-        candidates.min_by_key(String::len).expect("the first unit is SI and prints any number")
+        let printed = self.units.iter().filter(|unit| unit.is_printed);
+        let candidates = printed.filter_map(|unit| unit.print(value));
+        let effort = |(text, is_everyday): &(String, bool)| (text.len(), !is_everyday);
+        candidates.min_by_key(effort).expect("the first unit is SI and prints any number").0
     }
 
     /// Accepted units for messages.
@@ -176,10 +185,12 @@ impl Unit {
         shifted(number, self.exponent) * self.factor
     }
 
-    fn print(&self, value: Real) -> Option<String> {
+    /// The text, and whether its number is one of every day: from 1 to 1000.
+    fn print(&self, value: Real) -> Option<(String, bool)> {
         let written = decimal(value / self.factor, -self.exponent);
         let is_exact = self.to_si(&written).to_bits() == value.to_bits();
-        is_exact.then(|| format!("{written} {}", self.name))
+        let is_everyday = (1.0..1000.0).contains(&shifted(&written, 0).abs());
+        is_exact.then(|| (format!("{written} {}", self.name), is_everyday))
     }
 }
 
@@ -275,10 +286,11 @@ mod tests {
     /// Oracle: the text that a person would write.
     #[test]
     fn quantities_are_printed_short() {
-        let cases: [(&Dimension, Real, &str); 8] = [
+        let cases: [(&Dimension, Real, &str); 9] = [
+            (&PRESSURE, 1.25e6, "1.25 MPa"),
             (&LENGTH, 0.0019, "1.9 mm"),
             (&LENGTH, 0.0, "0 m"),
-            (&LENGTH, 0.15, "15 cm"),
+            (&LENGTH, 0.04, "40 mm"),
             (&PRESSURE, -90e3, "-90 kPa"),
             (&PRESSURE, 5e6, "5 MPa"),
             (&TIME, 7e-6, "7 us"),

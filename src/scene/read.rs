@@ -223,6 +223,13 @@ fn plain(node: &Node) -> Option<String> {
     }
 }
 
+/// The first key of a map with its value.
+fn first_entry(map: &Node) -> Option<String> {
+    let Value::Map(entries) = &map.value else { return None };
+    let entry = entries.first()?;
+    Some(format!("{{ {}: {} }}", entry.key, plain(&entry.node)?))
+}
+
 /// True if `node` is the word that stands for "none".
 fn is_word(node: &Node, word: &str) -> bool {
     matches!(&node.value, Value::Text(text) if text == word)
@@ -233,7 +240,9 @@ impl Walk for Reader<'_> {
         let node = self.take(key).and_then(|node| {
             let is_map = matches!(node.value, Value::Map(_));
             if !is_map {
-                self.wrong_kind(node, key, "a map of keys and values", "key: value");
+                let path = self.path(key);
+                let first = self.examples.at(&path).and_then(first_entry).unwrap_or_default();
+                self.wrong_kind(node, key, "a map of keys and values", &first);
             }
             is_map.then_some(node)
         });

@@ -13,6 +13,8 @@ use super::{
 };
 
 /// The one place of all defaults.
+pub(super) const DEFAULTS_FILE: &str = "launch_configs/defaults.yaml";
+/// Its text.
 const DEFAULTS: &str = include_str!("../../launch_configs/defaults.yaml");
 
 /// Reads a scene file, with overrides of the form `key=value`.
@@ -39,7 +41,7 @@ pub fn parse(
     folder: &Path,
     overrides: &[String],
 ) -> Result<Scene, SceneError> {
-    let defaults = yaml::parse(DEFAULTS, "launch_configs/defaults.yaml")?;
+    let defaults = yaml::parse(DEFAULTS, DEFAULTS_FILE)?;
     let mut tree = defaults.clone();
     tree.lay(yaml::parse(text, source)?);
     for text in overrides {

@@ -23,16 +23,17 @@ pub struct SyntaxError {
 /// If the text is not YAML, has a key twice, or expands beyond the reader's limits.
 pub(super) fn parse(text: &str, source: &str) -> Result<Node, SyntaxError> {
     let whole = Place::whole(source);
-    if text.trim().is_empty() {
-        return Ok(Node::empty(whole));
-    }
     let options = serde_saphyr::options! { with_snippet: false, strict_booleans: true };
     let bare: Spanned<Bare> =
         serde_saphyr::from_str_with_options(text, options).map_err(|error| {
             let place = error.location().map_or_else(|| whole.clone(), |at| place(&whole, at));
-            SyntaxError { place, message: one_line(&error.without_snippet().to_string()) }
+            SyntaxError { place, message: plain_message(&error.without_snippet().to_string()) }
         })?;
-    Ok(name_source(bare, &whole))
+    match bare.value {
+        // Nothing but comments.
+        Bare::Scalar(Value::Null) => Ok(Node::empty(whole)),
+        _ => Ok(name_source(bare, &whole)),
+    }
 }
 
 /// A value as the YAML crate gives it, before it knows its source.
@@ -66,8 +67,14 @@ fn place(whole: &Place, at: Location) -> Place {
     Place { source: Rc::clone(&whole.source), line: at.line(), column: at.column() }
 }
 
-fn one_line(message: &str) -> String {
-    message.split_whitespace().collect::<Vec<_>>().join(" ")
+/// What the crate says, without the place, which we say ourselves, and without advice to callers.
+fn plain_message(message: &str) -> String {
+    let line = message.split_whitespace().collect::<Vec<_>>().join(" ");
+    let before = |text: String, end: &str| match text.rfind(end) {
+        Some(at) => text[..at].to_owned(),
+        None => text,
+    };
+    before(before(line, " at line "), ", set DuplicateKeyPolicy")
 }
 
 impl<'de> Deserialize<'de> for Bare {
@@ -137,6 +144,7 @@ mod tests {
     /// Oracle: line and column counted by hand.
     #[test]
     fn every_node_knows_its_place() {
+        assert_eq!(parse("# only a comment", "x").unwrap(), parse("", "x").unwrap());
         let tree = parse("grains:\n  count: 3\n  list: [1 mm, 2 mm]\n", "x.yaml").unwrap();
         let count = tree.at("grains.count").unwrap();
         assert_eq!(count.place.to_string(), "x.yaml:2:10");

@@ -64,7 +64,7 @@ pub enum BagError {
     },
     /// There is no room on the disk.
     #[error(
-        "bag folder {}: the disk is full after {} s of simulated time; what was recorded until \
+        "bag folder {}: the disk is full after {:.3} s of simulated time; what was recorded until \
          then is complete; make room, or choose another disk",
         folder.display(), seconds(*recorded_ns)
     )]
@@ -76,7 +76,7 @@ pub enum BagError {
     },
     /// The disk does not do what it should.
     #[error(
-        "bag folder {}: cannot write {} ({fault}); recorded up to {} s of simulated time; \
+        "bag folder {}: cannot write {} ({fault}); recorded up to {:.3} s of simulated time; \
          check the disk, or choose another",
         folder.display(), path.display(), seconds(*recorded_ns)
     )]
@@ -178,7 +178,7 @@ impl Bag {
         let file = opened.map_err(|error| {
             // An empty folder can be used again; that it cannot be emptied is the smaller fault.
             let _ = fs::remove_file(&path);
-            cannot_create(&path, error.to_string())
+            cannot_create(&path, text(&error))
         })?;
         let mut bag = Self {
             contents: Contents::new(encoder.topics().len()),
@@ -294,7 +294,7 @@ impl Bag {
         let disk_is_full = matches!(error, McapError::Io(error) if is_full(error));
         let fault = match self.finish() {
             Ok(()) if disk_is_full => BagError::DiskFull { folder, recorded_ns },
-            _ => BagError::CannotWrite { folder, path, fault: error.to_string(), recorded_ns },
+            _ => BagError::CannotWrite { folder, path, fault: text(error), recorded_ns },
         };
         self.fault = Some(fault.clone());
         fault
@@ -392,6 +392,17 @@ impl OpenFile {
         };
         self.writer.write_to_known_channel(&header, &self.bytes)
     }
+}
+
+/// An error and what caused it: the crate's own words say little.
+fn text(error: &McapError) -> String {
+    let mut text = error.to_string();
+    let mut cause = error.source();
+    while let Some(error) = cause {
+        text += &format!(": {error}");
+        cause = error.source();
+    }
+    text
 }
 
 fn record<const N: usize>(name: &str, values: [(&str, String); N]) -> Metadata {

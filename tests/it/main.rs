@@ -14,6 +14,7 @@ mod peers; // independent programs in Python
 mod private_network; // where tests may speak DDS
 #[cfg(feature = "ros")]
 mod ros_loop; // what goes out reaches others, what others say comes in
+mod scenes; // scenes that run, scenes that are refused
 #[cfg(feature = "shm")]
 mod stream; // what other processes read in shared memory
 mod synthetic; // a scene and snapshots made up for tests

@@ -2,83 +2,64 @@
 //!
 //! ```text
 //! semi-implicit Euler:  v' = v − dt M⁻¹(K x + C v),  x' = x + dt v'
-//! stable while  dt² K + 2 dt C < 4 M,  which holds for
+//! stable while          λ(dt) = largest eigenvalue of M⁻¹(dt² K + 2 dt C)  <  4
 //!
-//!     dt < ( −c + √(c² + 4 κ) ) / κ  =  2/ω (√(1 + ζ²) − ζ),   κ = ω²,  c = 2 ζ ω
-//!
-//! κ   largest eigenvalue of M⁻¹K      [1/s²]
-//! c   largest eigenvalue of M⁻¹C      [1/s]
+//! one mode:             dt < 2/ω (√(1 + ζ²) − ζ),   ω² from K, 2 ζ ω from C
 //! ```
 //!
-//! The first line has its first unstable mode at the factor −1 per step: x' = −x makes the matrix
-//! dt² K + 2 dt C − 4 M singular. Taking κ and c from possibly different modes errs on the safe side.
+//! The first unstable mode has the factor −1 per step: x' = −x makes dt² K + 2 dt C − 4 M singular.
 //! K and C are those of springs and hinges in the reference shape; contacts add their stiffness to
-//! every vertex. On a regular lattice κ = 6 k/m without hinges. A strain ε of the sheet changes κ
-//! by a share of about ε, which is what a safety factor on the step is for.
+//! every vertex. On a regular lattice ω² = 6 k/m without hinges. A strain ε of the sheet changes
+//! the limit by a share of about ε, which is what a safety factor on the step is for.
 //!
-//! The eigenvalues come from power iteration. Bounds from rows or elements of the matrix
-//! (9 k/m and 12 k/m on the lattice) were rejected: they cost 20–40 % of the speed of a run.
+//! Eigenvalues come from power iteration. Bounds from rows or elements of the matrix (9 k/m and
+//! 12 k/m on the lattice) were rejected: they cost 20–40 % of the speed of a run. Since
+//! λ(s dt) ≤ s² λ(dt) for s > 1, steps dt ← dt √(4/λ) approach the limit from the safe side.
 
 use super::bridson_2003::Fold;
 use super::{Facet, Link, MembraneModel};
 use crate::base::{Real, Vec3};
 
-/// Enough for the largest eigenvalue to about a percent, whatever its neighbours.
-const N_ITERATIONS: usize = 200;
-
-/// What power iteration may still have missed: it approaches from below.
+/// Iterations for the first eigenvalue: about a percent, whatever its neighbours.
+const N_FIRST: usize = 150;
+/// Iterations for each further one, which starts where the last ended.
+const N_NEXT: usize = 25;
+/// Approaches to the limit; each at least halves what is missing.
+const N_APPROACHES: usize = 8;
+/// What power iteration may still have missed: it finds eigenvalues from below.
 const MARGIN: Real = 1.02;
 
-/// The two halves of a linear force law.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Part {
-    Stiffness,
-    Damping,
+/// The sheet as a linear force law with weights on its stiffness and its damping.
+struct Linear<'a> {
+    model: &'a MembraneModel,
+    folds: Vec<Option<Fold>>,
+    contact_stiffness: Real,
 }
 
 /// The longest stable substep [s] of a sheet whose vertices meet contacts of `contact_stiffness`
 /// [N/m] (0 for none).
 pub fn critical_step(model: &MembraneModel, contact_stiffness: Real) -> Real {
-    let free = |v: &usize| !model.is_clamped[*v];
-    let masses = (0..model.masses.len()).filter(free).map(|v| model.masses[v]);
-    let lightest = masses.fold(Real::INFINITY, Real::min);
-    let kappa = MARGIN * largest_eigenvalue(model, Part::Stiffness) + contact_stiffness / lightest;
-    let c = MARGIN * largest_eigenvalue(model, Part::Damping);
-    ((c * c + 4.0 * kappa).sqrt() - c) / kappa
+    let folds = model.links.iter().map(|link| fold(model, link)).collect();
+    let linear = Linear { model, folds, contact_stiffness };
+    let mut mode = irregular(model.mesh.n_vertices());
+    let square = MARGIN * linear.largest_eigenvalue([1.0, 0.0], &mut mode, N_FIRST);
+    let rate = MARGIN * linear.largest_eigenvalue([0.0, 1.0], &mut mode, N_FIRST);
+    // Safe: as if the stiffest mode were the most damped one as well.
+    let mut dt = ((rate * rate + 4.0 * square).sqrt() - rate) / square;
+    for _ in 0..N_APPROACHES {
+        let weights = [dt * dt, 2.0 * dt];
+        dt *= (4.0 / (MARGIN * linear.largest_eigenvalue(weights, &mut mode, N_NEXT))).sqrt();
+    }
+    dt
 }
 
-/// Largest eigenvalue of M⁻¹K [1/s²] or M⁻¹C [1/s] over the vertices that are not clamped.
-fn largest_eigenvalue(model: &MembraneModel, part: Part) -> Real {
-    let n = model.mesh.n_vertices();
-    let folds: Vec<_> = model.links.iter().map(|link| fold(model, link)).collect();
-    // Any start with a share of the stiffest mode will do; this one has no symmetry of the mesh.
-    let mut x: Vec<Vec3> = (0..n)
-        .map(|v| {
-            let turn = (v as Real) * 0.618_033_988_749_895;
-            Vec3::new(turn.fract() - 0.5, (1.7 * turn).fract() - 0.5, (2.3 * turn).fract() - 0.5)
-        })
-        .collect();
-    let mut eigenvalue = 0.0;
-    for _ in 0..N_ITERATIONS {
-        let mut y = apply(model, part, &folds, &x);
-        let (mut xkx, mut xmx, mut yy) = (0.0, 0.0, 0.0);
-        for v in 0..n {
-            if model.is_clamped[v] {
-                (x[v], y[v]) = (Vec3::zeros(), Vec3::zeros());
-            }
-            xkx += x[v].dot(&y[v]);
-            xmx += model.masses[v] * x[v].norm_squared();
-            y[v] /= model.masses[v];
-            yy += y[v].norm_squared();
-        }
-        if yy == 0.0 {
-            return 0.0;
-        }
-        eigenvalue = xkx / xmx;
-        let scale = 1.0 / yy.sqrt();
-        x = y.iter().map(|y| y * scale).collect();
-    }
-    eigenvalue
+/// A start for power iteration that has a share of every mode: no symmetry of the mesh.
+fn irregular(n: usize) -> Vec<Vec3> {
+    let at = |v: usize| {
+        let turn = (v as Real) * 0.618_033_988_749_895;
+        Vec3::new(turn.fract() - 0.5, (1.7 * turn).fract() - 0.5, (2.3 * turn).fract() - 0.5)
+    };
+    (0..n).map(at).collect()
 }
 
 /// The hinge of `link` in the reference shape; `None` on the boundary.
@@ -88,35 +69,59 @@ fn fold(model: &MembraneModel, link: &Link) -> Option<Fold> {
     link.is_hinge().then(|| link.fold(&mesh.positions, [&t1, &t2]))
 }
 
-/// K x or C x in the reference shape.
-fn apply(model: &MembraneModel, part: Part, folds: &[Option<Fold>], x: &[Vec3]) -> Vec<Vec3> {
-    let mut y = vec![Vec3::zeros(); x.len()];
-    for (link, fold) in model.links.iter().zip(folds) {
-        let at = link.vertices.map(|v| v as usize);
-        let [_, _, r3, r4] = link.corners(&model.mesh.positions);
-        let edge = r4 - r3;
-        let length = edge.norm();
-        let along = edge / length;
-        let strength = match part {
-            Part::Stiffness => link.spring.stiffness,
-            Part::Damping => link.spring.damping,
-        };
-        let pull = along * (strength * along.dot(&(x[at[3]] - x[at[2]])));
-        y[at[2]] -= pull;
-        y[at[3]] += pull;
-        let Some(fold) = fold else { continue };
-        let strength = match part {
-            // d(sin θ/2)/dθ = cos(θ/2)/2.
-            Part::Stiffness => {
-                let half_cosine = (1.0 - fold.half_sine * fold.half_sine).max(0.0).sqrt();
-                0.5 * half_cosine * model.sheet.bending_stiffness * fold.slenderness
+impl Linear<'_> {
+    /// Largest eigenvalue of M⁻¹(w₀ K + w₁ C) over the vertices that are not clamped; `mode` is
+    /// where to start, and what was found.
+    fn largest_eigenvalue(&self, weights: [Real; 2], mode: &mut [Vec3], n: usize) -> Real {
+        let model = self.model;
+        let mut eigenvalue = 0.0;
+        for _ in 0..n {
+            let forces = self.apply(weights, mode);
+            let (mut xkx, mut xmx, mut yy) = (0.0, 0.0, 0.0);
+            for (v, x) in mode.iter_mut().enumerate() {
+                if model.is_clamped[v] {
+                    *x = Vec3::zeros();
+                    continue;
+                }
+                xkx += x.dot(&forces[v]);
+                xmx += model.masses[v] * x.norm_squared();
+                *x = forces[v] / model.masses[v];
+                yy += x.norm_squared();
             }
-            Part::Damping => model.sheet.bending_damping * length,
-        };
-        let turn = fold.project(link.corners(x));
-        for (vertex, force) in at.into_iter().zip(fold.spread(strength * turn)) {
-            y[vertex] += force;
+            if yy == 0.0 {
+                mode.copy_from_slice(&irregular(mode.len()));
+                return 0.0;
+            }
+            eigenvalue = xkx / xmx;
+            mode.iter_mut().for_each(|x| *x /= yy.sqrt());
         }
+        eigenvalue
     }
-    y
+
+    /// (w₀ K + w₁ C) x in the reference shape.
+    fn apply(&self, [stiff, damp]: [Real; 2], x: &[Vec3]) -> Vec<Vec3> {
+        let model = self.model;
+        let mut y: Vec<Vec3> = x.iter().map(|x| x * (stiff * self.contact_stiffness)).collect();
+        for (link, fold) in model.links.iter().zip(&self.folds) {
+            let at = link.vertices.map(|v| v as usize);
+            let [_, _, r3, r4] = link.corners(&model.mesh.positions);
+            let edge = r4 - r3;
+            let length = edge.norm();
+            let along = edge / length;
+            let spring = stiff * link.spring.stiffness + damp * link.spring.damping;
+            let pull = along * (spring * along.dot(&(x[at[3]] - x[at[2]])));
+            y[at[2]] -= pull;
+            y[at[3]] += pull;
+            let Some(fold) = fold else { continue };
+            // d(sin θ/2)/dθ = cos(θ/2)/2.
+            let half_cosine = (1.0 - fold.half_sine * fold.half_sine).max(0.0).sqrt();
+            let elastic = 0.5 * half_cosine * model.sheet.bending_stiffness * fold.slenderness;
+            let hinge = stiff * elastic + damp * model.sheet.bending_damping * length;
+            let turn = fold.project(link.corners(x));
+            for (vertex, force) in at.into_iter().zip(fold.spread(hinge * turn)) {
+                y[vertex] += force;
+            }
+        }
+        y
+    }
 }

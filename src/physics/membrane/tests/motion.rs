@@ -69,11 +69,11 @@ fn the_critical_step_separates_rest_from_blow_up() {
             run(&model, &mut state, share * limit, 3000, 0.0)
         };
         let stable = speed_after(0.98);
-        let unstable = speed_after(1.15);
+        let unstable = speed_after(1.05);
         // Oracle: definition of the limit. A displacement of 10⁻⁸ m at ω ~ 10⁵/s cannot pass
-        // 10⁻² m/s while the scheme is stable. Above the limit the stiffest mode grows by some
-        // 10 % in each step. 15 %: margin, and κ and c from different modes.
+        // 10⁻² m/s while the scheme is stable; beyond, the stiffest mode grows in every step.
+        // 5 %: power iteration's margin of 1 % in the step, and 3000 steps to be seen.
         assert!(stable < 1e-2, "{sheet:?} at 0.98: {stable} m/s");
-        assert!(unstable.is_nan() || unstable > 1.0, "{sheet:?} at 1.15: {unstable} m/s");
+        assert!(unstable.is_nan() || unstable > 1.0, "{sheet:?} at 1.05: {unstable} m/s");
     }
 }
