@@ -112,7 +112,7 @@ impl Coupled {
             for body in &mut self.controls.bodies[..self.n_objects] {
                 body.advance(self.model.substep);
             }
-            if (s + 1) % self.plan.n_per_exchange == 0 {
+            if (s + 1).is_multiple_of(self.plan.n_per_exchange) {
                 self.exchange(&mut exchange);
             }
         }

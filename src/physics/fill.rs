@@ -145,7 +145,7 @@ impl Filling<'_> {
         let n_substeps = count(REST_TIME_MAX / self.model.substep);
         for k in 0..n_substeps {
             self.step(k, "coming to rest")?;
-            if k % LOOK_EVERY == 0 && self.speed() < REST_SPEED {
+            if k.is_multiple_of(LOOK_EVERY) && self.speed() < REST_SPEED {
                 break;
             }
         }
@@ -162,7 +162,7 @@ impl Filling<'_> {
     fn step(&mut self, k: usize, stage: &'static str) -> Result<(), Diverged> {
         substep(&self.model, &self.controls, &mut self.state, &mut self.scratch);
         self.done += self.model.substep;
-        if k % LOOK_EVERY == 0 {
+        if k.is_multiple_of(LOOK_EVERY) {
             health::check(&self.model, &self.state, &self.scratch, 0)?;
             let longest = 0.05 + FALL_TIME + SHRINK_TIME + REST_TIME_MAX;
             (self.on_progress)(Progress { stage, share: (self.done / longest).min(1.0) });

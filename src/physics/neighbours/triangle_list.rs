@@ -12,7 +12,7 @@ use crate::{
 const CHUNK: usize = 128;
 
 /// Lists, for each grain, the triangles closer than contact plus skin, ascending.
-pub fn build(model: &Model, grid: &CellGrid, state: &State, lists: &mut Neighbours) {
+pub(super) fn build(model: &Model, grid: &CellGrid, state: &State, lists: &mut Neighbours) {
     let triangles = &model.membrane.mesh.triangles;
     let chunks: Vec<Vec<[u32; 2]>> = (0..triangles.len().div_ceil(CHUNK))
         .into_par_iter()

@@ -12,7 +12,7 @@ use crate::{
 const CHUNK: usize = 128;
 
 /// Lists all pairs closer than contact plus skin; springs of pairs listed before are kept.
-pub fn build(model: &Model, grid: &CellGrid, state: &mut State, lists: &mut Neighbours) {
+pub(super) fn build(model: &Model, grid: &CellGrid, state: &mut State, lists: &mut Neighbours) {
     let grains = &state.grains;
     let n_chunks = grains.len().div_ceil(CHUNK);
     let chunks: Vec<Vec<[u32; 2]>> = (0..n_chunks)
