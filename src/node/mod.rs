@@ -1,6 +1,7 @@
 //! The running thing: commands in, a tick, results out, and so on until there is a reason to end.
 
 pub mod cache; // settled start states on disk
+mod doors; // recording, streams, ROS 2
 pub mod judge; // what came of a run
 pub mod launch; // scene to a run
 pub mod orders; // who may command

@@ -59,7 +59,7 @@ impl Progress {
 
     /// A tick ended.
     pub fn tick(&self, seen: &Snapshot, phase: &str, pacer: &Pacer) {
-        if self.bar.is_hidden() || seen.tick.0 % EVERY != 0 {
+        if self.bar.is_hidden() || !seen.tick.0.is_multiple_of(EVERY) {
             return;
         }
         let real_time_factor = pacer.real_time_factor();

@@ -92,12 +92,13 @@ impl Check<'_> {
     fn names(&mut self, scene: &Scene) {
         let is_file_name = |it: char| it.is_ascii_alphanumeric() || "_-".contains(it);
         let name = &scene.name;
-        if self.tree.at("name").is_some() && !(name.chars().all(is_file_name) && !name.is_empty()) {
+        let is_written = |key: &str| self.tree.at(key).is_some();
+        if is_written("name") && (name.is_empty() || name.contains(|it| !is_file_name(it))) {
             let reason = "is no name for files".to_owned();
             self.unfit("name", name.clone(), reason, "use letters, digits, _ and -");
         }
         for object in &scene.objects {
-            if self.tree.at("object.name").is_some() && !is_ros_name(&object.name) {
+            if !is_ros_name(&object.name) {
                 self.unfit(
                     "object.name",
                     object.name.clone(),

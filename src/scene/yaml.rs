@@ -9,7 +9,7 @@ use super::tree::{Entry, Node, Place, Value};
 
 /// The text is not YAML.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{place}: not valid YAML: {message}")]
+#[error("{place}: not valid YAML: {message}; correct the text there")]
 pub struct SyntaxError {
     /// Where reading stopped.
     pub place: Place,

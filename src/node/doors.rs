@@ -1,0 +1,174 @@
+//! The doors to the outside that a scene asks for: recording, streams, ROS 2. A door whose feature
+//! was not built says so when it is asked for.
+
+use std::sync::Arc;
+
+use super::{launch::RunError, outlets::Outlets, progress::Progress};
+use crate::{
+    scene::{Controller, OnError, Scene},
+    sources::Source,
+    wire::to_ros::Encoder,
+};
+
+/// Lengths of the lists that are streamed.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sizes {
+    /// Number of grains.
+    pub(super) n_grains: usize,
+    /// Number of vertices of the membrane.
+    pub(super) n_vertices: usize,
+}
+
+/// Opens what the scene asks for. What cannot be opened is said and left out, unless the run
+/// would be pointless without it.
+pub(super) struct Doors<'a> {
+    /// What is asked for.
+    pub(super) scene: &'a Scene,
+    /// Makes messages for all who carry them.
+    #[cfg_attr(
+        not(any(feature = "ros", feature = "bag")),
+        expect(dead_code, reason = "without them nobody carries messages")
+    )]
+    pub(super) encoder: &'a Arc<Encoder>,
+    /// Where faults are said.
+    pub(super) progress: &'a Progress,
+}
+
+/// Those who may command from outside.
+pub(super) type Outside = Vec<Box<dyn Source>>;
+
+impl Doors<'_> {
+    /// Opens all of them.
+    ///
+    /// # Errors
+    /// If the run would be pointless.
+    pub(super) fn open(&self, sizes: Sizes) -> Result<(Outlets, Outside), RunError> {
+        let mut outlets = Outlets::default();
+        if self.scene.outputs.bag.enabled {
+            self.open_bag(&mut outlets)?;
+        }
+        if self.scene.outputs.stream {
+            self.open_stream(&mut outlets, sizes);
+        }
+        let mut outside = Outside::new();
+        let opened = if self.scene.outputs.ros.enabled {
+            self.open_ros(&mut outlets, &mut outside)
+        } else {
+            Err("outputs.ros.enabled is false".to_owned())
+        };
+        match opened {
+            Err(reason) if matches!(self.scene.controller, Controller::Topics { .. }) => {
+                return Err(RunError::NoTopics(reason));
+            }
+            Err(reason) if self.scene.outputs.ros.enabled => {
+                self.progress.say(&format!("{reason}; the run goes on without ROS 2"));
+            }
+            _ => {}
+        }
+        Ok((outlets, outside))
+    }
+
+    #[cfg(feature = "bag")]
+    fn open_bag(&self, outlets: &mut Outlets) -> Result<(), RunError> {
+        use crate::sinks::bag::{Bag, Subject};
+
+        let scene_text = crate::scene::to_yaml(self.scene);
+        let subject = Subject { scene_text, seed: self.scene.seed };
+        let folder = self.bag_folder();
+        let opened = Bag::create(&folder, Arc::clone(self.encoder), subject)
+            .map_err(|error| error.to_string())
+            .and_then(|bag| {
+                let added = outlets.fanout.add(Box::new(bag), self.bag_delivery());
+                added.map_err(|error| error.to_string())
+            });
+        match (opened, self.scene.outputs.bag.on_error) {
+            (Ok(()), on_error) => {
+                outlets.bag = Some(folder);
+                outlets.stops_with_bag = on_error == OnError::Stop;
+            }
+            (Err(reason), OnError::Stop) => return Err(RunError::Recording(reason)),
+            (Err(reason), OnError::Continue) => {
+                self.progress.say(&format!("{reason}; the run goes on without a recording"));
+            }
+        }
+        Ok(())
+    }
+
+    #[cfg(not(feature = "bag"))]
+    fn open_bag(&self, _outlets: &mut Outlets) -> Result<(), RunError> {
+        let reason = "this jamgrip was built without recordings (feature `bag`)".to_owned();
+        if self.scene.outputs.bag.on_error == OnError::Stop {
+            return Err(RunError::Recording(reason));
+        }
+        self.progress.say(&reason);
+        Ok(())
+    }
+
+    #[cfg(feature = "bag")]
+    fn bag_folder(&self) -> std::path::PathBuf {
+        let chosen = self.scene.outputs.bag.folder.clone();
+        chosen.unwrap_or_else(|| {
+            let name = format!("{}_{}", self.scene.name, super::pacer::utc_stamp());
+            std::path::PathBuf::from("bags").join(name)
+        })
+    }
+
+    #[cfg(feature = "bag")]
+    fn bag_delivery(&self) -> crate::sinks::fanout::Delivery {
+        use crate::{scene::OnFull, sinks::fanout::Delivery};
+
+        // A second of ticks: long enough for a disk to catch its breath.
+        let depth = 1000;
+        match self.scene.outputs.bag.on_full {
+            OnFull::Wait => Delivery::Every { depth },
+            OnFull::DropOldest => Delivery::Latest { depth },
+        }
+    }
+
+    #[cfg(feature = "shm")]
+    fn open_stream(&self, outlets: &mut Outlets, sizes: Sizes) {
+        use crate::sinks::shm::{Stream, prefix};
+
+        match Stream::open(&prefix(), sizes.n_grains, sizes.n_vertices) {
+            Ok(stream) => outlets.stream = Some(stream),
+            Err(error) => self.progress.say(&format!("{error}; the run goes on without streams")),
+        }
+    }
+
+    #[cfg(not(feature = "shm"))]
+    fn open_stream(&self, _outlets: &mut Outlets, sizes: Sizes) {
+        let Sizes { n_grains, n_vertices } = sizes;
+        self.progress.say(&format!(
+            "this jamgrip was built without streams (feature `shm`): {n_grains} grains and \
+             {n_vertices} vertices stay inside"
+        ));
+    }
+
+    #[cfg(feature = "ros")]
+    fn open_ros(&self, outlets: &mut Outlets, outside: &mut Outside) -> Result<(), String> {
+        use crate::{
+            sinks::{
+                fanout::Delivery,
+                reach::Reach,
+                ros::{RosNode, RosSink},
+            },
+            sources::ros::RosSource,
+        };
+
+        let reach = Reach::choose(&self.scene.outputs.ros, |name| std::env::var(name).ok());
+        let reach = reach.map_err(|error| error.to_string())?;
+        let node = RosNode::join(&reach).map_err(|error| error.to_string())?;
+        let sink = RosSink::new(&node, self.encoder).map_err(|error| error.to_string())?;
+        let source = RosSource::new(&node, self.encoder).map_err(|error| error.to_string())?;
+        // Old states are worth nothing to a controller, but half a second bridges a hiccup.
+        let delivery = Delivery::Latest { depth: 500 };
+        outlets.fanout.add(Box::new(sink), delivery).map_err(|error| error.to_string())?;
+        outside.push(Box::new(source));
+        Ok(())
+    }
+
+    #[cfg(not(feature = "ros"))]
+    fn open_ros(&self, _outlets: &mut Outlets, _outside: &mut Outside) -> Result<(), String> {
+        Err("this jamgrip was built without ROS 2 (feature `ros`)".to_owned())
+    }
+}
