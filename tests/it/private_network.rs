@@ -5,6 +5,7 @@
 //! namespace the test fails and says what to change: it never passes without having run.
 
 use std::{
+    io::Write,
     path::PathBuf,
     process::{Command, Stdio},
 };
@@ -51,6 +52,8 @@ pub(crate) fn inside(test: &str, body: impl FnOnce()) {
         if said.contains(READY) {
             assert!(said.contains("1 passed") || !output.status.success(), "no test `{test}`");
             assert!(output.status.success(), "in its own network `{test}` said:\n{said}\n{fault}");
+            // What was measured, for people who ask with `--nocapture`.
+            write!(std::io::stderr().lock(), "{fault}").unwrap();
             return;
         }
         tried += &format!("unshare {option}: {}\n", fault.trim());
