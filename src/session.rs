@@ -60,7 +60,7 @@ impl Session {
         state.springs.bodies = vec![crate::base::Vec3::zeros(); n_samples * model.bodies.len()];
         let step = plan.tick / measure::real(plan.n_substeps / plan.n_per_exchange);
         let world = crate::cosim::rapier_world::RapierWorld::new(&scene, &model, bulks, step);
-        let n_objects = scene.objects.len();
+        let (n_objects, n_grains) = (scene.objects.len(), state.grains.positions.len());
         let desk = Desk::new(&scene);
         let coupled = Coupled::new(model, plan, state, world, limits);
         let still = vec![Wrench::zero(); n_objects];
@@ -77,7 +77,8 @@ impl Session {
             },
             records: Vec::new(),
             digest: 0,
-            normal_forces: Vec::new(),
+            // Nothing is known of forces before the first tick.
+            normal_forces: vec![0.0; n_grains],
             pool,
         };
         session.digest = session.take_digest();

@@ -39,7 +39,7 @@ impl Scratch {
             patch_forces: Vec::new(),
             plate_forces: Vec::new(),
             sample_forces: Vec::new(),
-            vertex_forces: Vec::new(),
+            vertex_forces: vec![Vec3::zeros(); model.membrane.mesh.n_vertices()],
             membrane: MembraneScratch::new(&model.membrane),
             body_wrenches: Vec::new(),
             flange_wrench: Wrench::zero(),

@@ -242,6 +242,15 @@ impl Stream {
     fn send_grains(&self, view: &View<'_>) -> Result<(), String> {
         let fault = |it: &dyn std::fmt::Display| format!("grains: {it}");
         let count = view.grain_positions.len();
+        let lists = [
+            view.grain_velocities.len(),
+            view.grain_spins.len(),
+            view.grain_radii.len(),
+            view.grain_normal_forces.len(),
+        ];
+        if lists != [count; 4] {
+            return Err(format!("grains: {count} positions, but lists of {lists:?}"));
+        }
         let mut sample = self.grains.loan_slice_uninit(count).map_err(|it| fault(&it))?;
         *sample.user_header_mut() = header(view, count);
         sample.write_from_fn(|i| GrainRow::of(view, i)).send().map_err(|it| fault(&it))?;
@@ -251,6 +260,10 @@ impl Stream {
     fn send_membrane(&self, view: &View<'_>) -> Result<(), String> {
         let fault = |it: &dyn std::fmt::Display| format!("membrane: {it}");
         let count = view.vertex_positions.len();
+        let lists = [view.vertex_velocities.len(), view.vertex_contact_forces.len()];
+        if lists != [count; 2] {
+            return Err(format!("membrane: {count} positions, but lists of {lists:?}"));
+        }
         let mut sample = self.membrane.loan_slice_uninit(count).map_err(|it| fault(&it))?;
         *sample.user_header_mut() = header(view, count);
         sample.write_from_fn(|i| VertexRow::of(view, i)).send().map_err(|it| fault(&it))?;

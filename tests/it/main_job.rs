@@ -27,8 +27,8 @@ fn an_independent_peer_picks_up_a_toy() {
         let folder = tempfile::tempdir().unwrap();
         let mut peer = start_peer(folder.path(), &["cylinder"]);
         let node = RosNode::join(&reach()).unwrap();
-        toy_run::run(&node, || is_over(&mut peer));
-        let seen = report_of(peer);
+        toy_run::run(&node, || peer.is_over());
+        let seen = peer.report();
         check_lift(&seen);
         assert_eq!(
             (&seen["n_grains"], &seen["n_vertices"]),
@@ -43,17 +43,14 @@ fn an_independent_peer_picks_up_a_toy() {
 #[test]
 fn the_example_controller_picks_up_a_toy() {
     inside("main_job::the_example_controller_picks_up_a_toy", || {
-        let mut controller = Command::new(example("pick_and_lift_controller"))
-            .arg(main_scene())
-            .env("ROS_DOMAIN_ID", reach().domain_id.to_string())
-            .stdout(Stdio::piped())
-            .spawn()
-            .unwrap();
+        let mut controller = Running::start(
+            Command::new(example("pick_and_lift_controller"))
+                .arg(main_scene())
+                .env("ROS_DOMAIN_ID", reach().domain_id.to_string()),
+        );
         let node = RosNode::join(&reach()).unwrap();
-        toy_run::run(&node, || is_over(&mut controller));
-        let output = controller.wait_with_output().unwrap();
-        let said = String::from_utf8(output.stdout).unwrap();
-        assert!(output.status.success(), "{said}");
+        toy_run::run(&node, || controller.is_over());
+        let said = controller.ended_well();
         let told = said.lines().last().unwrap().strip_prefix("lifted ").expect("a result");
         let (lifted_mm, held) = told.split_once(" mm, held for ").unwrap();
         let held_s: f64 = held.trim_end_matches(" s").parse().unwrap();
@@ -70,24 +67,23 @@ fn an_independent_peer_commands_the_whole_job() {
     inside_with_peers("main_job::an_independent_peer_commands_the_whole_job", || {
         let folder = tempfile::tempdir().unwrap();
         let bag = folder.path().join("bag");
-        let mut node = Command::new(env!("CARGO_BIN_EXE_jamgrip"))
-            .args(["run", "launch_configs/pick_and_lift.yaml", "--json", "--bag"])
-            .arg(&bag)
-            .args(["--set", "controller=topics"])
-            .current_dir(env!("CARGO_MANIFEST_DIR"))
-            .env("ROS_DOMAIN_ID", reach().domain_id.to_string())
-            .env("JAMGRIP_STREAM_PREFIX", format!("jamgrip_test_{}", std::process::id()))
-            .stdout(Stdio::piped())
-            .spawn()
-            .unwrap();
+        let mut node = Running::start(
+            Command::new(env!("CARGO_BIN_EXE_jamgrip"))
+                .args(["run", "launch_configs/pick_and_lift.yaml", "--json", "--bag"])
+                .arg(&bag)
+                .args(["--set", "controller=topics"])
+                .current_dir(env!("CARGO_MANIFEST_DIR"))
+                .env("ROS_DOMAIN_ID", reach().domain_id.to_string())
+                .env("JAMGRIP_STREAM_PREFIX", format!("jamgrip_test_{}", std::process::id())),
+        );
         let mut peer = start_peer(folder.path(), &["cylinder"]);
-        while !is_over(&mut peer) {
-            assert!(!is_over(&mut node), "the run ended before its controller");
+        while !peer.is_over() {
+            assert!(!node.is_over(), "the run ended before its controller");
             std::thread::sleep(Duration::from_millis(20));
         }
-        let seen = report_of(peer);
-        interrupt(&node);
-        let told = report_of(node);
+        let seen = peer.report();
+        node.interrupt();
+        let told = node.report();
 
         check_lift(&seen);
         let scene = load(&main_scene(), &[]).unwrap();
@@ -117,34 +113,59 @@ fn weight(scene: &Scene) -> f64 {
     volume * object.material.density * scene.gravity.norm()
 }
 
-/// Ctrl-C.
-fn interrupt(process: &Child) {
-    let kill = format!("kill -INT {}", process.id());
-    assert!(Command::new("sh").args(["-c", &kill]).status().unwrap().success());
+fn start_peer(folder: &Path, arguments: &[&str]) -> Running {
+    Running::start(
+        peers::script("pick_and_lift.py")
+            .args(arguments)
+            .env("ROS_DOMAIN_ID", reach().domain_id.to_string())
+            .env("CYCLONEDDS_URI", format!("file://{}", cyclone_config(folder).display())),
+    )
 }
 
-fn start_peer(folder: &Path, arguments: &[&str]) -> Child {
-    peers::script("pick_and_lift.py")
-        .args(arguments)
-        .env("ROS_DOMAIN_ID", reach().domain_id.to_string())
-        .env("CYCLONEDDS_URI", format!("file://{}", cyclone_config(folder).display()))
-        .stdout(Stdio::piped())
-        .spawn()
-        .unwrap()
+/// A process that does not outlive its test.
+struct Running(Option<Child>);
+
+impl Running {
+    fn start(command: &mut Command) -> Self {
+        Self(Some(command.stdout(Stdio::piped()).spawn().unwrap()))
+    }
+
+    fn is_over(&mut self) -> bool {
+        self.0.as_mut().unwrap().try_wait().unwrap().is_some()
+    }
+
+    /// What it printed, once it has ended well.
+    fn ended_well(mut self) -> String {
+        let output = self.0.take().unwrap().wait_with_output().unwrap();
+        let said = String::from_utf8(output.stdout).unwrap();
+        assert!(output.status.success(), "{}: {said}", output.status);
+        said
+    }
+
+    /// The last line that it printed.
+    fn report(self) -> Value {
+        let said = self.ended_well();
+        let line = said.lines().last().expect("a report");
+        // For people who ask with `--nocapture`.
+        writeln!(std::io::stderr().lock(), "{line}").unwrap();
+        serde_json::from_str(line).unwrap()
+    }
+
+    /// Ctrl-C.
+    fn interrupt(&self) {
+        let kill = format!("kill -INT {}", self.0.as_ref().unwrap().id());
+        assert!(Command::new("sh").args(["-c", &kill]).status().unwrap().success());
+    }
 }
 
-fn is_over(process: &mut Child) -> bool {
-    process.try_wait().unwrap().is_some()
-}
-
-/// The last line of what a process printed.
-fn report_of(process: Child) -> Value {
-    let output = process.wait_with_output().unwrap();
-    let said = String::from_utf8(output.stdout).unwrap();
-    assert!(output.status.success(), "the peer failed: {said}");
-    let line = said.lines().last().expect("a report");
-    report(line);
-    serde_json::from_str(line).unwrap()
+impl Drop for Running {
+    fn drop(&mut self) {
+        if let Some(mut process) = self.0.take() {
+            // It may have ended by itself.
+            let _killed = process.kill();
+            let _reaped = process.wait();
+        }
+    }
 }
 
 /// The acceptance: lifted at least 90 mm, held at least one second of simulated time, let go.
@@ -157,9 +178,4 @@ fn check_lift(seen: &Value) {
     assert!((number("cloud_lifted_m") - 0.1).abs() < 0.005, "{} m", number("cloud_lifted_m"));
     assert!(number("let_go_n") < 0.1, "still touched with {} N", number("let_go_n"));
     assert!(10.0 <= number("n_clouds") && 10.0 <= number("n_sheets"), "clouds while it ran");
-}
-
-/// Shows what was measured, for people who ask with `--nocapture`.
-fn report(line: &str) {
-    writeln!(std::io::stderr().lock(), "{line}").unwrap();
 }
