@@ -139,7 +139,7 @@ impl Summary {
             let text = format!("{n_written} written, {n_dropped} dropped, {n_failed} failed");
             rows.push(row(sink.name, text));
         }
-        rows.push(row("bag", self.bag.clone().unwrap_or_else(|| "none".to_owned())));
+        rows.push(row("recorded in", self.bag.clone().unwrap_or_else(|| "none".to_owned())));
         rows
     }
 }

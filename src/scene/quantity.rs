@@ -187,7 +187,11 @@ impl Unit {
 
     /// The text, and whether its number is one of every day: from 1 to 1000.
     fn print(&self, value: Real) -> Option<(String, bool)> {
-        let written = decimal(value / self.factor, -self.exponent);
+        let number = value / self.factor;
+        if !number.is_finite() {
+            return None;
+        }
+        let written = decimal(number, -self.exponent);
         let is_exact = self.to_si(&written).to_bits() == value.to_bits();
         let is_everyday = (1.0..1000.0).contains(&shifted(&written, 0).abs());
         is_exact.then(|| (format!("{written} {}", self.name), is_everyday))
@@ -318,6 +322,12 @@ mod tests {
                 message(not_a_number)
             );
         }
+    }
+
+    /// In degrees this is beyond the largest double.
+    #[test]
+    fn numbers_that_overflow_in_a_unit_are_printed_in_another() {
+        assert_eq!(ANGLE.print(7.5e307), "7.5e307 rad");
     }
 
     proptest! {
