@@ -1,7 +1,7 @@
 //! One run in memory: tick, look, save, resume.
 
 use crate::{
-    base::{Tick, digest::Digest, real::Wrench},
+    base::{Tick, digest::Digest, parallel, real::Wrench},
     command::{
         Command, CommandRecord,
         apply::{Desk, Frames},
@@ -41,7 +41,7 @@ impl Session {
         on_progress: &mut (dyn FnMut(Progress) + Send),
     ) -> Result<Self, Diverged> {
         let Compiled { scene, model, pool, .. } = &compiled;
-        let state = pool.install(|| fill::fill(scene, model, on_progress))?;
+        let state = parallel::lead(pool, || fill::fill(scene, model, on_progress))?;
         Ok(Self::start(compiled, state))
     }
 
@@ -104,7 +104,7 @@ impl Session {
 
     fn advance(&mut self, inputs: &Inputs) {
         let Self { coupled, pool, means, .. } = self;
-        *means = pool.install(|| coupled.advance(inputs));
+        *means = parallel::lead(pool, || coupled.advance(inputs));
     }
 
     fn frames(&self) -> Frames {

@@ -1,13 +1,27 @@
-//! The one way to fork: a pool of solver threads, fixed chunks, and sums in a fixed order.
+//! The one way to fork: a team of solver threads, chunks of elements, and sums in a fixed order.
 //!
 //! Every parallel loop writes each element from read-only data, so the result cannot depend on
-//! which thread did it. Sums are taken over chunks of fixed length and then over the chunks in
-//! order, so they have the same bits on any number of threads.
+//! which thread did it.
+//!
+//! A substep has a dozen loops of some ten microseconds. Sending rayon's threads to sleep between
+//! them and waking them again would cost more than the loops. So for the length of a tick
+//! (`lead`) all threads of rayon's pool form a team: one leads, the others wait for its next loop,
+//! first by spinning, then by giving their core away, and take chunks of it as they come free.
+//! Between ticks they sleep. A core that is busy with something else only takes fewer chunks.
 
-use rayon::prelude::*;
+use std::{
+    cell::Cell,
+    ops::Range,
+    sync::{
+        Mutex,
+        atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering},
+    },
+};
 
-/// Elements a thread takes at a time: large enough to hide the cost of taking them.
-const CHUNK: usize = 256;
+/// Chunks per thread: enough to even out what the threads get.
+const CHUNKS_PER_THREAD: usize = 4;
+/// Turns of a waiting loop before the core is given away.
+const SPINS: u32 = 20_000;
 
 /// Starts the solver's threads. They run at lower priority than the threads that stream, because
 /// a solver that takes every core would otherwise delay messages by tens of milliseconds.
@@ -31,48 +45,309 @@ fn lower_priority() {
     }
 }
 
-/// `write(i, &mut out[i])` for every element.
-pub fn for_each<T: Send>(out: &mut [T], write: impl Fn(usize, &mut T) + Sync + Send) {
-    if out.len() <= CHUNK {
-        for (i, element) in out.iter_mut().enumerate() {
-            write(i, element);
-        }
-        return;
-    }
-    out.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, elements)| {
-        for (k, element) in elements.iter_mut().enumerate() {
-            write(chunk * CHUNK + k, element);
-        }
-    });
+/// A loop that the team works on: called with ranges of indices.
+type Loop<'a> = &'a (dyn Fn(Range<usize>) + Sync);
+
+/// Threads that share the loops of one leader.
+struct Team {
+    n_threads: usize,
+    /// The present loop while it may be joined. Joining happens under its lock, so a helper that
+    /// was away from its core for a while cannot mistake one loop for another.
+    present: Mutex<Option<Job>>,
+    /// Counts the loops; a change tells the helpers that there is a new one.
+    turn: AtomicU64,
+    /// First index of the present loop that nobody has taken yet.
+    next: AtomicUsize,
+    /// Helpers inside the present loop: those who are not cannot hold it up.
+    n_inside: AtomicUsize,
+    is_over: AtomicBool,
+    has_panicked: AtomicBool,
 }
 
-/// The sum of `term(i)` for `i < n`, by chunks in order.
-pub fn sum<T>(n: usize, zero: T, term: impl Fn(usize) -> T + Sync + Send) -> T
-where
-    T: Copy + Send + Sync + std::ops::Add<Output = T>,
-{
-    let of_chunk = |chunk: usize| {
-        let mut total = zero;
-        for i in chunk * CHUNK..n.min((chunk + 1) * CHUNK) {
-            total = total + term(i);
-        }
-        total
+#[derive(Clone, Copy)]
+struct Job {
+    /// Lives until the loop is closed and all helpers have left it: `Team::run` waits for that.
+    work: Loop<'static>,
+    n: usize,
+    chunk: usize,
+}
+
+thread_local! {
+    /// The team that this thread leads, if it leads one.
+    static TEAM: Cell<Option<&'static Team>> = const { Cell::new(None) };
+}
+
+/// Runs `work` on one thread of `pool`, with the others as its team.
+pub fn lead<R: Send>(pool: &rayon::ThreadPool, work: impl FnOnce() -> R + Send) -> R {
+    let team = Team {
+        n_threads: pool.current_num_threads(),
+        present: Mutex::new(None),
+        turn: AtomicU64::new(0),
+        next: AtomicUsize::new(0),
+        n_inside: AtomicUsize::new(0),
+        is_over: AtomicBool::new(false),
+        has_panicked: AtomicBool::new(false),
     };
-    let sums: Vec<T> = (0..n.div_ceil(CHUNK)).into_par_iter().map(of_chunk).collect();
-    sums.into_iter().fold(zero, |total, part| total + part)
+    let work = Mutex::new(Some(work));
+    let results = pool.broadcast(|context| {
+        if context.index() != 0 {
+            team.help();
+            return None;
+        }
+        let work = work.lock().ok().and_then(|mut work| work.take());
+        let _over = Leading::new(&team);
+        work.map(|work| work())
+    });
+    results.into_iter().flatten().next().expect("the thread with index 0 has run the work")
+}
+
+/// Makes a thread the leader of its team until dropped, also by a panic.
+struct Leading<'a>(&'a Team);
+
+impl<'a> Leading<'a> {
+    fn new(team: &'a Team) -> Self {
+        #[expect(unsafe_code, reason = "a thread-local cannot hold a borrowed reference")]
+        // SAFETY: `drop` takes the reference away before the team's borrow ends.
+        let forever: &'static Team = unsafe { std::mem::transmute::<&Team, &'static Team>(team) };
+        TEAM.set(Some(forever));
+        Self(team)
+    }
+}
+
+impl Drop for Leading<'_> {
+    fn drop(&mut self) {
+        TEAM.set(None);
+        self.0.is_over.store(true, Ordering::Release);
+    }
+}
+
+/// Counts a helper out of a loop, also when its chunk panics.
+struct Leaving<'a>(&'a Team);
+
+impl Drop for Leaving<'_> {
+    fn drop(&mut self) {
+        if std::thread::panicking() {
+            self.0.has_panicked.store(true, Ordering::Relaxed);
+        }
+        self.0.n_inside.fetch_sub(1, Ordering::Release);
+    }
+}
+
+impl Team {
+    /// Works on the leader's loops until it is over.
+    fn help(&self) {
+        let mut turn = 0;
+        loop {
+            wait(|| self.turn.load(Ordering::Acquire) != turn || self.is_over());
+            if self.is_over() {
+                return;
+            }
+            turn = self.turn.load(Ordering::Acquire);
+            if let Some(job) = self.join() {
+                let _leaving = Leaving(self);
+                self.take_chunks(&job);
+            }
+        }
+    }
+
+    fn is_over(&self) -> bool {
+        self.is_over.load(Ordering::Acquire)
+    }
+
+    /// The present loop, if it is still open; the helper is then inside.
+    fn join(&self) -> Option<Job> {
+        let present = self.present.lock().ok()?;
+        let job = (*present)?;
+        self.n_inside.fetch_add(1, Ordering::Relaxed);
+        Some(job)
+    }
+
+    /// Runs `work` over `0..n`, with all threads of the team that have time.
+    fn run(&self, n: usize, chunk: usize, work: Loop<'_>) {
+        #[expect(unsafe_code, reason = "helpers outlive the loop, but not its work")]
+        // SAFETY: helpers use `work` only while they are inside; this function returns, or
+        // unwinds through `Closing`, only after the loop is closed and nobody is inside.
+        let work: Loop<'static> = unsafe { std::mem::transmute::<Loop<'_>, Loop<'static>>(work) };
+        let job = Job { work, n, chunk };
+        {
+            let mut present = self.present.lock().expect("nothing panics under this lock");
+            self.next.store(0, Ordering::Relaxed);
+            *present = Some(job);
+        }
+        let closing = Closing(self);
+        self.turn.fetch_add(1, Ordering::Release);
+        self.take_chunks(&job);
+        drop(closing);
+        assert!(!self.has_panicked.load(Ordering::Relaxed), "a solver thread has panicked");
+    }
+
+    fn take_chunks(&self, job: &Job) {
+        loop {
+            let start = self.next.fetch_add(job.chunk, Ordering::Relaxed);
+            if start >= job.n {
+                return;
+            }
+            (job.work)(start..job.n.min(start + job.chunk));
+        }
+    }
+}
+
+/// Closes the loop and waits for those inside, also when the leader's chunk panics.
+struct Closing<'a>(&'a Team);
+
+impl Drop for Closing<'_> {
+    fn drop(&mut self) {
+        let team = self.0;
+        *team.present.lock().expect("nothing panics under this lock") = None;
+        wait(|| team.n_inside.load(Ordering::Acquire) == 0);
+    }
+}
+
+/// Spins for a while, then gives the core away between looks.
+fn wait(is_done: impl Fn() -> bool) {
+    let mut turns = 0;
+    while !is_done() {
+        if turns < SPINS {
+            turns += 1;
+            std::hint::spin_loop();
+        } else {
+            std::thread::yield_now();
+        }
+    }
+}
+
+/// Calls `work` with ranges that cover `0..n`, on the team that this thread leads or alone.
+fn split(n: usize, work: Loop<'_>) {
+    match TEAM.get() {
+        Some(team) if team.n_threads > 1 && n > 1 => {
+            let chunk = n.div_ceil(team.n_threads * CHUNKS_PER_THREAD);
+            team.run(n, chunk, work);
+        }
+        _ => work(0..n),
+    }
+}
+
+/// A slice whose elements are written by different threads, each element by one.
+struct Shared<T>(*mut T);
+
+#[expect(unsafe_code, reason = "the pointer is shared so that disjoint elements can be written")]
+// SAFETY: `element` is only called with indices that no other thread holds, and `T` may be sent.
+unsafe impl<T: Send> Sync for Shared<T> {}
+
+impl<T> Shared<T> {
+    fn new(slice: &mut [T]) -> Self {
+        Self(slice.as_mut_ptr())
+    }
+
+    /// Element `i`.
+    ///
+    /// # Safety
+    /// `i` is inside the slice, the slice is still borrowed, and nobody else has element `i`.
+    #[expect(unsafe_code, reason = "disjoint elements of one slice for several threads")]
+    #[expect(clippy::mut_from_ref, reason = "each index is given out once")]
+    #[inline(always)]
+    unsafe fn element(&self, i: usize) -> &mut T {
+        // SAFETY: as the caller promises.
+        unsafe { &mut *self.0.add(i) }
+    }
+}
+
+/// `write(i, &mut out[i])` for every element.
+pub fn for_each<T: Send>(out: &mut [T], write: impl Fn(usize, &mut T) + Sync) {
+    let n = out.len();
+    let out = Shared::new(out);
+    split(n, &|range| {
+        for i in range {
+            #[expect(unsafe_code, reason = "see `Shared`")]
+            // SAFETY: `split` gives out each index below `n` once, while `out` is borrowed.
+            let element = unsafe { out.element(i) };
+            write(i, element);
+        }
+    });
 }
 
 /// `write(i, &mut a[i], &mut b[i])` for every element of two slices of the same length.
 pub fn for_each_of_two<A: Send, B: Send>(
     a: &mut [A],
     b: &mut [B],
-    write: impl Fn(usize, &mut A, &mut B) + Sync + Send,
+    write: impl Fn(usize, &mut A, &mut B) + Sync,
 ) {
-    debug_assert_eq!(a.len(), b.len(), "the slices belong together");
-    let chunks = a.par_chunks_mut(CHUNK).zip(b.par_chunks_mut(CHUNK));
-    chunks.enumerate().for_each(|(chunk, (a, b))| {
-        for (k, (a, b)) in a.iter_mut().zip(b).enumerate() {
-            write(chunk * CHUNK + k, a, b);
+    assert_eq!(a.len(), b.len(), "the slices belong together");
+    let n = a.len();
+    let (a, b) = (Shared::new(a), Shared::new(b));
+    split(n, &|range| {
+        for i in range {
+            #[expect(unsafe_code, reason = "see `Shared`")]
+            // SAFETY: `split` gives out each index below `n` once, while both are borrowed.
+            let (a, b) = unsafe { (a.element(i), b.element(i)) };
+            write(i, a, b);
         }
     });
+}
+
+/// `write(i, &mut a[i], &mut b[i], &mut c[i])` for every element of three slices of the same length;
+/// returns the largest of the non-negative numbers that it gives, or 0.
+pub fn largest_of_three<A: Send, B: Send, C: Send>(
+    a: &mut [A],
+    b: &mut [B],
+    c: &mut [C],
+    write: impl Fn(usize, &mut A, &mut B, &mut C) -> f64 + Sync,
+) -> f64 {
+    // The bits of non-negative doubles are ordered like the numbers; NaN is larger than all.
+    let largest = AtomicU64::new(0);
+    assert!(a.len() == b.len() && b.len() == c.len(), "the slices belong together");
+    let n = a.len();
+    let (a, b, c) = (Shared::new(a), Shared::new(b), Shared::new(c));
+    split(n, &|range| {
+        let mut here = 0;
+        for i in range {
+            #[expect(unsafe_code, reason = "see `Shared`")]
+            // SAFETY: `split` gives out each index below `n` once, while all are borrowed.
+            let (a, b, c) = unsafe { (a.element(i), b.element(i), c.element(i)) };
+            here = here.max(write(i, a, b, c).to_bits());
+        }
+        largest.fetch_max(here, Ordering::Relaxed);
+    });
+    f64::from_bits(largest.into_inner())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_element_is_written_once_by_any_team() {
+        // Oracle: counting. A thousand loops of awkward lengths on teams of 1, 2 and 5.
+        for n_threads in [1, 2, 5] {
+            let pool = pool(n_threads).unwrap();
+            lead(&pool, || {
+                for n in (0..1000).map(|k| k * 7 % 311) {
+                    let mut a = vec![0_usize; n];
+                    let mut b = vec![0_usize; n];
+                    for_each(&mut a, |i, a| *a += i + 1);
+                    let mut c = vec![(); n];
+                    let largest = largest_of_three(&mut a, &mut b, &mut c, |i, a, b, ()| {
+                        *b = *a;
+                        f64::from(u32::try_from(i).unwrap())
+                    });
+                    assert!((0..n).all(|i| a[i] == i + 1 && b[i] == i + 1), "{n_threads} {n}");
+                    let last = f64::from(u32::try_from(n.max(1) - 1).unwrap());
+                    assert!((largest - last).abs() < 0.5, "{largest} of {n}");
+                }
+            });
+        }
+    }
+
+    #[test]
+    fn a_panic_in_a_loop_reaches_the_leader() {
+        // Oracle: the panic itself; without care the team would wait for ever.
+        let pool = pool(2).unwrap();
+        let outcome = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
+            lead(&pool, || {
+                let mut out = vec![0_u8; 1000];
+                for_each(&mut out, |i, _| assert!(i != 700, "on purpose"));
+            });
+        }));
+        assert!(outcome.is_err());
+    }
 }

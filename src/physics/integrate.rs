@@ -1,12 +1,7 @@
 //! Motion: semi-implicit Euler, v += a dt and then x += v dt, second order in energy.
 
-use rayon::prelude::*;
-
-use super::{Controls, Model, Scratch, State, contact::sums};
-use crate::base::{Real, Vec3};
-
-/// Elements a thread takes at a time.
-const CHUNK: usize = 128;
+use super::{Controls, Model, Scratch, State, contact::sums, membrane::MembraneState};
+use crate::base::{Real, Vec3, parallel};
 
 /// Moves grains and membrane on by one substep.
 pub fn advance(model: &Model, controls: &Controls, scratch: &mut Scratch, state: &mut State) {
@@ -24,26 +19,20 @@ fn advance_grains(model: &Model, scratch: &Scratch, state: &mut State, carried: 
     let mut positions = std::mem::take(&mut state.grains.positions);
     let mut velocities = std::mem::take(&mut state.grains.velocities);
     let mut spins = std::mem::take(&mut state.grains.spins);
-    let furthest = positions
-        .par_chunks_mut(CHUNK)
-        .zip(velocities.par_chunks_mut(CHUNK))
-        .zip(spins.par_chunks_mut(CHUNK))
-        .enumerate()
-        .map(|(chunk, ((positions, velocities), spins))| {
-            let mut furthest: Real = 0.0;
-            for k in 0..positions.len() {
-                let i = chunk * CHUNK + k;
-                let (force, torque) = sums::on_grain(state, scratch, i);
-                let (mass, radius) = (state.grains.masses[i], state.grains.radii[i]);
-                velocities[k] += (force / mass + model.gravity) * dt;
-                positions[k] += velocities[k] * dt;
-                spins[k] += torque * (dt / (0.4 * mass * radius * radius));
-                let moved = positions[k] - scratch.neighbours.grain_positions[i] - carried;
-                furthest = furthest.max(moved.norm_squared());
-            }
-            furthest
-        })
-        .reduce(|| 0.0, Real::max);
+    let grains = &state.grains;
+    let furthest = parallel::largest_of_three(
+        &mut positions,
+        &mut velocities,
+        &mut spins,
+        |i, position, velocity, spin| {
+            let (force, torque) = sums::on_grain(grains, scratch, i);
+            let (mass, radius) = (grains.masses[i], grains.radii[i]);
+            *velocity += (force / mass + model.gravity) * dt;
+            *spin += torque * (dt / (0.4 * mass * radius * radius));
+            *position += *velocity * dt;
+            (*position - scratch.neighbours.grain_positions[i] - carried).norm_squared()
+        },
+    );
     state.grains.positions = positions;
     state.grains.velocities = velocities;
     state.grains.spins = spins;
@@ -59,30 +48,18 @@ fn advance_membrane(
     carried: &Vec3,
 ) -> Real {
     let dt = model.substep;
-    let membrane = &mut state.membrane;
-    membrane
-        .positions
-        .par_chunks_mut(CHUNK)
-        .zip(membrane.velocities.par_chunks_mut(CHUNK))
-        .enumerate()
-        .map(|(chunk, (positions, velocities))| {
-            let mut furthest: Real = 0.0;
-            for k in 0..positions.len() {
-                let v = chunk * CHUNK + k;
-                if model.is_held || model.membrane.is_clamped[v] {
-                    positions[k] = controls.flange
-                        * nalgebra::Point3::from(model.clamped_positions[v])
-                        - nalgebra::Point3::origin();
-                    velocities[k] = sums::flange_velocity(controls, &positions[k]);
-                } else {
-                    let force = scratch.membrane.forces[v] + scratch.vertex_forces[v];
-                    velocities[k] += (force / model.membrane.masses[v] + model.gravity) * dt;
-                    positions[k] += velocities[k] * dt;
-                }
-                let moved = positions[k] - scratch.neighbours.vertex_positions[v] - carried;
-                furthest = furthest.max(moved.norm_squared());
-            }
-            furthest
-        })
-        .reduce(|| 0.0, Real::max)
+    let MembraneState { positions, velocities } = &mut state.membrane;
+    let mut unused = vec![(); positions.len()];
+    parallel::largest_of_three(positions, velocities, &mut unused, |v, position, velocity, ()| {
+        if model.is_held || model.membrane.is_clamped[v] {
+            *position = controls.flange.rotation * model.clamped_positions[v]
+                + controls.flange.translation.vector;
+            *velocity = sums::flange_velocity(controls, position);
+        } else {
+            let force = scratch.membrane.forces[v] + scratch.vertex_forces[v];
+            *velocity += (force / model.membrane.masses[v] + model.gravity) * dt;
+            *position += *velocity * dt;
+        }
+        (*position - scratch.neighbours.vertex_positions[v] - carried).norm_squared()
+    })
 }

@@ -4,7 +4,6 @@ use super::{
     Controls, Model, Scratch, State, chamber,
     contact::{bodies, grains, membrane as sheet, plate, sums},
     integrate, membrane, neighbours,
-    state::Springs,
 };
 
 /// Advances the state by `model.substep`.
@@ -17,33 +16,15 @@ pub fn substep(model: &Model, controls: &Controls, state: &mut State, scratch: &
     integrate::advance(model, controls, scratch, state);
 }
 
-/// All forces at once: each stage reads the state and writes its own springs and forces.
+/// Each stage reads the state and writes its own springs and forces.
 fn forces(model: &Model, controls: &Controls, state: &mut State, scratch: &mut Scratch) {
     let mut springs = std::mem::take(&mut state.springs);
-    let Springs { pairs, patches, plate: on_plate, bodies: on_bodies } = &mut springs;
-    let Scratch { neighbours, pair_forces, patch_forces, plate_forces, sample_forces, .. } =
-        scratch;
-    let sheet_scratch = &mut scratch.membrane;
-    let (state_now, lists) = (&*state, &*neighbours);
-    rayon::join(
-        || grains::forces(model, state_now, pairs, pair_forces),
-        || {
-            rayon::join(
-                || {
-                    sheet::forces(model, state_now, lists, patches, patch_forces);
-                    plate::forces(model, state_now, on_plate, plate_forces);
-                },
-                || {
-                    rayon::join(
-                        || bodies::forces(model, controls, state_now, on_bodies, sample_forces),
-                        || {
-                            let (sheet, gauge) = (&state_now.membrane, state_now.gauge);
-                            membrane::forces(&model.membrane, sheet, gauge, sheet_scratch);
-                        },
-                    )
-                },
-            )
-        },
-    );
+    let state_now = &*state;
+    let lists = &scratch.neighbours;
+    grains::forces(model, state_now, &mut springs.pairs, &mut scratch.pair_forces);
+    sheet::forces(model, state_now, lists, &mut springs.patches, &mut scratch.patch_forces);
+    plate::forces(model, state_now, &mut springs.plate, &mut scratch.plate_forces);
+    bodies::forces(model, controls, state_now, &mut springs.bodies, &mut scratch.sample_forces);
+    membrane::forces(&model.membrane, &state_now.membrane, state_now.gauge, &mut scratch.membrane);
     state.springs = springs;
 }

@@ -1,19 +1,14 @@
 //! Contacts between grains: the pair pass.
 
-use rayon::prelude::*;
-
 use super::law::{self, Touch};
 use crate::{
-    base::Vec3,
+    base::{Vec3, parallel},
     physics::{
         Model,
         scratch::PairForce,
         state::{Grains, State},
     },
 };
-
-/// Pairs a thread takes at a time.
-const CHUNK: usize = 512;
 
 /// Forces of all pairs; carries their springs on by one substep.
 pub fn forces(
@@ -23,16 +18,9 @@ pub fn forces(
     pair_forces: &mut Vec<PairForce>,
 ) {
     pair_forces.resize(state.pair_ids.len(), PairForce::default());
-    state
-        .pair_ids
-        .par_chunks(CHUNK)
-        .zip(springs.par_chunks_mut(CHUNK))
-        .zip(pair_forces.par_chunks_mut(CHUNK))
-        .for_each(|((ids, springs), forces)| {
-            for k in 0..ids.len() {
-                forces[k] = of_pair(model, &state.grains, ids[k], &mut springs[k]);
-            }
-        });
+    parallel::for_each_of_two(pair_forces, springs, |k, force, spring| {
+        *force = of_pair(model, &state.grains, state.pair_ids[k], spring);
+    });
 }
 
 #[inline(always)]

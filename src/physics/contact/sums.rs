@@ -6,14 +6,19 @@ use crate::{
         Vec3,
         real::{Twist, Wrench},
     },
-    physics::{Controls, Model, Scratch, membrane::pressure, scratch::PairForce, state::State},
+    physics::{
+        Controls, Model, Scratch,
+        membrane::pressure,
+        scratch::PairForce,
+        state::{Grains, State},
+    },
 };
 
 /// Force [N] and torque [N m] of all contacts on grain `i`.
 #[inline]
-pub fn on_grain(state: &State, scratch: &Scratch, i: usize) -> (Vec3, Vec3) {
+pub fn on_grain(grains: &Grains, scratch: &Scratch, i: usize) -> (Vec3, Vec3) {
     let lists = &scratch.neighbours;
-    let radius = state.grains.radii[i];
+    let radius = grains.radii[i];
     let mut force = Vec3::zeros();
     let mut torque = Vec3::zeros();
     let lever = |pair: &PairForce| radius - pair.overlap / 2.0;

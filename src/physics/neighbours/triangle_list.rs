@@ -1,10 +1,8 @@
 //! Triangles of the membrane that a grain may touch.
 
-use rayon::prelude::*;
-
 use super::cell_grid::{CellGrid, id};
 use crate::{
-    base::Vec3,
+    base::{Vec3, parallel},
     physics::{Model, State, membrane::contact_geometry::closest_on_triangle, scratch::Neighbours},
 };
 
@@ -14,16 +12,12 @@ const CHUNK: usize = 128;
 /// Lists, for each grain, the triangles closer than contact plus skin, ascending.
 pub(super) fn build(model: &Model, grid: &CellGrid, state: &State, lists: &mut Neighbours) {
     let triangles = &model.membrane.mesh.triangles;
-    let chunks: Vec<Vec<[u32; 2]>> = (0..triangles.len().div_ceil(CHUNK))
-        .into_par_iter()
-        .map(|chunk| {
-            let mut found = Vec::new();
-            for t in chunk * CHUNK..triangles.len().min((chunk + 1) * CHUNK) {
-                grains_near(model, grid, state, t, &mut found);
-            }
-            found
-        })
-        .collect();
+    let mut chunks = vec![Vec::new(); triangles.len().div_ceil(CHUNK)];
+    parallel::for_each(&mut chunks, |chunk, found| {
+        for t in chunk * CHUNK..triangles.len().min((chunk + 1) * CHUNK) {
+            grains_near(model, grid, state, t, found);
+        }
+    });
     let n_grains = state.grains.len();
     let mut starts = vec![0_u32; n_grains + 1];
     for [grain, _] in chunks.iter().flatten() {

@@ -1,10 +1,8 @@
 //! Pairs of grains that may touch, sorted, with the springs of the pairs that go on.
 
-use rayon::prelude::*;
-
 use super::cell_grid::{CellGrid, id};
 use crate::{
-    base::Vec3,
+    base::{Vec3, parallel},
     physics::{Model, State, scratch::Neighbours, state::Grains},
 };
 
@@ -14,18 +12,12 @@ const CHUNK: usize = 128;
 /// Lists all pairs closer than contact plus skin; springs of pairs listed before are kept.
 pub(super) fn build(model: &Model, grid: &CellGrid, state: &mut State, lists: &mut Neighbours) {
     let grains = &state.grains;
-    let n_chunks = grains.len().div_ceil(CHUNK);
-    let chunks: Vec<Vec<[u32; 2]>> = (0..n_chunks)
-        .into_par_iter()
-        .map(|chunk| {
-            let last = grains.len().min((chunk + 1) * CHUNK);
-            let mut found = Vec::with_capacity(CHUNK * 8);
-            for i in chunk * CHUNK..last {
-                partners(model, grid, grains, i, &mut found);
-            }
-            found
-        })
-        .collect();
+    let mut chunks = vec![Vec::new(); grains.len().div_ceil(CHUNK)];
+    parallel::for_each(&mut chunks, |chunk, found| {
+        for i in chunk * CHUNK..grains.len().min((chunk + 1) * CHUNK) {
+            partners(model, grid, grains, i, found);
+        }
+    });
     let ids = chunks.concat();
     let springs = carry_springs(&state.pair_ids, &state.springs.pairs, &ids);
     index_by_grain(&ids, grains.len(), lists);
