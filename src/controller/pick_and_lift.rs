@@ -18,7 +18,9 @@ const PRESSURE_EVERY: u64 = 10;
 /// How long to wait for the pressure before giving up [s].
 const PATIENCE: Real = 5.0;
 /// How much lower than it stood the object may be put, searching for the table [m].
-const SEARCH_DEPTH: Real = 0.005;
+const SEARCH_DEPTH: Real = 0.003;
+/// Speed of that search [m/s].
+const SEARCH_SPEED: Real = 0.025;
 /// Height over the table in which lowering is slow [m].
 const SLOW_HEIGHT: Real = 0.005;
 
@@ -197,6 +199,7 @@ impl PickAndLift {
                 self.goal.z = position.z - p.push_depth;
             }
             Phase::Push if p.push_force_max <= push_force => {
+                run.path = Path::at(seen.flange_pose.translation.vector);
                 self.enter(Phase::Settle, run, seen, 0.0);
             }
             Phase::Settle if p.settle_time <= waited => {
@@ -214,6 +217,7 @@ impl PickAndLift {
                 }
             }
             Phase::Lower if p.touch_force <= push_force => {
+                run.path = Path::at(seen.flange_pose.translation.vector);
                 self.enter(Phase::Vent, run, seen, p.vent_pressure);
             }
             Phase::Vent if p.vent_time <= waited => {
@@ -273,7 +277,7 @@ impl PickAndLift {
         let is_near_goal = run.path.position.z - self.goal.z < SEARCH_DEPTH + SLOW_HEIGHT;
         match self.phase {
             Phase::Push => p.push_speed,
-            Phase::Lower if is_near_goal => p.push_speed.min(p.lift_speed),
+            Phase::Lower if is_near_goal => SEARCH_SPEED.min(p.lift_speed),
             Phase::Lift | Phase::Lower => p.lift_speed,
             _ => p.approach_speed,
         }

@@ -11,6 +11,7 @@ use super::{
     health::{self, Diverged},
     measure::real,
     membrane::{MembraneState, mesh::Mesh},
+    neighbours::weigh_pairs,
     state::{Grains, Springs},
     substep,
 };
@@ -117,6 +118,7 @@ impl Filling<'_> {
                 self.state.grains.radii[i] = scale * radius;
                 self.state.grains.masses[i] = sphere_volume(scale * radius) * density;
             }
+            weigh_pairs(&self.state, &mut self.scratch.neighbours);
             self.step(k, "growing")?;
         }
         self.model.grain_law = with_friction.grain_law;

@@ -27,7 +27,7 @@ fn advance_grains(model: &Model, scratch: &Scratch, state: &mut State, carried: 
         |i, position, velocity, spin| {
             let (force, torque) = sums::on_grain(grains, scratch, i);
             let (mass, radius) = (grains.masses[i], grains.radii[i]);
-            *velocity += (force / mass + model.gravity) * dt;
+            *velocity += force * (dt / mass) + model.gravity * dt;
             *spin += torque * (dt / (0.4 * mass * radius * radius));
             *position += *velocity * dt;
             (*position - scratch.neighbours.grain_positions[i] - carried).norm_squared()
@@ -57,7 +57,7 @@ fn advance_membrane(
             *velocity = sums::flange_velocity(controls, position);
         } else {
             let force = scratch.membrane.forces[v] + scratch.vertex_forces[v];
-            *velocity += (force / model.membrane.masses[v] + model.gravity) * dt;
+            *velocity += force * (dt / model.membrane.masses[v]) + model.gravity * dt;
             *position += *velocity * dt;
         }
         (*position - scratch.neighbours.vertex_positions[v] - carried).norm_squared()

@@ -59,6 +59,8 @@ pub struct Neighbours {
     pub vertex_positions: Vec<Vec3>,
     /// Position of the flange at the last build [m].
     pub flange_position: Vec3,
+    /// What each pair needs of its grains' sizes.
+    pub pair_sizes: Vec<PairSize>,
     /// Pairs in which grain i is first are `first_starts[i] .. first_starts[i + 1]`.
     pub first_starts: Vec<u32>,
     /// Where the pairs in which grain i is second begin in `second_pairs`.
@@ -73,6 +75,15 @@ pub struct Neighbours {
     pub displacement_squared_max: Real,
     /// How often the lists were built.
     pub n_builds: u64,
+}
+
+/// Effective radius and mass of a pair of grains.
+#[derive(Clone, Copy)]
+pub struct PairSize {
+    /// R* [m].
+    pub radius: Real,
+    /// m* [kg].
+    pub mass: Real,
 }
 
 /// Force between two grains.

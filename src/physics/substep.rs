@@ -21,7 +21,7 @@ fn forces(model: &Model, controls: &Controls, state: &mut State, scratch: &mut S
     let mut springs = std::mem::take(&mut state.springs);
     let state_now = &*state;
     let lists = &scratch.neighbours;
-    grains::forces(model, state_now, &mut springs.pairs, &mut scratch.pair_forces);
+    grains::forces(model, state_now, &mut springs.pairs, lists, &mut scratch.pair_forces);
     sheet::forces(model, state_now, lists, &mut springs.patches, &mut scratch.patch_forces);
     plate::forces(model, state_now, &mut springs.plate, &mut scratch.plate_forces);
     bodies::forces(model, controls, state_now, &mut springs.bodies, &mut scratch.sample_forces);

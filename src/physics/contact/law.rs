@@ -138,9 +138,12 @@ pub fn force(law: &PairLaw, touch: &Touch, dt: Real, spring: &mut Vec3) -> Force
 /// The spring turned into the tangent plane, its length kept.
 #[inline(always)]
 fn into_tangent_plane(spring: &Vec3, normal: &Vec3) -> Vec3 {
+    let before = spring.norm_squared();
+    if before == 0.0 {
+        return *spring;
+    }
     let out_of_plane = spring.dot(normal);
     let flat = spring - normal * out_of_plane;
-    let before = spring.norm_squared();
     let after = flat.norm_squared();
     // Below this the direction is lost; the spring is then as good as zero.
     if after > 1e-12 * before { flat * (before / after).sqrt() } else { Vec3::zeros() }

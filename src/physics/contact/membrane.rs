@@ -93,7 +93,8 @@ fn on_grain(
     let mut contacts = ArrayVec::<(&Touched, Vec3), N_PATCHES>::new();
     for contact in &touched {
         if !contacts.is_full() && is_local_minimum(model, contact, &touched) {
-            contacts.push((contact, contact.from_membrane / contact.distance_squared.sqrt()));
+            let inverse = contact.distance_squared.sqrt().recip();
+            contacts.push((contact, contact.from_membrane * inverse));
         }
     }
     let (before, n_before) = (patches.slots, patches.n);

@@ -7,7 +7,10 @@ mod cell_grid;
 mod triangle_list;
 mod verlet_list;
 
-use super::{Model, Scratch, State};
+use super::{
+    Model, Scratch, State,
+    scratch::{Neighbours, PairSize},
+};
 
 /// Builds the lists anew if they may have become incomplete.
 pub fn refresh(model: &Model, state: &mut State, scratch: &mut Scratch) {
@@ -22,10 +25,22 @@ pub fn refresh(model: &Model, state: &mut State, scratch: &mut Scratch) {
         cell_grid::CellGrid::new(&state.grains.positions, 2.0 * model.radius_max + model.skin);
     verlet_list::build(model, &grid, state, lists);
     triangle_list::build(model, &grid, state, lists);
+    weigh_pairs(state, lists);
     lists.grain_positions.clone_from(&state.grains.positions);
     lists.vertex_positions.clone_from(&state.membrane.positions);
     lists.flange_position = state.flange.translation.vector;
     lists.displacement_squared_max = 0.0;
     lists.is_built = true;
     lists.n_builds += 1;
+}
+
+/// Effective radii and masses of the listed pairs; to be called again whenever grains grow.
+pub fn weigh_pairs(state: &State, lists: &mut Neighbours) {
+    let (radii, masses) = (&state.grains.radii, &state.grains.masses);
+    let parallel = |a: f64, b: f64| a * b / (a + b);
+    lists.pair_sizes.clear();
+    lists.pair_sizes.extend(state.pair_ids.iter().map(|ids| {
+        let [i, j] = ids.map(|id| id as usize);
+        PairSize { radius: parallel(radii[i], radii[j]), mass: parallel(masses[i], masses[j]) }
+    }));
 }
