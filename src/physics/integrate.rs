@@ -70,9 +70,7 @@ fn advance_membrane(
             for k in 0..positions.len() {
                 let v = chunk * CHUNK + k;
                 if model.is_held || model.membrane.is_clamped[v] {
-                    positions[k] = controls.flange
-                        * nalgebra::Point3::from(model.clamped_positions[v])
-                        - nalgebra::Point3::origin();
+                    positions[k] = sums::clamped_position(model, controls, v);
                     velocities[k] = sums::flange_velocity(controls, &positions[k]);
                 } else {
                     let force = scratch.membrane.forces[v] + scratch.vertex_forces[v];
