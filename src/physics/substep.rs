@@ -21,7 +21,8 @@ pub fn substep(model: &Model, controls: &Controls, state: &mut State, scratch: &
 fn forces(model: &Model, controls: &Controls, state: &mut State, scratch: &mut Scratch) {
     let mut springs = std::mem::take(&mut state.springs);
     let Springs { pairs, patches, plate: on_plate, bodies: on_bodies } = &mut springs;
-    let Scratch { neighbours, pair_forces, patch_forces, plate_forces, sample_forces, .. } = scratch;
+    let Scratch { neighbours, pair_forces, patch_forces, plate_forces, sample_forces, .. } =
+        scratch;
     let sheet_scratch = &mut scratch.membrane;
     let (state_now, lists) = (&*state, &*neighbours);
     rayon::join(

@@ -72,7 +72,8 @@ fn held_controls(coupled: &Coupled) -> Controls {
 #[test]
 fn what_the_sheet_gets_the_object_gives() {
     let coupled = pushing();
-    let Scratch { sample_forces, body_wrenches, vertex_forces, patch_forces, .. } = &coupled.scratch;
+    let Scratch { sample_forces, body_wrenches, vertex_forces, patch_forces, .. } =
+        &coupled.scratch;
     let mesh = &coupled.model.membrane.mesh;
     let n_samples = mesh.n_vertices() + mesh.triangles.len();
     let controls = held_controls(&coupled);
@@ -227,7 +228,7 @@ fn hanging() -> &'static Hanging {
 fn lift(session: &mut Session) -> Hanging {
     let height = |session: &Session| session.coupled().world.motion(0).pose.translation.z;
     let mut lowest = height(session);
-    for tick in 0..620 {
+    for tick in 0..900 {
         let command = match tick {
             0 => Some(coarse::flange_to(0.066)),
             160 => Some(Command::Vacuum { gauge_pa: -80e3 }),
@@ -237,7 +238,7 @@ fn lift(session: &mut Session) -> Hanging {
         session.tick(command.as_slice()).unwrap();
         lowest = lowest.min(height(session));
     }
-    let n_ticks = 250;
+    let n_ticks = 300;
     let (mut contact, mut on_object, mut mount) = (Vec3::zeros(), Vec3::zeros(), Vec3::zeros());
     for _ in 0..n_ticks {
         session.tick(&[]).unwrap();
@@ -251,7 +252,12 @@ fn lift(session: &mut Session) -> Hanging {
         let at = (0..v.len()).max_by(|&a, &b| v[a].norm().total_cmp(&v[b].norm())).unwrap();
         (at, v[at].norm())
     };
-    eprintln!("fastest grain {:?}, vertex {:?}, energy {:e}", fastest(&coupled.state.grains.velocities), fastest(&coupled.state.membrane.velocities), measure::kinetic_energy(&coupled.model, &coupled.state));
+    eprintln!(
+        "fastest grain {:?}, vertex {:?}, energy {:e}",
+        fastest(&coupled.state.grains.velocities),
+        fastest(&coupled.state.membrane.velocities),
+        measure::kinetic_energy(&coupled.model, &coupled.state)
+    );
     let g = -coupled.model.gravity.z;
     Hanging {
         contact,
@@ -267,7 +273,12 @@ fn lift(session: &mut Session) -> Hanging {
 #[test]
 fn a_hanging_object_weighs_what_it_weighs() {
     let Hanging { contact, on_object, mount, weight, own_weight, lifted, .. } = hanging();
-    eprintln!("lifted {lifted}, contact {}, object {}, mount {}, weights {weight} {own_weight}", contact.z / weight, on_object.z / weight, (mount.z + own_weight) / weight);
+    eprintln!(
+        "lifted {lifted}, contact {}, object {}, mount {}, weights {weight} {own_weight}",
+        contact.z / weight,
+        on_object.z / weight,
+        (mount.z + own_weight) / weight
+    );
     assert!(*lifted > 0.01, "lifted by {lifted} m");
     // Oracle: statics. Sign: force of the object on the gripper, so −m g. Tolerance 0.5 %: what is
     // demanded of the wrench topics.

@@ -16,7 +16,8 @@ const TICK_NS: u64 = 1_000_000;
 
 /// Flange and object turned and away from the origin, so that frames matter.
 fn frames() -> Frames {
-    let object = Pose::new(Vec3::new(0.1, 0.2, 0.3), Vec3::new(0.0, 0.0, std::f64::consts::FRAC_PI_2));
+    let object =
+        Pose::new(Vec3::new(0.1, 0.2, 0.3), Vec3::new(0.0, 0.0, std::f64::consts::FRAC_PI_2));
     let flange = Pose::new(Vec3::new(0.0, 0.0, 0.101), Vec3::new(0.0, 0.7, 0.0));
     Frames { flange, objects: vec![object] }
 }
@@ -111,7 +112,8 @@ fn unknown_frames_and_objects_are_refused_with_what_there_is() {
                 == "unknown frame `moon`: use one of world, gripper_flange, object/cylinder"
         });
     });
-    let unknown = |why: &Refusal| why.to_string() == "unknown object `ball`: the scene has cylinder";
+    let unknown =
+        |why: &Refusal| why.to_string() == "unknown object `ball`: the scene has cylinder";
     refuses(drive("ball", pose(Vec3::zeros())), unknown);
     refuses(Command::ObjectRelease { object: "ball".to_owned() }, unknown);
 }
@@ -186,13 +188,11 @@ fn silence_and_release_end_a_drive() {
     assert!(inputs.drives[0].is_none() && !desk.is_driven(0));
 }
 
-/// Lifts the object off the table away from the gripper at 100 mm/s; the session and its last
-/// command's tick.
+/// Lifts the object off the table towards 100 mm/s, not as far as the bag.
 fn driven(overrides: &[&str]) -> Session {
     let mut session = coarse::session(1, overrides);
-    for tick in 0..150_u32 {
+    for tick in 0..80_u32 {
         let z = 0.025 + 1e-4 * f64::from(tick);
-        // To the side too, where the bag cannot be touched.
         let command = drive("cylinder", pose(Vec3::new(0.0, 0.0, z)));
         session.tick(&[command]).unwrap();
     }
@@ -209,7 +209,7 @@ fn a_released_object_goes_on_with_its_velocity() {
     let g = 9.81;
     let mut session = driven(&[]);
     let before = twist(&session).linear;
-    assert!((before.z - 0.1).abs() < 2e-3, "driven at {before:?}");
+    assert!(before.z > 0.05, "driven at {before:?}");
     session.tick(&[Command::ObjectRelease { object: "cylinder".to_owned() }]).unwrap();
     // Oracle: free flight, v − g t. Tolerance: rounding.
     let after = twist(&session).linear;
@@ -230,12 +230,13 @@ fn silence_gives_a_driven_object_back_to_gravity() {
     assert!(!session.desk().is_driven(0), "free after 20 ms of silence");
     // Oracle: free flight. Tolerance: rounding.
     let gained = twist(&session).linear - held;
-    assert!((gained.z + 9.81e-3).abs() < 1e-9, "{gained:?}");
+    assert!((gained + Vec3::z() * 9.81e-3).norm() < 1e-9, "{gained:?}");
 }
 
 #[test]
 fn the_flange_keeps_its_limits_whatever_it_is_told() {
-    let mut session = coarse::session(1, &["flange.speed_max=250 mm/s", "flange.acceleration_max=2 m/s^2"]);
+    let mut session =
+        coarse::session(1, &["flange.speed_max=250 mm/s", "flange.acceleration_max=2 m/s^2"]);
     let flange = session.scene().flange.clone();
     let mut random = Random::new(5, Stream::Position);
     let tick = 1e-3;

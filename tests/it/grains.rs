@@ -28,8 +28,7 @@ fn resting(surface: Surface, tilt: Real) -> Rig {
     let mut rig = Rig::on_plate(&GRAIN, surface, 1e-5);
     rig.model.gravity = Vec3::new(tilt.sin(), 0.0, -tilt.cos()) * G;
     rig.add_grain(Vec3::zeros(), Vec3::zeros(), RADIUS, GRAIN.density);
-    rig.state.grains.positions[0].z =
-        RADIUS - resting_overlap(&rig) * tilt.cos().powf(2.0 / 3.0);
+    rig.state.grains.positions[0].z = RADIUS - resting_overlap(&rig) * tilt.cos().powf(2.0 / 3.0);
     rig
 }
 
@@ -169,15 +168,17 @@ fn oblique_impact_follows_the_table() {
             let velocity = Vec3::new(theta.sin(), 0.0, -theta.cos()) * speed;
             rig.add_grain(Vec3::z() * RADIUS, velocity, RADIUS, hard.density);
             let before = rig.kinetic_energy();
-            while rig.state.grains.velocities[0].z < 0.0
-                || rig.state.grains.positions[0].z < RADIUS
+            while rig.state.grains.velocities[0].z < 0.0 || rig.state.grains.positions[0].z < RADIUS
             {
                 rig.step();
             }
             let after = rig.kinetic_energy();
             let found = rig.state.grains.velocities[0].x / velocity.x;
             let rolled = rig.state.grains.spins[0].y * RADIUS / speed;
-            eprintln!("{angle}°: e_t {found:.4} ({e_t}), Rω/v {rolled:.4} ({spin}), E {:.4}", after / before);
+            eprintln!(
+                "{angle}°: e_t {found:.4} ({e_t}), Rω/v {rolled:.4} ({spin}), E {:.4}",
+                after / before
+            );
             assert!((found / e_t - 1.0).abs() < 0.01, "{angle}°: e_t {found} instead of {e_t}");
             assert!((rolled - spin).abs() < 0.01 * 0.7564, "{angle}°: {rolled} instead of {spin}");
             // Oracle: friction only takes energy. Tolerance: error of 3000 steps.
@@ -200,7 +201,8 @@ fn two_unequal_grains_conserve_momentum_and_angular_momentum() {
         let about_centre = |rig: &Rig| {
             let (linear, angular) = rig.momenta();
             let grains = &rig.state.grains;
-            let moment = grains.positions[0] * grains.masses[0] + grains.positions[1] * grains.masses[1];
+            let moment =
+                grains.positions[0] * grains.masses[0] + grains.positions[1] * grains.masses[1];
             angular - (moment / mass).cross(&linear)
         };
         let turning = about_centre(&rig);

@@ -95,7 +95,13 @@ impl Rig {
     }
 
     /// Adds a grain of `density` [kg/m³].
-    pub(crate) fn add_grain(&mut self, position: Vec3, velocity: Vec3, radius: Real, density: Real) {
+    pub(crate) fn add_grain(
+        &mut self,
+        position: Vec3,
+        velocity: Vec3,
+        radius: Real,
+        density: Real,
+    ) {
         let grains = &mut self.state.grains;
         grains.positions.push(position);
         grains.velocities.push(velocity);

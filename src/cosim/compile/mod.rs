@@ -26,7 +26,7 @@ use crate::{
 };
 
 /// Changes whenever the same scene would settle differently: part of every cache key.
-const PHYSICS_VERSION: u64 = 1;
+const PHYSICS_VERSION: u64 = 2;
 /// Neighbours are listed this share of the largest radius beyond contact.
 const SKIN_SHARE: Real = 0.25;
 /// Longest time between two steps of the rigid world [s].
@@ -174,10 +174,7 @@ fn sheet(membrane: &scene::Membrane) -> Sheet {
     }
 }
 
-fn bodies(
-    scene: &Scene,
-    longest_edge: Real,
-) -> Result<(Vec<BodyModel>, Vec<Bulk>), CompileError> {
+fn bodies(scene: &Scene, longest_edge: Real) -> Result<(Vec<BodyModel>, Vec<Bulk>), CompileError> {
     let mut bodies = Vec::new();
     let mut bulks = Vec::new();
     for object in &scene.objects {

@@ -48,7 +48,8 @@ const ON_FACE: Real = 0.15;
 const SAME_HISTORY: Real = 0.7;
 /// Squared distances that differ by less than this share are equal.
 const EQUAL: Real = 1e-9;
-/// Triangles one grain may touch at once; a grain much larger than the mesh would need more.
+/// Triangles one grain may touch at once, the deepest; a grain much larger than the mesh would
+/// need more.
 const N_TOUCHED: usize = 24;
 
 /// A triangle within reach of a grain.
@@ -153,7 +154,7 @@ fn touching(
         let closest = closest_on_triangle(&position, corners);
         let from_membrane = position - closest.point;
         let distance_squared = from_membrane.norm_squared();
-        if distance_squared >= radius * radius || distance_squared == 0.0 || touched.is_full() {
+        if distance_squared >= radius * radius || distance_squared == 0.0 {
             continue;
         }
         let contact = Touched {
@@ -165,6 +166,12 @@ fn touching(
         };
         let is_deeper = |other: &Touched| distance_squared < other.distance_squared;
         let place = touched.iter().position(is_deeper).unwrap_or(touched.len());
+        if touched.is_full() {
+            if place == touched.len() {
+                continue;
+            }
+            touched.pop();
+        }
         touched.insert(place, contact);
     }
     touched
@@ -224,7 +231,8 @@ fn of_patch(
     }
     let radius = grains.radii[i];
     let overlap = radius - contact.distance_squared.sqrt();
-    let arm = patch.normal * -(radius - overlap / 2.0);
+    // The contact point lies on the sheet, so that both sides have the same lever.
+    let arm = -contact.from_membrane;
     let velocity = grains.velocities[i] + grains.spins[i].cross(&arm) - sheet_velocity;
     let touch = Touch { overlap, normal: patch.normal, velocity, radius, mass };
     let force = law::force(&model.membrane_law, &touch, model.substep, &mut patch.spring);

@@ -30,15 +30,10 @@ fn force(model: &Model, state: &State, i: usize, spring: &mut Vec3) -> PlateForc
         return PlateForce::default();
     }
     let arm = down * -(grains.radii[i] - overlap / 2.0);
-    let velocity = grains.velocities[i] + grains.spins[i].cross(&arm)
-        - flange_twist.at(&(from_flange + arm));
-    let touch = Touch {
-        overlap,
-        normal: down,
-        velocity,
-        radius: grains.radii[i],
-        mass: grains.masses[i],
-    };
+    let velocity =
+        grains.velocities[i] + grains.spins[i].cross(&arm) - flange_twist.at(&(from_flange + arm));
+    let touch =
+        Touch { overlap, normal: down, velocity, radius: grains.radii[i], mass: grains.masses[i] };
     let force = law::force(&model.plate_law, &touch, model.substep, spring);
     PlateForce { force: down * force.normal + force.tangential, arm, normal: force.normal }
 }

@@ -5,11 +5,7 @@ use rayon::prelude::*;
 use super::cell_grid::{CellGrid, id};
 use crate::{
     base::Vec3,
-    physics::{
-        Model, State,
-        scratch::Neighbours,
-        state::Grains,
-    },
+    physics::{Model, State, scratch::Neighbours, state::Grains},
 };
 
 /// Grains whose partners one thread looks up at a time.
