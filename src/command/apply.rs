@@ -176,17 +176,25 @@ impl Desk {
         let rotation = Quat::from_quaternion(quaternion);
         let local = Pose::from_parts(Vec3::from(command.position).into(), rotation);
         let object_frames: Vec<String> = self.names.iter().map(|n| object_frame(n)).collect();
-        match command.frame_id.as_str() {
-            "" | WORLD => Ok(local),
-            FLANGE => Ok(frames.flange * local),
+        let pose = match command.frame_id.as_str() {
+            "" | WORLD => local,
+            FLANGE => frames.flange * local,
             other => match object_frames.iter().position(|frame| frame == other) {
-                Some(i) => Ok(frames.objects[i] * local),
-                None => Err(Refusal::UnknownFrame {
-                    frame_id: other.to_owned(),
-                    known: format!("{WORLD}, {FLANGE}, {}", object_frames.join(", ")),
-                }),
+                Some(i) => frames.objects[i] * local,
+                None => {
+                    return Err(Refusal::UnknownFrame {
+                        frame_id: other.to_owned(),
+                        known: format!("{WORLD}, {FLANGE}, {}", object_frames.join(", ")),
+                    });
+                }
             },
+        };
+        // Huge finite numbers may overflow on the way into the world, and a way that overflows has
+        // no direction.
+        for value in pose.translation.vector.iter() {
+            finite("position in the world, squared,", value * value)?;
         }
+        Ok(pose)
     }
 
     /// A jump is further than the body can go in the time since the command before.

@@ -52,8 +52,7 @@ fn advance_membrane(
     let mut unused = vec![(); positions.len()];
     parallel::largest_of_three(positions, velocities, &mut unused, |v, position, velocity, ()| {
         if model.is_held || model.membrane.is_clamped[v] {
-            *position = controls.flange.rotation * model.clamped_positions[v]
-                + controls.flange.translation.vector;
+            *position = sums::clamped_position(model, controls, v);
             *velocity = sums::flange_velocity(controls, position);
         } else {
             let force = scratch.membrane.forces[v] + scratch.vertex_forces[v];

@@ -12,7 +12,7 @@ pub fn substep(model: &Model, controls: &Controls, state: &mut State, scratch: &
     neighbours::refresh(model, state, scratch);
     forces(model, controls, state, scratch);
     sums::on_membrane(model, controls, scratch);
-    sums::on_flange(model, state, scratch);
+    sums::on_flange(model, controls, state, scratch);
     integrate::advance(model, controls, scratch, state);
 }
 

@@ -4,17 +4,24 @@
 #[cfg(feature = "bag")]
 mod bags; // recordings, read back by independent libraries
 mod by_tick; // a made-up system whose numbers follow from its tick
+mod coarse; // a coarse gripper for tests of the physics
 mod commands; // commands from ROS 2 messages
+mod coupling; // action equals reaction
+mod desk; // commands at the desk
+mod determinism; // the same bits every time
 mod fanout; // sinks behind their queues: order, drops, failure, closing
 mod generated_types; // msgs/*.msg and the Rust types agree
+mod grains; // one, two and three grains
 #[cfg(feature = "ros")]
 mod main_job; // the main job, commanded from other processes
 mod peers; // independent programs in Python
 #[cfg(feature = "ros")]
 mod private_network; // where tests may speak DDS
+mod rig; // a bare model by hand
 #[cfg(feature = "ros")]
 mod ros_loop; // what goes out reaches others, what others say comes in
 mod scenes; // scenes that run, scenes that are refused
+mod sheet; // a grain on the membrane
 #[cfg(feature = "shm")]
 mod stream; // what other processes read in shared memory
 mod synthetic; // a scene and snapshots made up for tests

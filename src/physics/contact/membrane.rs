@@ -48,7 +48,8 @@ const ON_FACE: Real = 0.15;
 const SAME_HISTORY: Real = 0.7;
 /// Squared distances that differ by less than this share are equal.
 const EQUAL: Real = 1e-9;
-/// Triangles one grain may touch at once; a grain much larger than the mesh would need more.
+/// Triangles one grain may touch at once, the deepest; a grain much larger than the mesh would
+/// need more.
 const N_TOUCHED: usize = 24;
 
 /// A triangle within reach of a grain.
@@ -107,7 +108,7 @@ fn on_grain(
         let spring = spring_of(&before[..n_before], normal);
         let mut patch = Patch { spring, normal: *normal };
         let (force, torque) = of_patch(model, state, i, contact, &mut patch);
-        result.is_outside |= contact.is_outside(model, state);
+        result.is_outside |= contact.is_outside(model, state, &touched);
         result.contacts[slot] =
             PatchForce { force: force.force * share, normal: force.normal * share, ..force };
         result.torque += torque * share;
@@ -154,7 +155,7 @@ fn touching(
         let closest = closest_on_triangle(&position, corners);
         let from_membrane = position - closest.point;
         let distance_squared = from_membrane.norm_squared();
-        if distance_squared >= radius * radius || distance_squared == 0.0 || touched.is_full() {
+        if distance_squared >= radius * radius || distance_squared == 0.0 {
             continue;
         }
         let contact = Touched {
@@ -166,6 +167,12 @@ fn touching(
         };
         let is_deeper = |other: &Touched| distance_squared < other.distance_squared;
         let place = touched.iter().position(is_deeper).unwrap_or(touched.len());
+        if touched.is_full() {
+            if place == touched.len() {
+                continue;
+            }
+            touched.pop();
+        }
         touched.insert(place, contact);
     }
     touched
@@ -175,14 +182,10 @@ fn touching(
 /// same point with higher priority.
 fn is_local_minimum(model: &Model, contact: &Touched, touched: &[Touched]) -> bool {
     let triangles = &model.membrane.mesh.triangles;
-    let corners = triangles[contact.triangle as usize];
-    let shared: [Option<u32>; 2] = match contact.feature {
-        Feature::Face => return true,
-        Feature::Edge(k) => {
-            [Some(corners[usize::from(k)]), Some(corners[(usize::from(k) + 1) % 3])]
-        }
-        Feature::Vertex(k) => [Some(corners[usize::from(k)]), None],
-    };
+    if contact.feature == Feature::Face {
+        return true;
+    }
+    let shared = contact.shared_vertices(model);
     let beats = |other: &Touched| {
         let theirs = triangles[other.triangle as usize];
         if other.triangle == contact.triangle
@@ -229,7 +232,8 @@ fn of_patch(
     }
     let radius = grains.radii[i];
     let overlap = radius - contact.distance_squared.sqrt();
-    let arm = patch.normal * -(radius - overlap / 2.0);
+    // The contact point lies on the sheet, so that both sides have the same lever.
+    let arm = -contact.from_membrane;
     let velocity = grains.velocities[i] + grains.spins[i].cross(&arm) - sheet_velocity;
     let touch = Touch { overlap, normal: patch.normal, velocity, radius, mass };
     let force = law::force(&model.membrane_law, &touch, model.substep, &mut patch.spring);
@@ -244,13 +248,36 @@ fn of_patch(
 }
 
 impl Touched {
-    /// True if the grain's centre is on the outer side of the triangle whose face it touches.
-    fn is_outside(&self, model: &Model, state: &State) -> bool {
-        if self.feature != Feature::Face {
-            return false;
+    /// True if the grain's centre is on the outer side of the triangles that share the feature it
+    /// touches. All of them must agree, since around a saddle's vertex some always see the centre
+    /// on their outer side.
+    fn is_outside(&self, model: &Model, state: &State, touched: &[Self]) -> bool {
+        let sees_outside = |triangle: u32| {
+            let [a, b, c] = model.membrane.mesh.triangles[triangle as usize]
+                .map(|vertex| state.membrane.positions[vertex as usize]);
+            (b - a).cross(&(c - a)).dot(&self.from_membrane) > 0.0
+        };
+        let shared = self.shared_vertices(model);
+        touched
+            .iter()
+            .filter(|other| {
+                let theirs = model.membrane.mesh.triangles[other.triangle as usize];
+                other.triangle == self.triangle
+                    || (self.feature != Feature::Face
+                        && shared.iter().flatten().all(|vertex| theirs.contains(vertex)))
+            })
+            .all(|other| sees_outside(other.triangle))
+    }
+
+    /// The ends of the edge, or the vertex, that the contact lies on; none on a face.
+    fn shared_vertices(&self, model: &Model) -> [Option<u32>; 2] {
+        let corners = model.membrane.mesh.triangles[self.triangle as usize];
+        match self.feature {
+            Feature::Face => [None, None],
+            Feature::Edge(k) => {
+                [Some(corners[usize::from(k)]), Some(corners[(usize::from(k) + 1) % 3])]
+            }
+            Feature::Vertex(k) => [Some(corners[usize::from(k)]), None],
         }
-        let [a, b, c] = model.membrane.mesh.triangles[self.triangle as usize]
-            .map(|vertex| state.membrane.positions[vertex as usize]);
-        (b - a).cross(&(c - a)).dot(&self.from_membrane) > 0.0
     }
 }

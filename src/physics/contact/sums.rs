@@ -93,7 +93,7 @@ pub fn on_membrane(model: &Model, controls: &Controls, scratch: &mut Scratch) {
 
 /// What bag and grains put on the flange: the plate's contacts, the clamped vertices' forces and
 /// weight less what accelerates them, and the pressure on the plate.
-pub fn on_flange(model: &Model, state: &State, scratch: &mut Scratch) {
+pub fn on_flange(model: &Model, controls: &Controls, state: &State, scratch: &mut Scratch) {
     let origin = state.flange.translation.vector;
     let mut wrench = Wrench::zero();
     let mut add = |point: &Vec3, force: Vec3| {
@@ -108,14 +108,25 @@ pub fn on_flange(model: &Model, state: &State, scratch: &mut Scratch) {
     let rim = &model.membrane.mesh.rim;
     for &vertex in rim {
         let v = vertex as usize;
-        let weight = model.gravity * model.membrane.masses[v];
-        let force = scratch.membrane.forces[v] + scratch.vertex_forces[v] + weight;
-        add(&state.membrane.positions[v], force);
+        let force = scratch.membrane.forces[v] + scratch.vertex_forces[v];
+        let gained = clamped_velocity(model, controls, v) - state.membrane.velocities[v];
+        let own = model.gravity - gained / model.substep;
+        add(&state.membrane.positions[v], force + own * model.membrane.masses[v]);
     }
     let positions = &state.membrane.positions;
     let lid = pressure::lid_area_vector(&model.membrane.mesh, positions);
     add(&pressure::lid_centre(&model.membrane.mesh, positions), lid * state.gauge);
     scratch.flange_wrench = wrench;
+}
+
+/// Where the flange holds vertex `v` at the end of this substep [m].
+pub fn clamped_position(model: &Model, controls: &Controls, v: usize) -> Vec3 {
+    controls.flange.rotation * model.clamped_positions[v] + controls.flange.translation.vector
+}
+
+/// Velocity of vertex `v` if the flange holds it [m/s].
+fn clamped_velocity(model: &Model, controls: &Controls, v: usize) -> Vec3 {
+    flange_velocity(controls, &clamped_position(model, controls, v))
 }
 
 /// Velocity of a point fixed to the flange [m/s].

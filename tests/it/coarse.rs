@@ -1,0 +1,88 @@
+//! A coarse gripper: the laws of the full one with an eighth of its grains, settled once for all
+//! tests of this binary.
+
+use std::{path::Path, sync::OnceLock};
+
+use jamgrip::{
+    base::{Real, Vec3},
+    command::{Command, PoseCommand},
+    cosim::{
+        Coupled,
+        compile::{Compiled, StartState},
+        rapier_world::RapierWorld,
+    },
+    physics::Model,
+    scene::{Scene, text},
+    session::Session,
+};
+
+/// Grains twice as large as the full gripper's on a mesh twice as coarse; a light plastic cylinder
+/// with vertical walls just below the bag.
+const TEXT: &str = "
+name: coarse
+membrane: { frequency: 8 }
+grains: { count: 280, radius_min: 3.8 mm, radius_max: 4.2 mm }
+object:
+  name: cylinder
+  shape:
+    cylinder: { radius: 12 mm, height: 50 mm }
+  density: 1200 kg/m^3
+  position: [0 mm, 0 mm, 25 mm]
+flange:
+  position: [0 mm, 0 mm, 101 mm]
+  speed_max: 500 mm/s
+  acceleration_max: 10 m/s^2
+chamber: { lag: 20 ms }
+";
+
+/// The scene, with overrides as on the command line.
+pub(crate) fn scene(overrides: &[&str]) -> Scene {
+    let overrides: Vec<String> = overrides.iter().map(|it| (*it).to_owned()).collect();
+    text::parse(TEXT, "coarse", Path::new(""), &overrides).unwrap()
+}
+
+/// The scene compiled for `n_threads` solver threads.
+pub(crate) fn compiled(n_threads: usize, overrides: &[&str]) -> Compiled {
+    Compiled::new(&scene(overrides), n_threads).unwrap()
+}
+
+/// Bytes of the settled start state.
+pub(crate) fn start_state() -> &'static [u8] {
+    static BYTES: OnceLock<Vec<u8>> = OnceLock::new();
+    BYTES.get_or_init(|| Session::settle(compiled(2, &[]), &mut |_| {}).unwrap().start_state())
+}
+
+/// A run that begins settled; overrides may not concern the bag.
+pub(crate) fn session(n_threads: usize, overrides: &[&str]) -> Session {
+    Session::from_start_state(compiled(n_threads, overrides), start_state()).unwrap()
+}
+
+/// The coupled system without the session around it; `change` may do anything to the model.
+pub(crate) fn coupled(change: impl FnOnce(&mut Model)) -> Coupled {
+    let mut compiled = compiled(1, &[]);
+    change(&mut compiled.model);
+    let mut state = StartState::read(&compiled, start_state()).unwrap();
+    let Compiled { scene, model, plan, bulks, limits, .. } = compiled;
+    let mesh = &model.membrane.mesh;
+    let n_samples = (mesh.n_vertices() + mesh.triangles.len()) * model.bodies.len();
+    state.springs.bodies = vec![Vec3::zeros(); n_samples];
+    #[expect(clippy::cast_precision_loss, reason = "a small count")]
+    let step = model.substep * plan.n_per_exchange as Real;
+    let world = RapierWorld::new(&scene, &model, bulks, step);
+    Coupled::new(model, plan, state, world, limits)
+}
+
+/// The flange shall go to height `z` [m] over the origin.
+pub(crate) fn flange_to(z: Real) -> Command {
+    Command::FlangePose(pose(Vec3::new(0.0, 0.0, z)))
+}
+
+/// A pose in the world without rotation.
+pub(crate) fn pose(position: Vec3) -> PoseCommand {
+    PoseCommand {
+        frame_id: "world".to_owned(),
+        stamp_ns: 0,
+        position: position.into(),
+        orientation: [0.0, 0.0, 0.0, 1.0],
+    }
+}

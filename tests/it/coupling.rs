@@ -1,0 +1,299 @@
+//! Action equals reaction: between grains, sheet, flange and object, and over a whole lift.
+
+use std::sync::OnceLock;
+
+use jamgrip::{
+    base::{Pose, Real, Vec3, parallel},
+    command::Command,
+    cosim::{Coupled, Inputs},
+    physics::{Controls, Scratch, State, measure, substep},
+    session::Session,
+    snapshot::{Parts, take},
+};
+
+use crate::coarse;
+
+fn inputs(z: Real, gauge: Real) -> Inputs {
+    Inputs {
+        gauge_setpoint: gauge,
+        flange_target: Pose::translation(0.0, 0.0, z),
+        drives: vec![None],
+    }
+}
+
+/// A gripper that has been pushed over the object under vacuum, while the flange still moves.
+fn pushing() -> Coupled {
+    let mut coupled = coarse::coupled(|_| {});
+    parallel::lead(&parallel::pool(1).unwrap(), || {
+        for tick in 0..90 {
+            coupled.advance(&inputs(0.08, if tick < 50 { 0.0 } else { -30e3 }));
+        }
+    });
+    coupled
+}
+
+/// Momentum, and angular momentum about the origin, of grains and sheet.
+fn momenta(coupled: &Coupled) -> (Vec3, Vec3) {
+    let Coupled { model, state, .. } = coupled;
+    let (mut linear, mut angular) = (Vec3::zeros(), Vec3::zeros());
+    let mut add = |mass: Real, position: &Vec3, velocity: &Vec3| {
+        linear += velocity * mass;
+        angular += position.cross(velocity) * mass;
+    };
+    let grains = &state.grains;
+    for i in 0..grains.len() {
+        add(grains.masses[i], &grains.positions[i], &grains.velocities[i]);
+    }
+    for v in 0..state.membrane.positions.len() {
+        let sheet = &state.membrane;
+        add(model.membrane.masses[v], &sheet.positions[v], &sheet.velocities[v]);
+    }
+    for i in 0..grains.len() {
+        angular += grains.spins[i] * (0.4 * grains.masses[i] * grains.radii[i].powi(2));
+    }
+    (linear, angular)
+}
+
+/// The controls of the last substep: everything goes on as it moves.
+fn held_controls(coupled: &Coupled) -> Controls {
+    let mut bodies = vec![coupled.world.motion(0)];
+    bodies.push(jamgrip::physics::boundary::body::BodyMotion {
+        pose: coupled.model.table,
+        twist: jamgrip::base::real::Twist::zero(),
+    });
+    Controls {
+        gauge_setpoint: coupled.state.gauge,
+        flange: coupled.state.flange,
+        flange_twist: coupled.state.flange_twist,
+        bodies,
+    }
+}
+
+#[test]
+fn what_the_sheet_gets_the_object_gives() {
+    let coupled = pushing();
+    let Scratch { sample_forces, body_wrenches, vertex_forces, patch_forces, .. } =
+        &coupled.scratch;
+    let mesh = &coupled.model.membrane.mesh;
+    let n_samples = mesh.n_vertices() + mesh.triangles.len();
+    let controls = held_controls(&coupled);
+    let mut on_sheet = Vec3::zeros();
+    for (body, of_body) in sample_forces.chunks(n_samples).enumerate() {
+        let centre = controls.bodies[body].pose.translation.vector;
+        let (mut force, mut torque, mut size) = (Vec3::zeros(), Vec3::zeros(), 0.0);
+        for sample in of_body.iter().filter(|sample| sample.overlap > 0.0) {
+            force += sample.force;
+            torque += (sample.point - centre).cross(&sample.force);
+            size += sample.force.norm();
+        }
+        on_sheet += force;
+        if body == 0 {
+            assert!(size > 1.0, "the object is pushed with {size} N");
+        }
+        // Oracle: Newton's third law. Tolerance: rounding, of the sum of magnitudes; the lever arms
+        // are below 0.1 m. The object has moved on by one rigid step since, at most 10 µm.
+        assert!((force + body_wrenches[body].force).norm() <= 1e-12 * size);
+        let off = (torque + body_wrenches[body].torque).norm();
+        assert!(off <= 1e-9 * size + 1e-5 * size, "torques differ by {off} N m");
+    }
+    // What all vertices get is what bodies and grains give.
+    let (mut on_grains, mut size) = (Vec3::zeros(), 0.0);
+    for patches in patch_forces {
+        for contact in &patches.contacts[..patches.n] {
+            on_grains += contact.force;
+            size += contact.force.norm();
+        }
+    }
+    let on_vertices: Vec3 = vertex_forces.iter().sum();
+    let off = (on_vertices + on_grains - on_sheet).norm() / size;
+    eprintln!("vertices: {off:e}");
+    assert!(off < 1e-12, "{off:e}");
+}
+
+#[test]
+fn momentum_changes_by_what_flange_objects_and_gravity_give() {
+    let mut coupled = pushing();
+    let mass = measure::mass(&coupled.model, &coupled.state);
+    let tick = coupled.plan.tick;
+    let (mut worst, mut scale) = (0.0_f64, 0.0_f64);
+    parallel::lead(&parallel::pool(1).unwrap(), || {
+        for k in 0..40 {
+            let (before, _) = momenta(&coupled);
+            let means = coupled.advance(&inputs(if k < 15 { 0.08 } else { 0.1 }, -50e3));
+            let (after, _) = momenta(&coupled);
+            assert!(coupled.scratch.body_wrenches[1].force.norm() == 0.0, "the table is far");
+            let given = means.objects_on_gripper.force - means.gripper_on_mount.force
+                + coupled.model.gravity * mass;
+            let gained = (after - before) / tick;
+            worst = worst.max((gained - given).norm());
+            scale = scale.max(gained.norm());
+        }
+    });
+    eprintln!("momentum: {worst:e} N of {scale} N");
+    // Oracle: Newton's second law for the whole gripper. Tolerance 1e-9: rounding of sums of
+    // thousands of forces, some of which are a hundred times the whole.
+    assert!(worst < 1e-9 * scale, "{worst:e} N of {scale} N missing");
+}
+
+#[test]
+fn angular_momentum_changes_by_what_flange_objects_and_gravity_give() {
+    let mut coupled = pushing();
+    let mut controls = held_controls(&coupled);
+    let dt = coupled.model.substep;
+    let (mut worst, mut scale) = (0.0_f64, 0.0_f64);
+    parallel::lead(&parallel::pool(1).unwrap(), || {
+        for _ in 0..40 {
+            let (_, before) = momenta(&coupled);
+            let weight = moment_of_weight(&coupled);
+            controls.flange.translation.vector += controls.flange_twist.linear * dt;
+            let old_flange = coupled.state.flange.translation.vector;
+            let Coupled { model, state, scratch, .. } = &mut coupled;
+            substep(model, &controls, state, scratch);
+            let mut given = weight - about_origin(&scratch.flange_wrench, &old_flange);
+            for (wrench, body) in scratch.body_wrenches.iter().zip(&controls.bodies) {
+                given -= about_origin(wrench, &body.pose.translation.vector);
+            }
+            let (_, after) = momenta(&coupled);
+            worst = worst.max(((after - before) / dt - given).norm());
+            scale = scale.max(spin_torque(&coupled.state, &coupled.scratch));
+        }
+    });
+    eprintln!("angular momentum: {worst:e} N m, torques on grains {scale} N m");
+    // Oracle: no inner force twists the whole. Tolerance 1e-9 of the torques of membrane contacts
+    // on grains: rounding.
+    assert!(worst < 1e-9 * scale, "{worst:e} of {scale} N m come from nowhere");
+}
+
+fn about_origin(wrench: &jamgrip::base::real::Wrench, point: &Vec3) -> Vec3 {
+    wrench.torque + point.cross(&wrench.force)
+}
+
+fn moment_of_weight(coupled: &Coupled) -> Vec3 {
+    let Coupled { model, state, .. } = coupled;
+    let of_grains: Vec3 =
+        state.grains.positions.iter().zip(&state.grains.masses).map(|(r, m)| r * *m).sum();
+    let of_sheet: Vec3 =
+        state.membrane.positions.iter().zip(&model.membrane.masses).map(|(r, m)| r * *m).sum();
+    (of_grains + of_sheet).cross(&model.gravity)
+}
+
+/// Sum of the magnitudes of the membrane's torques on grains [N m].
+fn spin_torque(state: &State, scratch: &Scratch) -> Real {
+    assert_eq!(state.grains.len(), scratch.patch_forces.len());
+    scratch.patch_forces.iter().filter(|p| p.n > 0).map(|p| p.torque.norm()).sum()
+}
+
+#[test]
+fn a_gripper_at_rest_hangs_on_its_mount_with_its_weight() {
+    let mut session = coarse::session(1, &[]);
+    let n_ticks = 100;
+    let mut sum = Vec3::zeros();
+    for _ in 0..n_ticks {
+        session.tick(&[]).unwrap();
+        sum += session.means().gripper_on_mount.force;
+    }
+    let mean = sum / f64::from(n_ticks);
+    let weight = session.coupled().model.gravity
+        * measure::mass(&session.coupled().model, &session.coupled().state);
+    let off = (mean - weight).norm() / weight.norm();
+    eprintln!("mount at rest: {:e} of the weight off", off);
+    // Oracle: statics. Tolerance 0.5 %: what is demanded of the wrench topics.
+    assert!(off < 5e-3, "mount {mean:?}, weight {weight:?}");
+}
+
+/// What was measured while the object hung at rest.
+struct Hanging {
+    /// Mean force of the object on the gripper, flange axes [N].
+    contact: Vec3,
+    /// Mean force of all contacts on the object, world axes [N].
+    on_object: Vec3,
+    /// Mean force of the gripper on its mount, flange axes [N].
+    mount: Vec3,
+    /// Weight of the object [N].
+    weight: Real,
+    /// Weight of grains and sheet [N].
+    own_weight: Real,
+    /// How far the object was lifted [m].
+    lifted: Real,
+    /// Largest depth of the object in the table while it was pushed [m].
+    sunk: Real,
+}
+
+fn hanging() -> &'static Hanging {
+    static HANGING: OnceLock<Hanging> = OnceLock::new();
+    HANGING.get_or_init(|| lift(&mut coarse::session(1, &[])))
+}
+
+/// Pushes, evacuates, lifts by 15 mm, waits, and measures.
+fn lift(session: &mut Session) -> Hanging {
+    let height = |session: &Session| session.coupled().world.motion(0).pose.translation.z;
+    let mut lowest = height(session);
+    for tick in 0..900 {
+        let command = match tick {
+            0 => Some(coarse::flange_to(0.066)),
+            160 => Some(Command::Vacuum { gauge_pa: -80e3 }),
+            320 => Some(coarse::flange_to(0.081)),
+            _ => None,
+        };
+        session.tick(command.as_slice()).unwrap();
+        lowest = lowest.min(height(session));
+    }
+    let n_ticks = 300;
+    let (mut contact, mut on_object, mut mount) = (Vec3::zeros(), Vec3::zeros(), Vec3::zeros());
+    for _ in 0..n_ticks {
+        session.tick(&[]).unwrap();
+        let seen = take::snapshot(session, Parts::default());
+        contact += seen.contact_wrench.force / f64::from(n_ticks);
+        on_object += seen.objects[0].contact_wrench.force / f64::from(n_ticks);
+        mount += seen.mount_wrench.force / f64::from(n_ticks);
+    }
+    let coupled = session.coupled();
+    let fastest = |v: &[Vec3]| {
+        let at = (0..v.len()).max_by(|&a, &b| v[a].norm().total_cmp(&v[b].norm())).unwrap();
+        (at, v[at].norm())
+    };
+    eprintln!(
+        "fastest grain {:?}, vertex {:?}, energy {:e}",
+        fastest(&coupled.state.grains.velocities),
+        fastest(&coupled.state.membrane.velocities),
+        measure::kinetic_energy(&coupled.model, &coupled.state)
+    );
+    let g = -coupled.model.gravity.z;
+    Hanging {
+        contact,
+        on_object,
+        mount,
+        weight: coupled.world.mass(0) * g,
+        own_weight: measure::mass(&coupled.model, &coupled.state) * g,
+        lifted: height(session) - 0.025,
+        sunk: 0.025 - lowest,
+    }
+}
+
+#[test]
+fn a_hanging_object_weighs_what_it_weighs() {
+    let Hanging { contact, on_object, mount, weight, own_weight, lifted, .. } = hanging();
+    eprintln!(
+        "lifted {lifted}, contact {}, object {}, mount {}, weights {weight} {own_weight}",
+        contact.z / weight,
+        on_object.z / weight,
+        (mount.z + own_weight) / weight
+    );
+    assert!(*lifted > 0.01, "lifted by {lifted} m");
+    // Oracle: statics. Sign: force of the object on the gripper, so −m g. Tolerance 0.5 %: what is
+    // demanded of the wrench topics.
+    assert!((contact.z / -weight - 1.0).abs() < 5e-3, "{contact:?}");
+    assert!((on_object.z / weight - 1.0).abs() < 5e-3, "{on_object:?}");
+    assert!(((mount.z + own_weight) / -weight - 1.0).abs() < 5e-3, "{mount:?}");
+    for sideways in [contact.xy(), on_object.xy(), mount.xy()] {
+        assert!(sideways.norm() < 5e-3 * weight, "{sideways:?}");
+    }
+}
+
+#[test]
+fn the_table_bears_the_push() {
+    // Oracle: a rigid table. Tolerance 0.2 mm: twice the slop of 0.1 mm that the rigid world allows.
+    let sunk = hanging().sunk;
+    eprintln!("sunk {sunk:e} m");
+    assert!(sunk < 2e-4, "the object sank into the table by {sunk} m");
+}
