@@ -65,12 +65,12 @@ fn numbers_that_are_none_are_refused() {
         for k in 0..3 {
             let mut it = pose(Vec3::new(0.0, 0.0, 0.1));
             it.position[k] = bad;
-            both(&it).map(|command| refuses(command, finite));
+            both(&it).into_iter().for_each(|command| refuses(command, finite));
         }
         for k in 0..4 {
             let mut it = pose(Vec3::new(0.0, 0.0, 0.1));
             it.orientation[k] = bad;
-            both(&it).map(|command| refuses(command, finite));
+            both(&it).into_iter().for_each(|command| refuses(command, finite));
         }
     }
 }
@@ -81,7 +81,7 @@ fn numbers_that_overflow_on_the_way_into_the_world_are_refused() {
         for size in [1e160, 1.7e308] {
             let mut it = pose(Vec3::new(size, -size, size));
             it.frame_id = frame.to_owned();
-            both(&it).map(|command| {
+            both(&it).into_iter().for_each(|command| {
                 refuses(command, |why| matches!(why, Refusal::NotFinite { .. }));
             });
         }
@@ -92,7 +92,7 @@ fn numbers_that_overflow_on_the_way_into_the_world_are_refused() {
 fn quaternions_that_are_no_rotation_are_refused() {
     for bad in [[0.0; 4], [0.0, 0.0, 0.0, 1.002], [0.0, 0.0, 0.0, 0.998], [1.0; 4], [1e200; 4]] {
         let it = PoseCommand { orientation: bad, ..pose(Vec3::zeros()) };
-        both(&it).map(|command| {
+        both(&it).into_iter().for_each(|command| {
             refuses(command, |why| matches!(why, Refusal::NotNormalised { .. }));
         });
     }
@@ -106,7 +106,7 @@ fn quaternions_that_are_no_rotation_are_refused() {
 #[test]
 fn unknown_frames_and_objects_are_refused_with_what_there_is() {
     let it = PoseCommand { frame_id: "moon".to_owned(), ..pose(Vec3::zeros()) };
-    both(&it).map(|command| {
+    both(&it).into_iter().for_each(|command| {
         refuses(command, |why| {
             why.to_string()
                 == "unknown frame `moon`: use one of world, gripper_flange, object/cylinder"
