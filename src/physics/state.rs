@@ -4,8 +4,10 @@ use crate::base::{Pose, Real, Vec3, digest::Digest, real::Twist};
 
 use super::membrane::MembraneState;
 
-/// Membrane patches that one grain can touch at the same time, for example in a fold.
-pub const N_PATCHES: usize = 4;
+/// Membrane patches that one grain can touch at the same time: the six faces around a vertex that
+/// the vacuum has drawn over it like a cup, and two more, for example in a fold. If one of them were
+/// left out, which one would change from substep to substep, and the sheet would ring.
+pub const N_PATCHES: usize = 8;
 
 /// Everything that evolves.
 #[derive(Clone, Debug)]

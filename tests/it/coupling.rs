@@ -211,8 +211,12 @@ struct Hanging {
     mount: Vec3,
     /// Weight of the object [N].
     weight: Real,
+    /// Force that the object's remaining swing took, from its velocities [N].
+    swing: Vec3,
     /// Weight of grains and sheet [N].
     own_weight: Real,
+    /// Kinetic energy of grains and sheet at the end [J].
+    energy: Real,
     /// How far the object was lifted [m].
     lifted: Real,
     /// Largest depth of the object in the table while it was pushed [m].
@@ -228,17 +232,20 @@ fn hanging() -> &'static Hanging {
 fn lift(session: &mut Session) -> Hanging {
     let height = |session: &Session| session.coupled().world.motion(0).pose.translation.z;
     let mut lowest = height(session);
-    for tick in 0..900 {
+    for tick in 0..1000_u32 {
         let command = match tick {
             0 => Some(coarse::flange_to(0.066)),
             160 => Some(Command::Vacuum { gauge_pa: -80e3 }),
-            320 => Some(coarse::flange_to(0.081)),
+            // Gently, at 50 mm/s, so that the object does not swing for long.
+            321..=620 => Some(coarse::flange_to(0.066 + 5e-5 * f64::from(tick - 320))),
             _ => None,
         };
         session.tick(command.as_slice()).unwrap();
         lowest = lowest.min(height(session));
     }
     let n_ticks = 300;
+    let velocity = |session: &Session| session.coupled().world.motion(0).twist.linear;
+    let before = velocity(session);
     let (mut contact, mut on_object, mut mount) = (Vec3::zeros(), Vec3::zeros(), Vec3::zeros());
     for _ in 0..n_ticks {
         session.tick(&[]).unwrap();
@@ -248,23 +255,16 @@ fn lift(session: &mut Session) -> Hanging {
         mount += seen.mount_wrench.force / f64::from(n_ticks);
     }
     let coupled = session.coupled();
-    let fastest = |v: &[Vec3]| {
-        let at = (0..v.len()).max_by(|&a, &b| v[a].norm().total_cmp(&v[b].norm())).unwrap();
-        (at, v[at].norm())
-    };
-    eprintln!(
-        "fastest grain {:?}, vertex {:?}, energy {:e}",
-        fastest(&coupled.state.grains.velocities),
-        fastest(&coupled.state.membrane.velocities),
-        measure::kinetic_energy(&coupled.model, &coupled.state)
-    );
     let g = -coupled.model.gravity.z;
+    let gained = velocity(session) - before;
     Hanging {
         contact,
         on_object,
         mount,
         weight: coupled.world.mass(0) * g,
+        swing: gained * (coupled.world.mass(0) / (f64::from(n_ticks) * coupled.plan.tick)),
         own_weight: measure::mass(&coupled.model, &coupled.state) * g,
+        energy: measure::kinetic_energy(&coupled.model, &coupled.state),
         lifted: height(session) - 0.025,
         sunk: 0.025 - lowest,
     }
@@ -272,7 +272,7 @@ fn lift(session: &mut Session) -> Hanging {
 
 #[test]
 fn a_hanging_object_weighs_what_it_weighs() {
-    let Hanging { contact, on_object, mount, weight, own_weight, lifted, .. } = hanging();
+    let Hanging { contact, on_object, mount, weight, swing, own_weight, lifted, .. } = hanging();
     eprintln!(
         "lifted {lifted}, contact {}, object {}, mount {}, weights {weight} {own_weight}",
         contact.z / weight,
@@ -285,8 +285,15 @@ fn a_hanging_object_weighs_what_it_weighs() {
     assert!((contact.z / -weight - 1.0).abs() < 5e-3, "{contact:?}");
     assert!((on_object.z / weight - 1.0).abs() < 5e-3, "{on_object:?}");
     assert!(((mount.z + own_weight) / -weight - 1.0).abs() < 5e-3, "{mount:?}");
-    for sideways in [contact.xy(), on_object.xy(), mount.xy()] {
-        assert!(sideways.norm() < 5e-3 * weight, "{sideways:?}");
+    // All components: the light object still swings a little, which Newton's second law accounts for.
+    let up = Vec3::z() * *weight;
+    for (what, off) in [
+        ("contact", contact + up + swing),
+        ("object", on_object - up - swing),
+        ("mount", mount + up + swing + Vec3::z() * *own_weight),
+    ] {
+        eprintln!("{what}: {:e} of the weight off", off.norm() / weight);
+        assert!(off.norm() < 5e-3 * weight, "{what} is off by {off:?} N");
     }
 }
 
@@ -296,4 +303,13 @@ fn the_table_bears_the_push() {
     let sunk = hanging().sunk;
     eprintln!("sunk {sunk:e} m");
     assert!(sunk < 2e-4, "the object sank into the table by {sunk} m");
+}
+
+#[test]
+fn a_jammed_gripper_comes_to_rest() {
+    // Oracle: nothing drives it any more. Bound: a single vertex of 19 mg that rings at 0.5 m/s
+    // has 2e-6 J; grains at rest have far less.
+    let energy = hanging().energy;
+    eprintln!("energy at rest {energy:e} J");
+    assert!(energy < 2e-6, "the sheet still rings with {energy:e} J");
 }
