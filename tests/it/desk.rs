@@ -1,4 +1,5 @@
 //! Commands at the desk: what is refused, what is limited, what is counted, and what becomes of it.
+#![expect(clippy::print_stderr, reason = "what was measured is shown with the result")]
 
 use jamgrip::{
     base::{Pose, Real, Vec3, random::Random, random::Stream, real::Twist},
@@ -28,7 +29,7 @@ fn desk() -> Desk {
 
 /// What becomes of one command.
 fn take(desk: &mut Desk, command: Command, now_ns: u64) -> (Inputs, Outcome) {
-    let (inputs, records) = desk.take(&[command.clone()], &frames(), now_ns);
+    let (inputs, records) = desk.take(std::slice::from_ref(&command), &frames(), now_ns);
     assert_eq!(records.len(), 1);
     // Debug text is equal for NaN too.
     assert_eq!(format!("{:?}", records[0].command), format!("{command:?}"), "recorded as it came");
@@ -65,12 +66,12 @@ fn numbers_that_are_none_are_refused() {
         for k in 0..3 {
             let mut it = pose(Vec3::new(0.0, 0.0, 0.1));
             it.position[k] = bad;
-            both(&it).map(|command| refuses(command, finite));
+            both(&it).into_iter().for_each(|command| refuses(command, finite));
         }
         for k in 0..4 {
             let mut it = pose(Vec3::new(0.0, 0.0, 0.1));
             it.orientation[k] = bad;
-            both(&it).map(|command| refuses(command, finite));
+            both(&it).into_iter().for_each(|command| refuses(command, finite));
         }
     }
 }
@@ -81,7 +82,7 @@ fn numbers_that_overflow_on_the_way_into_the_world_are_refused() {
         for size in [1e160, 1.7e308] {
             let mut it = pose(Vec3::new(size, -size, size));
             it.frame_id = frame.to_owned();
-            both(&it).map(|command| {
+            both(&it).into_iter().for_each(|command| {
                 refuses(command, |why| matches!(why, Refusal::NotFinite { .. }));
             });
         }
@@ -92,7 +93,7 @@ fn numbers_that_overflow_on_the_way_into_the_world_are_refused() {
 fn quaternions_that_are_no_rotation_are_refused() {
     for bad in [[0.0; 4], [0.0, 0.0, 0.0, 1.002], [0.0, 0.0, 0.0, 0.998], [1.0; 4], [1e200; 4]] {
         let it = PoseCommand { orientation: bad, ..pose(Vec3::zeros()) };
-        both(&it).map(|command| {
+        both(&it).into_iter().for_each(|command| {
             refuses(command, |why| matches!(why, Refusal::NotNormalised { .. }));
         });
     }
@@ -106,7 +107,7 @@ fn quaternions_that_are_no_rotation_are_refused() {
 #[test]
 fn unknown_frames_and_objects_are_refused_with_what_there_is() {
     let it = PoseCommand { frame_id: "moon".to_owned(), ..pose(Vec3::zeros()) };
-    both(&it).map(|command| {
+    both(&it).into_iter().for_each(|command| {
         refuses(command, |why| {
             why.to_string()
                 == "unknown frame `moon`: use one of world, gripper_flange, object/cylinder"
@@ -237,7 +238,7 @@ fn silence_gives_a_driven_object_back_to_gravity() {
 fn the_flange_keeps_its_limits_whatever_it_is_told() {
     let mut session =
         coarse::session(1, &["flange.speed_max=250 mm/s", "flange.acceleration_max=2 m/s^2"]);
-    let flange = session.scene().flange.clone();
+    let flange = session.scene().flange;
     let mut random = Random::new(5, Stream::Position);
     let tick = 1e-3;
     let (mut fastest, mut strongest) = (0.0_f64, 0.0_f64);
