@@ -1,4 +1,5 @@
 //! Commands at the desk: what is refused, what is limited, what is counted, and what becomes of it.
+#![expect(clippy::print_stderr, reason = "what was measured is shown with the result")]
 
 use jamgrip::{
     base::{Pose, Real, Vec3, random::Random, random::Stream, real::Twist},
@@ -28,7 +29,7 @@ fn desk() -> Desk {
 
 /// What becomes of one command.
 fn take(desk: &mut Desk, command: Command, now_ns: u64) -> (Inputs, Outcome) {
-    let (inputs, records) = desk.take(&[command.clone()], &frames(), now_ns);
+    let (inputs, records) = desk.take(std::slice::from_ref(&command), &frames(), now_ns);
     assert_eq!(records.len(), 1);
     // Debug text is equal for NaN too.
     assert_eq!(format!("{:?}", records[0].command), format!("{command:?}"), "recorded as it came");
@@ -237,7 +238,7 @@ fn silence_gives_a_driven_object_back_to_gravity() {
 fn the_flange_keeps_its_limits_whatever_it_is_told() {
     let mut session =
         coarse::session(1, &["flange.speed_max=250 mm/s", "flange.acceleration_max=2 m/s^2"]);
-    let flange = session.scene().flange.clone();
+    let flange = session.scene().flange;
     let mut random = Random::new(5, Stream::Position);
     let tick = 1e-3;
     let (mut fastest, mut strongest) = (0.0_f64, 0.0_f64);

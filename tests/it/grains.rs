@@ -1,4 +1,5 @@
 //! Grains by themselves: what rigid-body mechanics and Hertz say about one, two and three of them.
+#![expect(clippy::print_stderr, reason = "what was measured is shown with the result")]
 
 use std::f64::consts::PI;
 

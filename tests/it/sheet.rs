@@ -1,4 +1,5 @@
 //! A grain on the sheet: what crosses edges and vertices, what leaks, and how it slides.
+#![expect(clippy::print_stderr, reason = "what was measured is shown with the result")]
 
 use jamgrip::{
     base::{Real, Vec3, parallel},
