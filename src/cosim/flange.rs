@@ -1,12 +1,14 @@
 //! How a kinematic body follows commanded poses within its limits.
 //!
 //! ```text
-//! v_wanted = ê min(v_max, |e|/τ, √(2 a_max |e|)),   |v − v_before| ≤ a_max dt
+//! v_wanted = ê min(v_max, s(|e|)),   |v − v_before| ≤ a_max dt
+//! s(e) = e/τ                 for e ≤ a τ²
+//!        √(2 a (e − a τ²/2)) beyond,        a = 0.8 a_max
 //! ```
 //!
 //! e is the way left to the target and τ = 50 ms smooths a target that arrives in steps of a
-//! controller's period; the square root lets the body stop in time. The same holds for rotations,
-//! with the rotation vector as e.
+//! controller's period. Further away the body brakes at a, a little less than it could, so that it
+//! arrives without overshoot. The same holds for rotations, with the rotation vector as e.
 
 use crate::{
     base::{Pose, Real, Vec3, real::Twist},
@@ -16,6 +18,8 @@ use crate::{
 
 /// Time constant of the approach [s].
 const FOLLOW_TIME: Real = 0.05;
+/// Share of the acceleration limit that braking is planned with.
+const BRAKING: Real = 0.8;
 
 /// Velocity and acceleration limits of a kinematic body.
 #[derive(Clone, Copy, Debug)]
@@ -56,7 +60,14 @@ impl Limits {
 
 fn approach(way: Vec3, velocity: Vec3, (fastest, acceleration): (Real, Real), dt: Real) -> Vec3 {
     let left = way.norm();
-    let speed = fastest.min(left / FOLLOW_TIME).min((2.0 * acceleration * left).sqrt());
+    let braking = BRAKING * acceleration;
+    let near = braking * FOLLOW_TIME * FOLLOW_TIME;
+    let approach = if left <= near {
+        left / FOLLOW_TIME
+    } else {
+        (2.0 * braking * (left - near / 2.0)).sqrt()
+    };
+    let speed = fastest.min(approach);
     // Closer than any motion that matters: standing still keeps the bits of the pose.
     let wanted = if left > 1e-12 { way * (speed / left) } else { Vec3::zeros() };
     let change = wanted - velocity;
