@@ -1,4 +1,4 @@
-"""Writes knob.obj: a lobed, bent knob that no gripper finger was made for, 55 mm high.
+"""Writes knob.obj: a lobed, bent knob that no gripper finger was made for, 45 mm high.
 
     python3 launch_configs/meshes/knob.py > launch_configs/meshes/knob.obj
 
@@ -7,15 +7,15 @@ Millimetres, z up, standing on its flat base about the origin.
 
 from math import cos, pi, sin, sqrt
 
-HEIGHT = 55.0
+HEIGHT = 45.0
 RINGS, SECTORS = 22, 28
 
 
 def radius(z, angle):
-    """A base, a waist at 24 mm, a head at 42 mm; three lobes that turn on the way up."""
+    """A base, a waist at half height, a head with a rounded rim; three lobes that turn on the way up."""
     s = z / HEIGHT
-    body = 12.5 - 3.5 * sin(pi * min(s / 0.87, 1.0)) ** 2 + 1.5 * s
-    cap = sqrt(max(0.0, 1.0 - max(0.0, (s - 0.7) / 0.3) ** 2))
+    body = 17.0 - 1.5 * sin(pi * s) ** 2
+    cap = sqrt(max(0.0, 1.0 - max(0.0, (s - 0.9) / 0.1) ** 2))
     lobes = 1.0 + 0.07 * cos(3.0 * angle + 2.0 * s)
     return body * cap * lobes
 
@@ -23,7 +23,7 @@ def radius(z, angle):
 def axis(z):
     """The axis leans and comes back."""
     s = z / HEIGHT
-    return 1.8 * sin(pi * s), 1.1 * sin(2.0 * pi * s)
+    return 1.5 * sin(pi * s), 1.0 * sin(2.0 * pi * s)
 
 
 def main():

@@ -55,9 +55,8 @@ pub struct BodyModel {
     pub law: PairLaw,
     /// Effective radius R* of a membrane sample on it [m].
     pub contact_radius: Real,
-    /// Square of the distance from its frame's origin beyond which the sheet is not looked at: no
-    /// facet that touches has a corner further away [m²].
-    pub reach_squared: Real,
+    /// Nothing of it is further than this from its frame's origin [m].
+    pub bounding_radius: Real,
 }
 
 /// The surface of a body, in its own frame.

@@ -93,7 +93,7 @@ impl Compiled {
         let mesh = Mesh::half_icosphere(scene.membrane.radius, scene.membrane.frequency)?;
         let mut membrane = MembraneModel::new(mesh, sheet(&scene.membrane));
         membrane.scale_rest_lengths(1.0 - scene.membrane.rest_length_shrink);
-        let (mut bodies, bulks) = bodies(scene, membrane.longest_edge)?;
+        let (mut bodies, bulks) = bodies(scene)?;
         bodies.push(table(scene));
         let laws = Laws::new(scene);
         let plan = plan(scene, &membrane, &laws, &bodies)?;
@@ -174,7 +174,7 @@ fn sheet(membrane: &scene::Membrane) -> Sheet {
     }
 }
 
-fn bodies(scene: &Scene, longest_edge: Real) -> Result<(Vec<BodyModel>, Vec<Bulk>), CompileError> {
+fn bodies(scene: &Scene) -> Result<(Vec<BodyModel>, Vec<Bulk>), CompileError> {
     let mut bodies = Vec::new();
     let mut bulks = Vec::new();
     for object in &scene.objects {
@@ -185,7 +185,7 @@ fn bodies(scene: &Scene, longest_edge: Real) -> Result<(Vec<BodyModel>, Vec<Bulk
         bodies.push(BodyModel {
             law: PairLaw::between(&scene.membrane.material, &object.material, on_object),
             contact_radius: contact_radius(&object.shape, bulk.volume),
-            reach_squared: (surface.bounding_radius() + longest_edge).powi(2),
+            bounding_radius: surface.bounding_radius(),
             surface: BodySurface::Shape(Box::new(surface)),
         });
         bulks.push(bulk);
@@ -223,7 +223,7 @@ fn table(scene: &Scene) -> BodyModel {
         surface: BodySurface::HalfSpace,
         law: PairLaw::against_rigid(&scene.membrane.material, on_table),
         contact_radius: TABLE_CONTACT_RADIUS,
-        reach_squared: Real::INFINITY,
+        bounding_radius: Real::INFINITY,
     }
 }
 

@@ -21,6 +21,11 @@ use crate::{
     },
 };
 
+/// A sample this far from a body is not looked at again until it may have come nearer [m].
+const AWAY: Real = 1e-4;
+/// What a step of the rigid world may move a body beyond its velocity, per substep [m].
+const SLACK: Real = 1e-6;
+
 /// Forces of all bodies on all samples; carries their springs on by one substep.
 pub fn forces(
     model: &Model,
@@ -41,19 +46,14 @@ pub fn forces(
         let (vertex_springs, facet_springs) = springs.split_at_mut(mesh.n_vertices());
         parallel::for_each_of_two(of_vertices, vertex_springs, |v, sample, spring| {
             let point = SheetPoint::vertex(model, &state.membrane, v);
-            *sample = contact.force(&point, spring);
+            contact.touch(&point, sample, spring);
         });
         let of_vertices = &*of_vertices;
         parallel::for_each_of_two(of_facets, facet_springs, |t, sample, spring| {
             let corners = mesh.triangles[t].map(|v| v as usize);
             let overlaps = corners.map(|v| of_vertices[v].overlap);
-            // A facet further away than its own size cannot touch.
-            if overlaps.iter().all(|&overlap| overlap < -model.membrane.longest_edge) {
-                (sample.overlap, *spring) = (Real::NEG_INFINITY, Vec3::zeros());
-                return;
-            }
             let point = SheetPoint::facet(model, &state.membrane, corners, overlaps);
-            *sample = contact.force(&point, spring);
+            contact.touch(&point, sample, spring);
         });
     }
 }
@@ -101,13 +101,40 @@ struct Contact<'a> {
 }
 
 impl Contact<'_> {
-    #[inline]
+    /// Force on a sample, or a cheaper proof that it is still away.
+    #[inline(always)]
+    fn touch(&self, sheet: &SheetPoint, sample: &mut SampleForce, spring: &mut Vec3) {
+        match self.nearer(sheet, sample) {
+            Some(overlap) => sample.overlap = overlap,
+            None => *sample = self.force(sheet, spring),
+        }
+    }
+
+    /// How near a sample that was away may have come in the last substep: its overlap then, and
+    /// all that it and the surface moved towards each other. `None` if that is not far enough away
+    /// to be sure.
+    #[inline(always)]
+    fn nearer(&self, sheet: &SheetPoint, sample: &SampleForce) -> Option<Real> {
+        if sample.overlap > -AWAY {
+            return None;
+        }
+        let arm = sheet.position - self.motion.pose.translation.vector;
+        let closing = (sheet.velocity - self.motion.twist.at(&arm)).norm();
+        // The nearest point of the surface turns about the sample.
+        let turning = self.motion.twist.angular.norm() * sample.overlap.abs();
+        let overlap = sample.overlap + (closing + turning) * self.dt + SLACK;
+        (overlap < -AWAY).then_some(overlap)
+    }
+
+    #[inline(always)]
     fn force(&self, sheet: &SheetPoint, spring: &mut Vec3) -> SampleForce {
         let arm = sheet.position - self.motion.pose.translation.vector;
-        let Some((distance, normal)) = self.distance(&arm) else {
+        let beyond = arm.norm() - self.body.bounding_radius;
+        if beyond > AWAY {
             *spring = Vec3::zeros();
-            return SampleForce::NONE;
-        };
+            return SampleForce { overlap: -beyond, ..SampleForce::NONE };
+        }
+        let (distance, normal) = self.distance(&arm);
         let overlap = -distance - sheet.known_overlap;
         if overlap <= 0.0 {
             *spring = Vec3::zeros();
@@ -130,21 +157,18 @@ impl Contact<'_> {
         }
     }
 
-    /// Signed distance and outward normal in world axes, if the point is near at all.
+    /// Signed distance and outward normal in world axes.
     #[inline]
-    fn distance(&self, arm: &Vec3) -> Option<(Real, Vec3)> {
+    fn distance(&self, arm: &Vec3) -> (Real, Vec3) {
         match &self.body.surface {
             BodySurface::HalfSpace => {
                 let normal = self.motion.pose.rotation * Vec3::z();
-                Some((normal.dot(arm), normal))
+                (normal.dot(arm), normal)
             }
             BodySurface::Shape(surface) => {
-                if arm.norm_squared() >= self.body.reach_squared {
-                    return None;
-                }
                 let local = self.motion.pose.rotation.inverse_transform_vector(arm);
                 let signed = surface.distance(&local);
-                Some((signed.distance, self.motion.pose.rotation * signed.normal))
+                (signed.distance, self.motion.pose.rotation * signed.normal)
             }
         }
     }

@@ -49,9 +49,6 @@ pub struct MembraneModel {
     /// True for the vertices that the flange holds: those of the rim. Forces on them are computed
     /// like all others: they are what the sheet exerts on the flange.
     pub is_clamped: Vec<bool>,
-    /// Length beyond which no edge is ever stretched: twice the longest one in the reference
-    /// shape [m].
-    pub longest_edge: Real,
     /// Springs and hinges, numbered like the edges.
     links: Vec<Link>,
 }
@@ -141,9 +138,8 @@ impl MembraneModel {
             }
             links.push(link);
         }
-        let longest = links.iter().map(|link| link.spring.rest_length).fold(0.0, Real::max);
         let is_clamped = mesh.is_on_rim.clone();
-        Self { masses, is_clamped, longest_edge: 2.0 * longest, links, sheet, mesh }
+        Self { masses, is_clamped, links, sheet, mesh }
     }
 
     /// Makes every spring's rest length `scale` times its length in the reference shape.
