@@ -91,24 +91,23 @@ fn on_grain(
     result: &mut PatchForces,
 ) {
     let touched = touching(model, state, i, candidates);
-    let mut contacts = ArrayVec::<(&Touched, Vec3), N_PATCHES>::new();
+    let mut minima = ArrayVec::<Minimum<'_>, N_PATCHES>::new();
     for contact in &touched {
-        if !contacts.is_full() && is_local_minimum(model, contact, &touched) {
-            let inverse = contact.distance_squared.sqrt().recip();
-            contacts.push((contact, contact.from_membrane * inverse));
+        if !minima.is_full() && is_local_minimum(model, contact, &touched) {
+            minima.push(Minimum::new(contact, state.grains.radii[i]));
         }
     }
     let (before, n_before) = (patches.slots, patches.n);
-    patches.n = contacts.len();
-    result.n = contacts.len();
+    patches.n = minima.len();
+    result.n = minima.len();
     result.torque = Vec3::zeros();
     result.is_outside = false;
-    for (slot, (contact, normal)) in contacts.iter().enumerate() {
-        let share = share(slot, &contacts, state.grains.radii[i]);
-        let spring = spring_of(&before[..n_before], normal);
-        let mut patch = Patch { spring, normal: *normal };
-        let (force, torque) = of_patch(model, state, i, contact, &mut patch);
-        result.is_outside |= contact.is_outside(model, state, &touched);
+    for (slot, minimum) in minima.iter().enumerate() {
+        let share = share(slot, &minima);
+        let spring = spring_of(&before[..n_before], &minimum.normal);
+        let mut patch = Patch { spring, normal: minimum.normal };
+        let (force, torque) = of_patch(model, state, i, minimum, &mut patch);
+        result.is_outside |= minimum.contact.is_outside(model, state, &touched);
         result.contacts[slot] =
             PatchForce { force: force.force * share, normal: force.normal * share, ..force };
         result.torque += torque * share;
@@ -117,27 +116,47 @@ fn on_grain(
 }
 
 /// Share c of the force that contact `slot` takes.
-fn share(slot: usize, contacts: &[(&Touched, Vec3)], radius: Real) -> Real {
-    if contacts.len() == 1 {
+fn share(slot: usize, minima: &[Minimum<'_>]) -> Real {
+    if minima.len() == 1 {
         return 1.0;
     }
-    let weight = |contact: &Touched| {
-        let overlap = radius - contact.distance_squared.sqrt();
-        let from_edge = contact.weights.iter().copied().fold(1.0, Real::min);
-        overlap * (ON_EDGE + (1.0 - ON_EDGE) * (from_edge / ON_FACE).min(1.0))
-    };
-    let (own, normal) = &contacts[slot];
-    let own = weight(own);
-    let mut all = own;
-    for (other, (contact, other_normal)) in contacts.iter().enumerate() {
+    let own = &minima[slot];
+    let mut all = own.weight;
+    for (other, minimum) in minima.iter().enumerate() {
         if other != slot {
-            let likeness = (normal.dot(other_normal) - TWO_PATCHES) / (ONE_PATCH - TWO_PATCHES);
+            let cosine = own.normal.dot(&minimum.normal);
+            let likeness = (cosine - TWO_PATCHES) * (1.0 / (ONE_PATCH - TWO_PATCHES));
             let likeness = likeness.clamp(0.0, 1.0);
             let smooth = likeness * likeness * (3.0 - 2.0 * likeness);
-            all += (APART + (1.0 - APART) * smooth) * weight(contact);
+            all += (APART + (1.0 - APART) * smooth) * minimum.weight;
         }
     }
-    own / all
+    own.weight / all
+}
+
+/// A local minimum of the grain's distance to the sheet.
+struct Minimum<'a> {
+    contact: &'a Touched,
+    /// From membrane to grain.
+    normal: Vec3,
+    overlap: Real,
+    /// The q of the formula.
+    weight: Real,
+}
+
+impl<'a> Minimum<'a> {
+    fn new(contact: &'a Touched, radius: Real) -> Self {
+        let distance = contact.distance_squared.sqrt();
+        let overlap = radius - distance;
+        let from_edge = contact.weights.iter().copied().fold(1.0, Real::min);
+        let on_face = (from_edge * (1.0 / ON_FACE)).min(1.0);
+        Self {
+            contact,
+            normal: contact.from_membrane * distance.recip(),
+            overlap,
+            weight: overlap * (ON_EDGE + (1.0 - ON_EDGE) * on_face),
+        }
+    }
 }
 
 /// Triangles that grain `i` overlaps, deepest first.
@@ -219,9 +238,10 @@ fn of_patch(
     model: &Model,
     state: &State,
     i: usize,
-    contact: &Touched,
+    minimum: &Minimum<'_>,
     patch: &mut Patch,
 ) -> (PatchForce, Vec3) {
+    let &Minimum { contact, overlap, .. } = minimum;
     let grains = &state.grains;
     let vertices = model.membrane.mesh.triangles[contact.triangle as usize].map(|v| v as usize);
     let mut sheet_velocity = Vec3::zeros();
@@ -231,7 +251,6 @@ fn of_patch(
         mass += model.membrane.masses[vertex] * weight;
     }
     let radius = grains.radii[i];
-    let overlap = radius - contact.distance_squared.sqrt();
     // The contact point lies on the sheet, so that both sides have the same lever.
     let arm = -contact.from_membrane;
     let velocity = grains.velocities[i] + grains.spins[i].cross(&arm) - sheet_velocity;
