@@ -72,7 +72,7 @@ fn an_independent_peer_commands_the_whole_job() {
                 .args(["run", "launch_configs/pick_and_lift.yaml", "--json", "--bag"])
                 .arg(&bag)
                 .args(["--set", "controller=topics", "--cache"])
-            .arg(concat!(env!("CARGO_TARGET_TMPDIR"), "/starts"))
+                .arg(concat!(env!("CARGO_TARGET_TMPDIR"), "/starts"))
                 .current_dir(env!("CARGO_MANIFEST_DIR"))
                 .env("ROS_DOMAIN_ID", reach().domain_id.to_string())
                 .env("JAMGRIP_STREAM_PREFIX", format!("jamgrip_test_{}", std::process::id())),
