@@ -1,7 +1,7 @@
 //! One run in memory: tick, look, save, resume.
 
 use crate::{
-    base::{Tick, digest::Digest, parallel, real::Wrench},
+    base::{Tick, Vec3, digest::Digest, parallel, real::Wrench},
     command::{
         Command, CommandRecord,
         apply::{Desk, Frames},
@@ -9,8 +9,10 @@ use crate::{
     cosim::{
         Coupled, Inputs, Means,
         compile::{Compiled, StartState, StartStateError},
+        rapier_world::RapierWorld,
     },
     physics::{
+        State,
         fill::{self, Progress},
         health::{self, Diverged},
         measure,
@@ -54,12 +56,12 @@ impl Session {
         Ok(Self::start(compiled, state))
     }
 
-    fn start(compiled: Compiled, mut state: crate::physics::State) -> Self {
+    fn start(compiled: Compiled, mut state: State) -> Self {
         let Compiled { scene, model, plan, bulks, limits, pool, .. } = compiled;
         let n_samples = model.membrane.mesh.n_vertices() + model.membrane.mesh.triangles.len();
-        state.springs.bodies = vec![crate::base::Vec3::zeros(); n_samples * model.bodies.len()];
+        state.springs.bodies = vec![Vec3::zeros(); n_samples * model.bodies.len()];
         let step = plan.tick / measure::real(plan.n_substeps / plan.n_per_exchange);
-        let world = crate::cosim::rapier_world::RapierWorld::new(&scene, &model, bulks, step);
+        let world = RapierWorld::new(&scene, &model, bulks, step);
         let (n_objects, n_grains) = (scene.objects.len(), state.grains.positions.len());
         let desk = Desk::new(&scene);
         let coupled = Coupled::new(model, plan, state, world, limits);

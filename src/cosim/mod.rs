@@ -14,7 +14,9 @@ use crate::{
         Pose, Real, Vec3,
         real::{Twist, Wrench},
     },
-    physics::{Controls, Model, Scratch, State, boundary::body::BodyMotion, substep},
+    physics::{
+        Controls, Model, Scratch, State, boundary::body::BodyMotion, measure::real, substep,
+    },
 };
 use flange::Limits;
 use rapier_world::RapierWorld;
@@ -48,7 +50,8 @@ pub struct Inputs {
 pub struct Means {
     /// Wrench of the membrane on each object about its centre of mass.
     pub membrane_on_objects: Vec<Wrench>,
-    /// Wrench of all contacts on each object about its centre of mass, from its momentum.
+    /// Wrench of all contacts on each object about its centre of mass, from its momentum; of a
+    /// driven object the membrane's alone, because its momentum is the drive's.
     pub contacts_on_objects: Vec<Wrench>,
     /// Wrench of all objects on the gripper about the flange's origin.
     pub objects_on_gripper: Wrench,
@@ -116,7 +119,7 @@ impl Coupled {
                 self.exchange(&mut exchange);
             }
         }
-        self.means(&sums, &before)
+        self.means(&sums, &before, inputs)
     }
 
     fn drive_objects(&mut self, inputs: &Inputs) {
@@ -169,9 +172,12 @@ impl Coupled {
         }
     }
 
-    fn means(&self, sums: &Sums, before: &[(Vec3, Vec3)]) -> Means {
+    fn means(&self, sums: &Sums, before: &[(Vec3, Vec3)], inputs: &Inputs) -> Means {
         let share = 1.0 / real(self.plan.n_substeps);
         let contacts = before.iter().enumerate().map(|(i, (momentum, spin))| {
+            if inputs.drives[i].is_some() {
+                return scaled(&sums.on_objects[i], share);
+            }
             let (momentum_now, spin_now) = self.world.momentum(i);
             let weight = self.model.gravity * self.world.mass(i);
             Wrench {
@@ -211,9 +217,4 @@ fn add(sum: &mut Wrench, wrench: &Wrench) {
 
 fn scaled(wrench: &Wrench, share: Real) -> Wrench {
     Wrench { force: wrench.force * share, torque: wrench.torque * share }
-}
-
-#[expect(clippy::cast_precision_loss, reason = "counts of substeps are small")]
-fn real(count: usize) -> Real {
-    count as Real
 }

@@ -67,7 +67,7 @@ pub struct ObjectSnapshot {
     /// Pose of the body frame, whose origin is the centre of mass, and velocity.
     pub body: BodySnapshot,
     /// Total contact wrench (membrane and table) about the centre of mass, gravity excluded,
-    /// mean over the tick.
+    /// mean over the tick; the membrane's share alone while the object is driven.
     pub contact_wrench: Wrench,
     /// The membrane's share of it.
     pub membrane_wrench: Wrench,

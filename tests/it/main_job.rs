@@ -102,8 +102,26 @@ fn an_independent_peer_commands_the_whole_job() {
         // Theirs is the lowest height while holding, ours the highest reached.
         assert!((-0.005..=0.0005).contains(&difference), "{theirs} m seen, {ours} m told");
         assert_eq!((&told["held"], &told["failed"]["ros"]), (&true.into(), &0.into()));
-        assert!(bag.join("metadata.yaml").exists(), "the recording was closed");
+        check_recording(&bag, &told);
     });
+}
+
+/// Oracle: two independent libraries decode every message of the recording and count what
+/// metadata.yaml promises; the node says how many packets and commands there were.
+fn check_recording(bag: &Path, told: &Value) {
+    let json = peers::run("read_bag.py", &[bag.to_str().unwrap()]);
+    let read: Value = serde_json::from_str(&json).unwrap();
+    let count = |topic: &str| read["mcap"]["counts"][topic].as_u64().unwrap_or(0);
+    // Every packet holds a clock message.
+    assert_eq!(told["written"]["bag"], count("/clock"));
+    let commands = &told["commands"];
+    let n_commands: u64 =
+        ["applied", "limited", "refused"].iter().map(|key| commands[key].as_u64().unwrap()).sum();
+    assert_eq!(count("/jamgrip/vacuum_cmd") + count("/jamgrip/flange/pose_cmd"), n_commands);
+    for topic in ["grains", "membrane", "wrench", "vacuum_state", "object/cylinder/pose"] {
+        assert!(10 < count(&format!("/jamgrip/{topic}")), "{topic} is recorded");
+    }
+    assert_eq!(read["mcap"]["metadata"]["jamgrip"]["state_digest"], told["state_digest"]);
 }
 
 /// Weight of the scene's cylinder [N], from its dimensions.

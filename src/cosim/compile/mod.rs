@@ -19,6 +19,7 @@ use crate::{
         Model,
         boundary::shape::{Bulk, ShapeFault, Surface},
         contact::law::{self, PairLaw},
+        measure::real,
         membrane::{MembraneModel, Sheet, critical_step, mesh::Mesh},
         model::{BodyModel, BodySurface, ChamberModel},
     },
@@ -284,11 +285,6 @@ fn critical_step(
 fn stiffness(law: &PairLaw, radius: Real, force: Real) -> Real {
     let overlap = (0.75 * force / (law.modulus * radius.sqrt())).powf(2.0 / 3.0);
     2.0 * law.modulus * (radius * overlap).sqrt()
-}
-
-#[expect(clippy::cast_precision_loss, reason = "counts of substeps are small")]
-fn real(count: usize) -> Real {
-    count as Real
 }
 
 /// A whole positive real as a count, at least 1.
