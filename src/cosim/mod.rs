@@ -30,8 +30,6 @@ pub struct Plan {
     pub n_substeps: usize,
     /// Substeps between two steps of the rigid world.
     pub n_per_exchange: usize,
-    /// The longest stable substep [s].
-    pub critical_step: Real,
 }
 
 /// What the outside wants during a tick.

@@ -27,7 +27,7 @@ use crate::{
 };
 
 /// Changes whenever the same scene would settle differently: part of every cache key.
-const PHYSICS_VERSION: u64 = 2;
+const PHYSICS_VERSION: u64 = 3;
 /// Neighbours are listed this share of the largest radius beyond contact.
 const SKIN_SHARE: Real = 0.25;
 /// Longest time between two steps of the rigid world [s].
@@ -252,7 +252,7 @@ fn plan(
     let n_first = count((tick / wanted - 1e-9).ceil());
     let n_per_exchange = count((EXCHANGE_MAX * real(n_first) / tick).floor());
     let n_substeps = n_first.div_ceil(n_per_exchange) * n_per_exchange;
-    Ok(Plan { tick, n_substeps, n_per_exchange, critical_step: critical })
+    Ok(Plan { tick, n_substeps, n_per_exchange })
 }
 
 fn critical_step(
