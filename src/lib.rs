@@ -10,6 +10,7 @@ pub mod command; // what the outside may ask
 pub mod session; // one run in memory
 pub mod snapshot; // what the outside may see
 pub mod controller; // who asks, if nobody outside does
+pub mod experiments; // validated experiments, cut into cases
 pub mod wire; // bytes for the outside
 pub mod sinks; // where snapshots go
 pub mod sources; // where commands come from

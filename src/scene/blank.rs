@@ -33,7 +33,7 @@ const MEMBRANE: Membrane = Membrane {
 };
 
 /// The blank scene, with one blank object.
-pub(super) fn scene() -> Scene {
+pub(crate) fn scene() -> Scene {
     Scene {
         name: String::new(),
         seed: 0,

@@ -9,14 +9,14 @@ pub mod print; // scene to text
 pub mod quantity; // "2 mm"
 pub mod text; // text to scene
 
-mod blank;
+pub(crate) mod blank;
 mod check;
 mod extent;
 mod mesh_file;
 mod read;
-mod schema;
+pub(crate) mod schema;
 mod tree;
-mod walk;
+pub(crate) mod walk;
 mod yaml;
 
 pub use fault::SceneError;

@@ -18,7 +18,7 @@ use crate::base::{Pose, Quat, Real, Vec3};
 const LENGTH_MAX: Real = 10.0;
 
 /// Walks all keys of a scene.
-pub(super) fn scene(walk: &mut impl Walk, scene: &mut Scene) {
+pub(crate) fn scene(walk: &mut impl Walk, scene: &mut Scene) {
     walk.text("name", &mut scene.name);
     walk.whole("seed", 0, u64::MAX, &mut scene.seed);
     walk.vector("gravity", Quantity::any(&ACCELERATION), &mut scene.gravity);
@@ -33,7 +33,7 @@ pub(super) fn scene(walk: &mut impl Walk, scene: &mut Scene) {
     walk.section("outputs", |walk| outputs(walk, &mut scene.outputs));
 }
 
-fn time(walk: &mut impl Walk, time: &mut Time) {
+pub(crate) fn time(walk: &mut impl Walk, time: &mut Time) {
     #[expect(clippy::cast_precision_loss, reason = "a tick is far below 2^53 ns")]
     let mut tick = time.tick_ns as Real / 1e9;
     walk.quantity("tick", Quantity::between(&TIME, 1e-5, 0.02), &mut tick);
@@ -46,13 +46,13 @@ fn time(walk: &mut impl Walk, time: &mut Time) {
     walk.number("safety", Range::AboveUpTo(0.0, 1.0), &mut time.safety);
 }
 
-fn material(walk: &mut impl Walk, material: &mut Material) {
+pub(crate) fn material(walk: &mut impl Walk, material: &mut Material) {
     walk.quantity("youngs_modulus", Quantity::above_zero(&PRESSURE), &mut material.youngs_modulus);
     walk.number("poisson_ratio", Range::Between(0.0, 0.5), &mut material.poisson_ratio);
     walk.quantity("density", Quantity::above_zero(&DENSITY), &mut material.density);
 }
 
-fn grains(walk: &mut impl Walk, grains: &mut Grains) {
+pub(crate) fn grains(walk: &mut impl Walk, grains: &mut Grains) {
     whole_usize(walk, "count", (1, 200_000), &mut grains.count);
     let radius = Quantity { dimension: &LENGTH, range: Range::AboveUpTo(0.0, LENGTH_MAX) };
     walk.quantity("radius_min", radius, &mut grains.radius_min);
@@ -63,7 +63,7 @@ fn grains(walk: &mut impl Walk, grains: &mut Grains) {
     walk.number("tangential_damping", Range::AtLeast(0.0), &mut grains.tangential_damping);
 }
 
-fn membrane(walk: &mut impl Walk, membrane: &mut Membrane) {
+pub(crate) fn membrane(walk: &mut impl Walk, membrane: &mut Membrane) {
     let length = Quantity { dimension: &LENGTH, range: Range::AboveUpTo(0.0, LENGTH_MAX) };
     walk.quantity("radius", length, &mut membrane.radius);
     whole_usize(walk, "frequency", (2, 64), &mut membrane.frequency);
@@ -82,7 +82,7 @@ fn membrane(walk: &mut impl Walk, membrane: &mut Membrane) {
     walk.number("tangential_damping", Range::AtLeast(0.0), &mut membrane.tangential_damping);
 }
 
-fn chamber(walk: &mut impl Walk, chamber: &mut Chamber) {
+pub(crate) fn chamber(walk: &mut impl Walk, chamber: &mut Chamber) {
     walk.quantity("ambient", Quantity::above_zero(&PRESSURE), &mut chamber.ambient);
     let vacuum = Quantity { dimension: &PRESSURE, range: Range::AtMost(0.0) };
     walk.quantity("gauge_min", vacuum, &mut chamber.gauge_min);
@@ -91,7 +91,7 @@ fn chamber(walk: &mut impl Walk, chamber: &mut Chamber) {
     walk.quantity("rate_max", Quantity::above_zero(&PRESSURE_RATE), &mut chamber.rate_max);
 }
 
-fn flange(walk: &mut impl Walk, flange: &mut Flange) {
+pub(crate) fn flange(walk: &mut impl Walk, flange: &mut Flange) {
     pose(walk, &mut flange.pose);
     walk.quantity("speed_max", Quantity::above_zero(&SPEED), &mut flange.speed_max);
     let acceleration = Quantity::above_zero(&ACCELERATION);
@@ -111,7 +111,7 @@ fn table(walk: &mut impl Walk, table: &mut Table) {
     walk.number("friction", Range::AtLeast(0.0), &mut table.friction);
 }
 
-fn object(walk: &mut impl Walk, object: &mut Object) {
+pub(crate) fn object(walk: &mut impl Walk, object: &mut Object) {
     walk.text("name", &mut object.name);
     shape(walk, &mut object.shape);
     material(walk, &mut object.material);
@@ -122,7 +122,7 @@ fn object(walk: &mut impl Walk, object: &mut Object) {
 
 /// Position and orientation. The orientation is written as roll, pitch, yaw about the fixed axes
 /// x, y, z, or as a unit quaternion x, y, z, w.
-fn pose(walk: &mut impl Walk, pose: &mut Pose) {
+pub(crate) fn pose(walk: &mut impl Walk, pose: &mut Pose) {
     walk.vector("position", Quantity::any(&LENGTH), &mut pose.translation.vector);
     let is_identity = pose.rotation == Quat::identity();
     let current = if is_identity { "roll_pitch_yaw" } else { "quaternion" };
@@ -146,7 +146,7 @@ fn pose(walk: &mut impl Walk, pose: &mut Pose) {
 
 const SHAPES: [&str; 6] = ["sphere", "box", "cylinder", "capsule", "convex_hull", "mesh"];
 
-fn shape(walk: &mut impl Walk, shape: &mut Shape) {
+pub(crate) fn shape(walk: &mut impl Walk, shape: &mut Shape) {
     let Some(chosen) = walk.alternative("shape", &SHAPES, shape_name(shape)) else { return };
     if walk.is_reading() {
         *shape = blank_shape(chosen);
@@ -296,7 +296,12 @@ fn bag(walk: &mut impl Walk, bag: &mut Bag) {
 }
 
 /// A whole number that counts things in memory.
-fn whole_usize(walk: &mut impl Walk, key: &'static str, (min, max): (u64, u64), value: &mut usize) {
+pub(crate) fn whole_usize(
+    walk: &mut impl Walk,
+    key: &'static str,
+    (min, max): (u64, u64),
+    value: &mut usize,
+) {
     let mut wide = *value as u64;
     walk.whole(key, min, max, &mut wide);
     *value = usize::try_from(wide).unwrap_or(usize::MAX);

@@ -9,6 +9,7 @@ use super::{
     read::Reader,
     schema,
     tree::{Entry, Node, Place, Value},
+    walk::Walk,
     yaml,
 };
 
@@ -56,6 +57,67 @@ pub fn parse(
     faults.extend(check::faults(&scene, &tree));
     if faults.is_empty() {
         return Ok(scene);
+    }
+    faults.sort_by(|a, b| a.place.cmp(&b.place));
+    Err(SceneError::Faults(faults))
+}
+
+/// The text of a scene of another kind than the gripper's, and what is laid over it.
+pub(crate) struct Layers<'a> {
+    /// The YAML.
+    pub(crate) text: &'a str,
+    /// Names it in messages.
+    pub(crate) source: &'a str,
+    /// Sections that hold changes of the rest, and of these the one that is laid over it.
+    pub(crate) variants: (&'a [&'static str], &'static str),
+    /// Changes of the form `key=value`.
+    pub(crate) overrides: &'a [String],
+    /// True if the gripper's defaults lie below.
+    pub(crate) on_defaults: bool,
+}
+
+/// The keys of a scene of another kind: how they are walked, and what joins them.
+pub(crate) trait Keys {
+    /// Every key with its unit and its limits.
+    fn walk(&mut self, walk: &mut impl Walk);
+
+    /// Rules that join several keys: key, what is wrong with its value, and the remedy.
+    fn unfit(&self) -> Vec<(&'static str, String, &'static str)>;
+}
+
+/// Fills `keys` from layers of text.
+///
+/// # Errors
+/// As for `load`.
+pub(crate) fn fill<K: Keys>(layers: &Layers<'_>, mut keys: K) -> Result<K, SceneError> {
+    let defaults = yaml::parse(DEFAULTS, DEFAULTS_FILE)?;
+    let mut written = yaml::parse(layers.text, layers.source)?;
+    let (sections, chosen) = layers.variants;
+    let over = written.get(chosen).cloned();
+    if let Value::Map(entries) = &mut written.value {
+        entries.retain(|entry| !sections.contains(&entry.key.as_str()));
+    }
+    let mut tree = if layers.on_defaults { defaults.clone() } else { written.clone() };
+    tree.lay(written);
+    if let Some(over) = over {
+        tree.lay(over);
+    }
+    for text in layers.overrides {
+        tree.lay(one_override(text)?);
+    }
+    tree.place = Place::whole(layers.source);
+    let mut reader = Reader::new(&tree, &defaults);
+    keys.walk(&mut reader);
+    let mut faults = reader.finish();
+    if faults.is_empty() {
+        faults.extend(keys.unfit().into_iter().map(|(key, reason, remedy)| {
+            let node = tree.at(key).unwrap_or(&tree);
+            let problem = Problem::Unfit { value: node.describe(), reason, remedy };
+            Fault { place: node.place.clone(), key: key.to_owned(), problem }
+        }));
+    }
+    if faults.is_empty() {
+        return Ok(keys);
     }
     faults.sort_by(|a, b| a.place.cmp(&b.place));
     Err(SceneError::Faults(faults))

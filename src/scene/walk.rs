@@ -7,7 +7,7 @@ use crate::base::{Real, Vec3};
 
 /// Limits of a number, in SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Range {
+pub(crate) enum Range {
     /// Any finite number.
     Any,
     /// Greater than this.
@@ -24,7 +24,7 @@ pub(super) enum Range {
 
 impl Range {
     /// True if `value` is finite and inside.
-    pub(super) fn contains(self, value: Real) -> bool {
+    pub(crate) fn contains(self, value: Real) -> bool {
         value.is_finite()
             && match self {
                 Self::Any => true,
@@ -37,7 +37,7 @@ impl Range {
     }
 
     /// The limit in words; `print` writes a number with its unit.
-    pub(super) fn describe(self, print: impl Fn(Real) -> String) -> String {
+    pub(crate) fn describe(self, print: impl Fn(Real) -> String) -> String {
         match self {
             Self::Any => "finite".to_owned(),
             Self::Above(min) => format!("above {}", print(min)),
@@ -51,7 +51,7 @@ impl Range {
 
 /// A key that holds a quantity: its dimension and limits.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Quantity {
+pub(crate) struct Quantity {
     /// What it measures.
     pub dimension: &'static Dimension,
     /// Its limits.
@@ -60,29 +60,29 @@ pub(super) struct Quantity {
 
 impl Quantity {
     /// Any finite value.
-    pub(super) const fn any(dimension: &'static Dimension) -> Self {
+    pub(crate) const fn any(dimension: &'static Dimension) -> Self {
         Self { dimension, range: Range::Any }
     }
 
     /// Greater than zero.
-    pub(super) const fn above_zero(dimension: &'static Dimension) -> Self {
+    pub(crate) const fn above_zero(dimension: &'static Dimension) -> Self {
         Self { dimension, range: Range::Above(0.0) }
     }
 
     /// Zero or greater.
-    pub(super) const fn at_least_zero(dimension: &'static Dimension) -> Self {
+    pub(crate) const fn at_least_zero(dimension: &'static Dimension) -> Self {
         Self { dimension, range: Range::AtLeast(0.0) }
     }
 
     /// Between two values, both allowed.
-    pub(super) const fn between(dimension: &'static Dimension, min: Real, max: Real) -> Self {
+    pub(crate) const fn between(dimension: &'static Dimension, min: Real, max: Real) -> Self {
         Self { dimension, range: Range::Between(min, max) }
     }
 }
 
 /// Visits the keys of a scene. The reader writes into the values it is given, the printer reads
 /// them.
-pub(super) trait Walk: Sized {
+pub(crate) trait Walk: Sized {
     /// A map under `key`.
     fn section(&mut self, key: &'static str, inside: impl FnOnce(&mut Self));
 
