@@ -6,6 +6,7 @@
 //! which a measured value stands beside its oracle. Tests, reports and benches run the same cases.
 
 pub mod findings; // what was found
+pub mod oracles; // closed forms to compare with
 pub mod record; // what a case leaves
 
 use crate::{physics::health::Diverged, scene::SceneError};
