@@ -4,12 +4,16 @@ use crate::{
     base::{Pose, Real, Vec3, real::Twist},
     experiments::{oracles::impact::Collision, record::Record},
     physics::{
-        Controls, Model, Scratch, State,
+        Controls, Model, Scratch, State, System,
+        boundary::{
+            body::BodyMotion,
+            wall::{WallModel, WallShape},
+        },
         contact::law::{PairLaw, Surface},
-        membrane::{MembraneModel, MembraneState, Sheet, mesh::Mesh},
+        measure::real,
+        membrane::{CARRIER_ID, MembraneModel, MembraneState, Sheet, mesh::Mesh},
         model::ChamberModel,
         state::{Grains, Springs},
-        substep,
     },
     scene::Material,
 };
@@ -17,12 +21,9 @@ use crate::{
 /// Gravity [m/s²].
 pub(super) const G: Real = 9.81;
 
-/// One system with all that a substep needs.
+/// Some grains, a wall, and a sheet.
 pub(super) struct Bench {
-    pub(super) model: Model,
-    pub(super) controls: Controls,
-    pub(super) state: State,
-    pub(super) scratch: Scratch,
+    pub(super) system: System,
 }
 
 /// A sheet that plays no part.
@@ -48,44 +49,38 @@ pub(super) fn mass(radius: Real, density: Real) -> Real {
 impl Bench {
     /// Grains of `material` over a rigid plane at z = 0.
     pub(super) fn on_plane(material: &Material, surface: Surface, dt: Real) -> Self {
-        let far = Vec3::new(0.0, 0.0, -1e6);
-        let corners = vec![far, far + Vec3::x(), far + Vec3::y()];
-        let mesh = Mesh::new(corners, vec![[0, 1, 2]]).expect("a triangle is a surface");
-        // Turned over, the flange's plate faces up.
-        let flange = Pose::rotation(Vec3::x() * std::f64::consts::PI);
-        Self::new(material, surface, MembraneModel::new(mesh, NO_SHEET), flange, dt)
+        let mesh = Mesh::new(Vec::new(), Vec::new()).expect("nothing can be wrong with nothing");
+        let plane = WallShape::Plane { normal: Vec3::z() };
+        Self::new(material, surface, MembraneModel::new(mesh, NO_SHEET), plane, dt)
     }
 
     /// Grains of `material` on a sheet whose vertices are all held.
     pub(super) fn on_sheet(
         material: &Material,
         surface: Surface,
-        sheet: MembraneModel,
+        mut sheet: MembraneModel,
         dt: Real,
     ) -> Self {
-        let mut bench = Self::new(material, surface, sheet, Pose::translation(0.0, 0.0, 1e3), dt);
-        bench.model.membrane.is_clamped.fill(true);
-        bench
+        sheet.holders.fill(CARRIER_ID);
+        Self::new(material, surface, sheet, WallShape::Frame, dt)
     }
 
     fn new(
         material: &Material,
         surface: Surface,
         membrane: MembraneModel,
-        flange: Pose,
+        wall: WallShape,
         dt: Real,
     ) -> Self {
+        let walls = vec![BodyMotion { pose: Pose::identity(), twist: Twist::zero() }];
         let state = State {
             grains: Grains::default(),
             membrane: MembraneState::at_rest(&membrane.mesh),
-            springs: Springs::none(0, 0),
+            springs: Springs::none(0, 1, 0),
             pair_ids: Vec::new(),
             gauge: 0.0,
-            flange,
-            flange_twist: Twist::zero(),
+            walls: walls.clone(),
         };
-        let in_flange = flange.inverse();
-        let of_vertex = |p: &Vec3| in_flange.rotation * p + in_flange.translation.vector;
         let latex = Material {
             youngs_modulus: membrane.sheet.youngs_modulus,
             poisson_ratio: 1.0 / 3.0,
@@ -98,48 +93,52 @@ impl Bench {
             radius_mean: 0.0,
             skin: 0.0,
             grain_law: PairLaw::between(material, material, surface),
-            plate_law: PairLaw::against_rigid(material, surface),
             membrane_law: PairLaw::between(material, &latex, surface),
-            clamped_positions: membrane.mesh.positions.iter().map(of_vertex).collect(),
+            held_positions: membrane.mesh.positions.clone(),
             membrane,
-            is_held: false,
+            walls: vec![WallModel { shape: wall, law: PairLaw::against_rigid(material, surface) }],
             chamber: ChamberModel { lag_factor: 0.0, change_max: Real::INFINITY },
             table: Pose::identity(),
             bodies: Vec::new(),
         };
-        let controls = Controls {
-            gauge_setpoint: 0.0,
-            flange,
-            flange_twist: Twist::zero(),
-            bodies: Vec::new(),
-        };
-        let scratch = Scratch::new(&model);
-        Self { model, controls, state, scratch }
+        let controls = Controls { gauge_setpoint: 0.0, walls, bodies: Vec::new() };
+        Self { system: System::new(model, controls, state) }
     }
 
     /// Adds a grain at rest.
     pub(super) fn add_grain(&mut self, position: Vec3, radius: Real, density: Real) {
-        let grains = &mut self.state.grains;
+        let System { model, state, scratch, .. } = &mut self.system;
+        let grains = &mut state.grains;
         grains.positions.push(position);
         grains.velocities.push(Vec3::zeros());
         grains.spins.push(Vec3::zeros());
         grains.radii.push(radius);
         grains.masses.push(mass(radius, density));
-        self.model.radius_max = self.model.radius_max.max(radius);
-        self.model.radius_mean = radius;
-        self.model.skin = 0.1 * self.model.radius_max;
-        self.state.springs = Springs::none(grains.positions.len(), 0);
-        self.scratch = Scratch::new(&self.model);
+        model.radius_max = model.radius_max.max(radius);
+        model.radius_mean = radius;
+        model.skin = 0.1 * model.radius_max;
+        state.springs = Springs::none(grains.positions.len(), 1, 0);
+        *scratch = Scratch::new(model);
     }
 
     /// One substep.
     pub(super) fn step(&mut self) {
-        substep(&self.model, &self.controls, &mut self.state, &mut self.scratch);
+        self.system.step();
+    }
+
+    /// The grains.
+    pub(super) fn grains(&self) -> &Grains {
+        &self.system.state.grains
+    }
+
+    /// The grains, to be moved.
+    pub(super) fn grains_mut(&mut self) -> &mut Grains {
+        &mut self.system.state.grains
     }
 
     /// Overlap of the first grain with the second, or with the plane if there is none [m].
     pub(super) fn overlap(&self) -> Real {
-        let grains = &self.state.grains;
+        let grains = self.grains();
         match grains.len() {
             1 => grains.radii[0] - grains.positions[0].z,
             _ => {
@@ -151,15 +150,17 @@ impl Bench {
 
     /// Normal force between the grains, or of the plane [N].
     pub(super) fn normal_force(&self) -> Real {
-        match self.state.grains.len() {
-            1 => self.scratch.plate_forces[0].normal,
-            _ => self.scratch.pair_forces.first().map_or(0.0, |pair| pair.signed_normal.abs()),
+        match self.grains().len() {
+            1 => self.system.scratch.wall_forces[0].normal,
+            _ => {
+                self.system.scratch.pair_forces.first().map_or(0.0, |pair| pair.signed_normal.abs())
+            }
         }
     }
 
     /// Momentum, and angular momentum about the origin, of all grains.
     pub(super) fn momenta(&self) -> (Vec3, Vec3) {
-        let grains = &self.state.grains;
+        let grains = self.grains();
         let (mut linear, mut angular) = (Vec3::zeros(), Vec3::zeros());
         for i in 0..grains.len() {
             let momentum = grains.velocities[i] * grains.masses[i];
@@ -172,7 +173,7 @@ impl Bench {
 
     /// Kinetic energy of all grains [J].
     pub(super) fn kinetic_energy(&self) -> Real {
-        let grains = &self.state.grains;
+        let grains = self.grains();
         let of_grain = |i: usize| {
             let inertia = 0.4 * grains.masses[i] * grains.radii[i].powi(2);
             0.5 * grains.masses[i] * grains.velocities[i].norm_squared()
@@ -184,16 +185,14 @@ impl Bench {
     /// Steps until the bodies, which just touch and approach, have parted again.
     pub(super) fn collide(&mut self) -> Met {
         let mut met = Met { overlap_max: 0.0, force_max: 0.0, force_min: 0.0, duration: 0.0 };
-        for step in 1..100_000_000_u64 {
+        for step in 1..100_000_000 {
             self.step();
             let (overlap, force) = (self.overlap(), self.normal_force());
             met.overlap_max = met.overlap_max.max(overlap);
             met.force_max = met.force_max.max(force);
             met.force_min = met.force_min.min(force);
-            #[expect(clippy::cast_precision_loss, reason = "far below 2^53 steps")]
             if overlap <= 0.0 {
-                // Contact ended within this step: by the speed, at that share of it.
-                met.duration = step as Real * self.model.substep;
+                met.duration = real(step) * self.system.model.substep;
                 break;
             }
         }
@@ -240,11 +239,11 @@ impl Flight {
 
     /// Flies until it has left the plane, with so many steps per elastic contact.
     pub(super) fn land(&self, steps_per_contact: usize, record: &mut Record) -> (Bench, Met) {
-        let dt = self.collision().duration() / crate::physics::measure::real(steps_per_contact);
+        let dt = self.collision().duration() / real(steps_per_contact);
         let mut bench = Bench::on_plane(&self.material, self.surface, dt);
         bench.add_grain(Vec3::z() * self.radius, self.radius, self.material.density);
-        bench.state.grains.velocities[0] = self.velocity;
-        bench.state.grains.spins[0] = self.spin;
+        bench.grains_mut().velocities[0] = self.velocity;
+        bench.grains_mut().spins[0] = self.spin;
         let met = bench.collide();
         note_overlap(record, met.overlap_max / (2.0 * self.radius));
         (bench, met)
@@ -298,13 +297,13 @@ impl Encounter {
 
     /// Meets and parts, with so many steps per elastic contact.
     pub(super) fn meet(&self, steps_per_contact: usize, record: &mut Record) -> (Bench, Met) {
-        let dt = self.collision().duration() / crate::physics::measure::real(steps_per_contact);
+        let dt = self.collision().duration() / real(steps_per_contact);
         let mut bench = Bench::on_plane(&self.material, self.surface, dt);
         let high = Vec3::z() * (10.0 * (self.radii[0] + self.radii[1]));
         for (i, x) in [-self.radii[0], self.radii[1]].into_iter().enumerate() {
             bench.add_grain(high + Vec3::x() * x, self.radii[i], self.densities[i]);
-            bench.state.grains.velocities[i] = Vec3::x() * self.speeds[i];
-            bench.state.grains.spins[i] = self.spins[i];
+            bench.grains_mut().velocities[i] = Vec3::x() * self.speeds[i];
+            bench.grains_mut().spins[i] = self.spins[i];
         }
         let met = bench.collide();
         note_overlap(record, met.overlap_max / (self.radii[0] + self.radii[1]));
@@ -313,7 +312,7 @@ impl Encounter {
 
     /// Restitution of a meeting that is over.
     pub(super) fn restitution(&self, bench: &Bench) -> Real {
-        let velocities = &bench.state.grains.velocities;
+        let velocities = &bench.grains().velocities;
         (velocities[1].x - velocities[0].x) / self.collision().speed
     }
 }

@@ -15,10 +15,12 @@ mod plate; // the sheet bent
 mod rolling; // sliding, rolling, sticking
 mod scene; // materials and set-ups
 mod stretching; // the sheet in its plane
+#[cfg(test)]
+mod tests;
 
 use super::{
     Experiment, Plan, Progress, ResumeError, Run, SceneText, Size, StartError,
-    findings::Findings,
+    findings::{Expected, Findings, Row, Told},
     record::{Column, Record},
 };
 use crate::{
@@ -108,9 +110,10 @@ impl Plan for Book {
     }
 
     fn start(&self, case: &str) -> Result<Box<dyn Run>, StartError> {
-        let law = LAWS.iter().find(|law| law.name() == case).ok_or_else(|| {
-            StartError::NoSuchCase { name: case.to_owned(), known: self.cases() }
-        })?;
+        let law = LAWS
+            .iter()
+            .find(|law| law.name() == case)
+            .ok_or_else(|| StartError::NoSuchCase { name: case.to_owned(), known: self.cases() })?;
         let record = Record { case: case.to_owned(), ..Record::default() };
         Ok(Box::new(Pages { law: *law, scene: self.scene.clone(), n_done: 0, record }))
     }
@@ -186,4 +189,23 @@ fn push(record: &mut Record, name: &str, unit: &str, value: f64) {
         record.columns.len() - 1
     });
     record.columns[place].values.push(value);
+}
+
+/// Keeps the larger of a deviation and the one that is there under `name`.
+fn worst(record: &mut Record, name: &str, deviation: f64) {
+    let so_far = record.scalar(name).unwrap_or(0.0);
+    let is_larger = deviation.abs() > so_far || deviation.is_nan();
+    record.set(name, if is_larger { deviation.abs() } else { so_far }, "1");
+}
+
+/// A row that judges the scalar of its own name: id, quantity, oracle, what is expected, reason.
+type Line = (&'static str, &'static str, &'static str, Expected, &'static str);
+
+/// Rows of numbers without unit from the scalars of a record.
+fn judge(lines: &[Line], record: &Record, findings: &mut Findings) {
+    for (id, quantity, oracle, expected, reason) in lines {
+        let told = Told { id, quantity, unit: "1", oracle, reason };
+        let measured = record.scalar(id).unwrap_or(f64::NAN);
+        findings.rows.push(Row::new(&told, *expected, measured));
+    }
 }

@@ -223,8 +223,7 @@ fn crossing(walk: &mut impl Walk, it: &mut Crossing) {
 pub(super) fn blank() -> Scene {
     let nan = Real::NAN;
     let material = Material { youngs_modulus: nan, poisson_ratio: nan, density: nan };
-    let surface =
-        law::Surface { friction: nan, dissipation_time: nan, tangential_damping: nan };
+    let surface = law::Surface { friction: nan, dissipation_time: nan, tangential_damping: nan };
     let sheet = Sheet {
         thickness: nan,
         youngs_modulus: nan,
