@@ -6,5 +6,6 @@ pub mod bodies;
 pub mod grains;
 pub mod law;
 pub mod membrane;
+mod sharing; // one force among several places
 pub mod walls;
 pub mod sums;
