@@ -6,7 +6,10 @@
 //! which a measured value stands beside its oracle. Tests, reports and benches run the same cases.
 
 pub mod findings; // what was found
+mod number; // numbers in text
 pub mod record; // what a case leaves
+
+use serde::{Deserialize, Serialize};
 
 use crate::{physics::health::Diverged, scene::SceneError};
 use findings::Findings;
@@ -16,7 +19,8 @@ use record::Record;
 pub static EXPERIMENTS: &[&dyn Experiment] = &[];
 
 /// How much of an experiment is run.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Size {
     /// Smaller or faster, within minutes: for everyday checks.
     Quick,
@@ -59,6 +63,12 @@ pub trait Experiment: Sync {
 pub trait Plan: Send + Sync {
     /// Names of the cases, usable as file names; they are independent of each other.
     fn cases(&self) -> Vec<String>;
+
+    /// Seconds that a case is expected to take on one thread, if that is known: the longest are
+    /// begun first. Nothing else depends on it.
+    fn expected_s(&self, _case: &str) -> Option<f64> {
+        None
+    }
 
     /// A case at its start.
     ///
