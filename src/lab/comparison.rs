@@ -67,7 +67,7 @@ pub fn markdown(outcomes: &[Outcome]) -> String {
 
 fn section(text: &mut String, it: &Outcome) {
     let build = &it.build;
-    line(text, &format!("\n## {}\n\n{}\n", it.name(), it.about));
+    line(text, &format!("\n## {}\n\n{}\n", it.name(), flat(&it.about)));
     line(text, &format!("    {}\n", table::command(it)));
     line(
         text,
@@ -108,14 +108,16 @@ fn section(text: &mut String, it: &Outcome) {
     }
     list(
         text,
-        "Pictures, in the report of a run:",
+        "Plots, in the report of a run:",
         it.plots
             .iter()
             .map(|plot| format!("{}. The source: {}", flat(&plot.title), flat(&plot.source_says))),
     );
-    list(text, "Left the validity of the model:", it.left_validity.iter().cloned());
-    let failed =
-        it.cases.iter().filter_map(|case| Some(format!("{}: {}", case.case, case.fault.as_ref()?)));
+    list(text, "Left the validity of the model:", it.left_validity.iter().map(|fault| flat(fault)));
+    let failed = it
+        .cases
+        .iter()
+        .filter_map(|case| Some(format!("{}: {}", case.case, flat(case.fault.as_ref()?))));
     list(text, "Did not come to their end:", failed);
     list(text, "Notes:", it.notes.iter().map(|note| flat(note)));
 }
@@ -153,9 +155,9 @@ fn line(text: &mut String, line: &str) {
     writeln!(text, "{line}").expect("a String takes everything");
 }
 
-/// On one line.
+/// On one line, with nothing that would be taken for a tag.
 fn flat(text: &str) -> String {
-    text.split_whitespace().collect::<Vec<_>>().join(" ")
+    text.split_whitespace().collect::<Vec<_>>().join(" ").replace('<', "&lt;")
 }
 
 /// In a cell of a table.

@@ -10,7 +10,7 @@ use crate::{
     base::digest::Digest,
     experiments::{
         Size,
-        findings::{Plot, Quantity, Row},
+        findings::{Plot, Quantity, Row, Series},
         record::Validity,
     },
 };
@@ -120,10 +120,13 @@ impl Outcome {
         sized_name(&self.experiment, self.size)
     }
 
-    /// The result file.
+    /// The result file: a line for each value, but one for each series of a picture.
     pub fn to_text(&self) -> String {
-        let text = serde_json::to_string_pretty(self).expect("all keys are texts");
-        text + "\n"
+        let rest = Self { plots: Vec::new(), ..self.clone() };
+        let text = serde_json::to_string_pretty(&rest).expect("all keys are texts");
+        let head = text.strip_suffix("[]\n}").expect("the plots are the last field");
+        let plots: Vec<String> = self.plots.iter().map(plot_text).collect();
+        format!("{head}[{}]\n}}\n", plots.join(","))
     }
 
     /// Reads a result file.
@@ -153,6 +156,19 @@ impl Outcome {
             value
         })
     }
+}
+
+fn json(it: &impl Serialize) -> String {
+    serde_json::to_string(it).expect("all keys are texts")
+}
+
+/// A picture with one line for each series.
+fn plot_text(plot: &Plot) -> String {
+    let series = |it: &Series| format!("\n    {}", json(it));
+    let series: Vec<String> = plot.series.iter().map(series).collect();
+    let text = json(&Plot { series: Vec::new(), ..plot.clone() });
+    let head = text.strip_suffix("[]}").expect("the series are the last field");
+    format!("\n   {head}[{}]}}", series.join(","))
 }
 
 /// `slide_quick`.

@@ -9,7 +9,7 @@ use super::{
     plot, table,
     words::{duration, number, with_unit},
 };
-use crate::experiments::findings::{Kind, Plot, Quantity, Row, Series};
+use crate::experiments::findings::{Kind, Plot, Quantity, Row};
 
 const STYLE: &str = include_str!("report.css");
 
@@ -124,11 +124,11 @@ fn plots(plots: &[Plot]) -> Markup {
     html! {
         @if !plots.is_empty() {
             section {
-                h2 { "Pictures" }
+                h2 { "Plots" }
                 @for plot in plots {
                     figure {
                         h3 { (plot.title) }
-                        (legend(&plot.series))
+                        (legend(plot))
                         (PreEscaped(plot::svg(plot)))
                         figcaption { b { "The source: " } (plot.source_says) }
                     }
@@ -138,11 +138,11 @@ fn plots(plots: &[Plot]) -> Markup {
     }
 }
 
-fn legend(series: &[Series]) -> Markup {
+fn legend(plot: &Plot) -> Markup {
     html! {
         ul.legend {
-            @for (i, series) in series.iter().enumerate() {
-                li { (swatch(series.kind, plot::colour(i))) (series.label) }
+            @for (series, colour) in plot.series.iter().zip(plot::colours(plot)) {
+                li { (swatch(series.kind, colour)) (series.label) }
             }
         }
     }
@@ -272,6 +272,6 @@ fn dark_colours() -> String {
     let swap = |from: &str, to: &str| {
         format!("svg [stroke=\"{from}\"]{{stroke:{to}}}svg [fill=\"{from}\"]{{fill:{to}}}\n")
     };
-    let swaps: String = plot::DARK.iter().map(|(from, to)| swap(from, to)).collect();
+    let swaps: String = plot::dark().map(|(from, to)| swap(from, to)).collect();
     format!("@media (prefers-color-scheme: dark) {{\n{swaps}}}\n")
 }

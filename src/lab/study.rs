@@ -8,6 +8,7 @@ use super::{
     case::CaseEnd,
     fault::LabError,
     outcome::{Build, CaseFacts, Machine, Outcome, SceneFacts, hex, program_digest},
+    plot,
 };
 use crate::{
     base::digest::Digest,
@@ -223,7 +224,7 @@ impl<'a> Study<'a> {
             build: Build::of_this_program(programs),
             machine: Machine::here(),
             curves: curves.into_iter().map(|curve| curve.name).collect(),
-            plots,
+            plots: plots.into_iter().map(plot::reduced).collect(),
         }
     }
 }
