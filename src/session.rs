@@ -7,9 +7,10 @@ use crate::{
         apply::{Desk, Frames},
     },
     cosim::{
-        Coupled, Inputs, Means,
-        compile::{Compiled, StartState, StartStateError},
+        Coupled, FLANGE, Inputs, Means,
+        compile::Compiled,
         rapier_world::RapierWorld,
+        saved_state::{self, SavedStateError},
     },
     physics::{
         State,
@@ -51,8 +52,8 @@ impl Session {
     ///
     /// # Errors
     /// If the bytes are not a start state of this scene.
-    pub fn from_start_state(compiled: Compiled, bytes: &[u8]) -> Result<Self, StartStateError> {
-        let state = StartState::read(&compiled, bytes)?;
+    pub fn from_start_state(compiled: Compiled, bytes: &[u8]) -> Result<Self, SavedStateError> {
+        let state = compiled.read_start_state(bytes)?;
         Ok(Self::start(compiled, state))
     }
 
@@ -112,7 +113,7 @@ impl Session {
     fn frames(&self) -> Frames {
         let world = &self.coupled.world;
         Frames {
-            flange: self.coupled.state.flange,
+            flange: self.coupled.state.walls[FLANGE].pose,
             objects: (0..self.coupled.n_objects()).map(|i| world.motion(i).pose).collect(),
         }
     }
@@ -172,6 +173,6 @@ impl Session {
 
     /// The settled start state as bytes for a cache. Only meaningful before the first tick.
     pub fn start_state(&self) -> Vec<u8> {
-        StartState::write(&self.coupled.state)
+        saved_state::write(&self.coupled.state)
     }
 }

@@ -8,6 +8,7 @@
 pub mod compile;
 pub mod flange;
 pub mod rapier_world;
+pub mod saved_state;
 
 use crate::{
     base::{
@@ -15,11 +16,17 @@ use crate::{
         real::{Twist, Wrench},
     },
     physics::{
-        Controls, Model, Scratch, State, boundary::body::BodyMotion, measure::real, substep,
+        Controls, Model, Scratch, State,
+        boundary::{body::BodyMotion, wall::CARRIER},
+        measure::real,
+        substep,
     },
 };
 use flange::Limits;
 use rapier_world::RapierWorld;
+
+/// The wall that is the gripper's flange.
+pub const FLANGE: usize = CARRIER;
 
 /// How a tick is cut.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -81,12 +88,7 @@ impl Coupled {
         let table = BodyMotion { pose: model.table, twist: Twist::zero() };
         let mut bodies: Vec<BodyMotion> = (0..n_objects).map(|i| world.motion(i)).collect();
         bodies.push(table);
-        let controls = Controls {
-            gauge_setpoint: state.gauge,
-            flange: state.flange,
-            flange_twist: state.flange_twist,
-            bodies,
-        };
+        let controls = Controls { gauge_setpoint: state.gauge, walls: state.walls.clone(), bodies };
         let scratch = Scratch::new(&model);
         Self { model, plan, state, scratch, world, controls, limits, n_objects }
     }
@@ -99,7 +101,7 @@ impl Coupled {
     /// Advances everything by one tick.
     pub fn advance(&mut self, inputs: &Inputs) -> Means {
         let n = self.plan.n_substeps;
-        let flange = BodyMotion { pose: self.state.flange, twist: self.state.flange_twist };
+        let flange = self.state.walls[FLANGE];
         let twist_end = self.limits.follow(&inputs.flange_target, &flange, self.plan.tick);
         self.drive_objects(inputs);
         self.controls.gauge_setpoint = inputs.gauge_setpoint;
@@ -139,14 +141,13 @@ impl Coupled {
             linear: start.linear + (end.linear - start.linear) * share,
             angular: start.angular + (end.angular - start.angular) * share,
         };
-        let mut motion = BodyMotion { pose: self.state.flange, twist };
-        motion.advance(self.model.substep);
-        self.controls.flange = motion.pose;
-        self.controls.flange_twist = twist;
+        let flange = &mut self.controls.walls[FLANGE];
+        *flange = BodyMotion { pose: self.state.walls[FLANGE].pose, twist };
+        flange.advance(self.model.substep);
     }
 
     fn add_wrenches(&self, sums: &mut Sums, exchange: &mut [Wrench]) {
-        let origin = self.state.flange.translation.vector;
+        let origin = self.state.walls[FLANGE].pose.translation.vector;
         for i in 0..self.n_objects {
             let wrench = &self.scratch.body_wrenches[i];
             let centre = self.controls.bodies[i].pose.translation.vector;
@@ -155,7 +156,7 @@ impl Coupled {
             sums.on_gripper.force -= wrench.force;
             sums.on_gripper.torque -= wrench.torque + (centre - origin).cross(&wrench.force);
         }
-        add(&mut sums.on_mount, &self.scratch.flange_wrench);
+        add(&mut sums.on_mount, &self.scratch.wall_wrenches[FLANGE]);
     }
 
     /// One step of the rigid world under the mean of the wrenches summed up.

@@ -7,10 +7,11 @@
 
 use super::{
     Controls, Model, Scratch, State,
+    boundary::body::BodyMotion,
     contact::law::PairLaw,
     health::{self, Diverged},
     measure::real,
-    membrane::{MembraneState, mesh::Mesh},
+    membrane::{CARRIER_ID, MembraneState, mesh::Mesh},
     neighbours::weigh_pairs,
     state::{Grains, Springs},
     substep,
@@ -60,15 +61,14 @@ pub fn fill(
 ) -> Result<State, Diverged> {
     let controls = Controls {
         gauge_setpoint: 0.0,
-        flange: scene.flange.pose,
-        flange_twist: Twist::zero(),
+        walls: vec![BodyMotion { pose: scene.flange.pose, twist: Twist::zero() }],
         bodies: Vec::new(),
     };
     let mut held = model.clone();
     held.bodies.clear();
-    held.is_held = true;
+    held.membrane.holders.fill(CARRIER_ID);
     let stretch = scene.membrane.fill_stretch;
-    held.clamped_positions = held_shape(&model.membrane.mesh, stretch);
+    held.held_positions = held_shape(&model.membrane.mesh, stretch);
     let final_radii = final_radii(scene);
     let scale = first_scale(scene, &final_radii);
     let state = scatter(scene, &held, &final_radii, scale);
@@ -76,8 +76,8 @@ pub fn fill(
     let mut filling = Filling { model: held, controls, state, scratch, done: 0.0, on_progress };
     filling.grow(scene, &final_radii, scale)?;
     filling.run_for(FALL_TIME, "falling", |_, _| {})?;
-    filling.model.is_held = false;
-    filling.model.clamped_positions.clone_from(&model.clamped_positions);
+    filling.model.membrane.holders.clone_from(&model.membrane.holders);
+    filling.model.held_positions.clone_from(&model.held_positions);
     let last = 1.0 - scene.membrane.rest_length_shrink;
     filling.run_for(SHRINK_TIME, "closing", |model, share| {
         model.membrane.scale_rest_lengths(stretch + (last - stretch) * share);
@@ -104,7 +104,7 @@ impl Filling<'_> {
         let with_friction = self.model.clone();
         let smooth = |law: &mut PairLaw| law.friction = 0.0;
         smooth(&mut self.model.grain_law);
-        smooth(&mut self.model.plate_law);
+        self.model.walls.iter_mut().for_each(|wall| smooth(&mut wall.law));
         smooth(&mut self.model.membrane_law);
         let radius = self.model.radius_mean;
         let mass = sphere_volume(radius) * scene.grains.material.density;
@@ -122,7 +122,7 @@ impl Filling<'_> {
             self.step(k, "growing")?;
         }
         self.model.grain_law = with_friction.grain_law;
-        self.model.plate_law = with_friction.plate_law;
+        self.model.walls = with_friction.walls;
         self.model.membrane_law = with_friction.membrane_law;
         Ok(())
     }
@@ -222,7 +222,7 @@ fn scatter(scene: &Scene, held: &Model, final_radii: &[Real], scale: Real) -> St
     let radii: Vec<Real> = final_radii.iter().map(|r| scale * r).collect();
     let in_world = |p: &Vec3| pose.rotation * p + pose.translation.vector;
     let mut membrane = MembraneState::at_rest(&held.membrane.mesh);
-    membrane.positions = held.clamped_positions.iter().map(in_world).collect();
+    membrane.positions = held.held_positions.iter().map(in_world).collect();
     State {
         grains: Grains {
             positions: local.iter().map(in_world).collect(),
@@ -232,11 +232,10 @@ fn scatter(scene: &Scene, held: &Model, final_radii: &[Real], scale: Real) -> St
             radii,
         },
         membrane,
-        springs: Springs::none(n, 0),
+        springs: Springs::none(n, 1, 0),
         pair_ids: Vec::new(),
         gauge: 0.0,
-        flange: pose,
-        flange_twist: Twist::zero(),
+        walls: vec![BodyMotion { pose, twist: Twist::zero() }],
     }
 }
 

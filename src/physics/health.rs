@@ -50,12 +50,12 @@ pub fn check(model: &Model, state: &State, scratch: &Scratch, tick: u64) -> Resu
     faster("speed [m/s] of grain", &state.grains.velocities)?;
     faster("speed [m/s] of membrane vertex", &state.membrane.velocities)?;
     if let Some(which) = scratch.leaked {
-        let from_flange = state.grains.positions[which] - state.flange.translation.vector;
+        let from_carrier = state.grains.positions[which] - state.carrier_position();
         return Err(Diverged {
             tick,
-            what: "the membrane leaks: distance from the flange [m] of grain",
+            what: "the membrane leaks: distance from the carrier [m] of grain",
             which,
-            value: from_flange.norm(),
+            value: from_carrier.norm(),
             limit: model.membrane.mesh.positions.iter().map(|p| p.norm()).fold(0.0, Real::max),
             remedy: "use a finer or stiffer membrane, larger grains, less pressure or slower motion",
         });

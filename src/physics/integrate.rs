@@ -1,16 +1,25 @@
 //! Motion: semi-implicit Euler, v += a dt and then x += v dt, second order in energy.
 
-use super::{Controls, Model, Scratch, State, contact::sums, membrane::MembraneState};
+use super::{
+    Controls, Model, Scratch, State,
+    boundary::wall::CARRIER,
+    contact::sums,
+    membrane::{FREE, MembraneState},
+};
 use crate::base::{Real, Vec3, parallel};
 
 /// Moves grains and membrane on by one substep.
 pub fn advance(model: &Model, controls: &Controls, scratch: &mut Scratch, state: &mut State) {
-    let carried = controls.flange.translation.vector - scratch.neighbours.flange_position;
+    let carried = carried_to(controls) - scratch.neighbours.carrier_position;
     let grains = advance_grains(model, scratch, state, &carried);
     let vertices = advance_membrane(model, controls, scratch, state, &carried);
     scratch.neighbours.displacement_squared_max = grains.max(vertices);
-    state.flange = controls.flange;
-    state.flange_twist = controls.flange_twist;
+    state.walls.clone_from(&controls.walls);
+}
+
+/// Where the carrier is at the end of this substep [m].
+fn carried_to(controls: &Controls) -> Vec3 {
+    controls.walls.get(CARRIER).map_or_else(Vec3::zeros, |it| it.pose.translation.vector)
 }
 
 /// Returns the largest squared displacement since the lists were built [m²].
@@ -51,9 +60,11 @@ fn advance_membrane(
     let MembraneState { positions, velocities } = &mut state.membrane;
     let mut unused = vec![(); positions.len()];
     parallel::largest_of_three(positions, velocities, &mut unused, |v, position, velocity, ()| {
-        if model.is_held || model.membrane.is_clamped[v] {
-            *position = sums::clamped_position(model, controls, v);
-            *velocity = sums::flange_velocity(controls, position);
+        let holder = model.membrane.holders[v];
+        if holder != FREE {
+            let wall = &controls.walls[holder as usize];
+            *position = sums::held_position(model, wall, v);
+            *velocity = sums::wall_velocity(wall, position);
         } else {
             let force = scratch.membrane.forces[v] + scratch.vertex_forces[v];
             *velocity += force * (dt / model.membrane.masses[v]) + model.gravity * dt;

@@ -12,7 +12,7 @@ pub struct Packing {
     pub n_membrane_contacts: usize,
     /// Contacts between membrane and bodies.
     pub n_body_contacts: usize,
-    /// Mean number of contacts per grain, with grains, membrane and plate.
+    /// Mean number of contacts per grain, with grains, membrane and walls.
     pub coordination_number: Real,
     /// Share of grains with at least four contacts, those that can carry load.
     pub jammed_fraction: Real,
@@ -42,10 +42,13 @@ pub fn packing(state: &State, scratch: &Scratch) -> Packing {
     }
     for (i, patches) in scratch.patch_forces.iter().enumerate() {
         packing.n_membrane_contacts += patches.n;
-        touching[i] += patches.n + usize::from(scratch.plate_forces[i].normal > 0.0);
+        touching[i] += patches.n;
         for patch in &patches.contacts[..patches.n] {
             packing.membrane_overlap_max = packing.membrane_overlap_max.max(patch.overlap);
         }
+    }
+    for (k, wall) in scratch.wall_forces.iter().enumerate() {
+        touching[k % n_grains] += usize::from(wall.normal > 0.0);
     }
     packing.n_body_contacts = scratch.sample_forces.iter().filter(|s| s.overlap > 0.0).count();
     let share = |n: usize, of: usize| if of == 0 { 0.0 } else { real(n) / real(of) };
@@ -65,7 +68,10 @@ pub fn normal_forces(state: &State, scratch: &Scratch) -> Vec<Real> {
     }
     for (i, patches) in scratch.patch_forces.iter().enumerate() {
         let of_patches: Real = patches.contacts[..patches.n].iter().map(|c| c.normal).sum();
-        forces[i] += of_patches + scratch.plate_forces[i].normal;
+        forces[i] += of_patches;
+    }
+    for (k, wall) in scratch.wall_forces.iter().enumerate() {
+        forces[k % state.grains.len()] += wall.normal;
     }
     forces
 }

@@ -19,9 +19,11 @@ pub mod neighbours; // who may touch whom
 pub mod scratch;
 pub mod state;
 pub mod substep;
+pub mod system;
 
 pub use controls::Controls;
 pub use model::Model;
 pub use scratch::Scratch;
 pub use state::State;
 pub use substep::substep;
+pub use system::System;

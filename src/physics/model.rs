@@ -1,6 +1,10 @@
 //! Model: what the system is made of. Fixed during a run.
 
-use super::{boundary::shape::Surface, contact::law::PairLaw, membrane::MembraneModel};
+use super::{
+    boundary::{shape::Surface, wall::WallModel},
+    contact::law::PairLaw,
+    membrane::MembraneModel,
+};
 use crate::base::{Pose, Real, Vec3};
 
 /// Everything that does not change.
@@ -18,16 +22,14 @@ pub struct Model {
     pub skin: Real,
     /// Law between grains.
     pub grain_law: PairLaw,
-    /// Law between grains and the flange's plate.
-    pub plate_law: PairLaw,
     /// Law between grains and membrane.
     pub membrane_law: PairLaw,
     /// The bag.
     pub membrane: MembraneModel,
-    /// True while the whole membrane is held in its stretched shape for filling.
-    pub is_held: bool,
-    /// Positions of the clamped vertices, or of all while the membrane is held; flange frame [m].
-    pub clamped_positions: Vec<Vec3>,
+    /// Where each vertex is if a wall holds it, in that wall's frame [m].
+    pub held_positions: Vec<Vec3>,
+    /// What grains meet besides each other and the membrane, in the order of `Controls::walls`.
+    pub walls: Vec<WallModel>,
     /// The air.
     pub chamber: ChamberModel,
     /// Pose of the table: its surface is z = 0 of this frame.

@@ -12,8 +12,8 @@ pub struct Scratch {
     pub pair_forces: Vec<PairForce>,
     /// What the membrane does to each grain. Written by `contact::membrane`.
     pub patch_forces: Vec<PatchForces>,
-    /// What the plate does to each grain. Written by `contact::plate`.
-    pub plate_forces: Vec<PlateForce>,
+    /// What walls do to each grain, wall by wall. Written by `contact::walls`.
+    pub wall_forces: Vec<WallForce>,
     /// What bodies do to samples of the membrane. Written by `contact::bodies`.
     pub sample_forces: Vec<SampleForce>,
     /// Contact force on each vertex of the membrane [N]. Written by `contact::on_membrane`.
@@ -23,9 +23,9 @@ pub struct Scratch {
     /// Wrench of the membrane on each body about its centre of mass, this substep [N], [N m].
     /// Written by `contact::on_membrane`.
     pub body_wrenches: Vec<Wrench>,
-    /// Wrench of bag and grains on the flange about its origin, world axes, this substep [N],
-    /// [N m]. Written by `contact::on_flange`.
-    pub flange_wrench: Wrench,
+    /// Wrench of membrane, grains and air on each wall about its origin, world axes, this substep
+    /// [N], [N m]. Written by `contact::on_walls`.
+    pub wall_wrenches: Vec<Wrench>,
     /// Grains whose centre left the bag, if any. Written by `contact::on_membrane`.
     pub leaked: Option<usize>,
 }
@@ -37,12 +37,12 @@ impl Scratch {
             neighbours: Neighbours::default(),
             pair_forces: Vec::new(),
             patch_forces: Vec::new(),
-            plate_forces: Vec::new(),
+            wall_forces: Vec::new(),
             sample_forces: Vec::new(),
             vertex_forces: vec![Vec3::zeros(); model.membrane.mesh.n_vertices()],
             membrane: MembraneScratch::new(&model.membrane),
             body_wrenches: Vec::new(),
-            flange_wrench: Wrench::zero(),
+            wall_wrenches: vec![Wrench::zero(); model.walls.len()],
             leaked: None,
         }
     }
@@ -57,8 +57,8 @@ pub struct Neighbours {
     pub grain_positions: Vec<Vec3>,
     /// Positions of the vertices at the last build [m].
     pub vertex_positions: Vec<Vec3>,
-    /// Position of the flange at the last build [m].
-    pub flange_position: Vec3,
+    /// Position of the carrier, the first wall, at the last build [m].
+    pub carrier_position: Vec3,
     /// What each pair needs of its grains' sizes.
     pub pair_sizes: Vec<PairSize>,
     /// Pairs in which grain i is first are `first_starts[i] .. first_starts[i + 1]`.
@@ -71,7 +71,7 @@ pub struct Neighbours {
     pub triangle_starts: Vec<u32>,
     /// Triangles that a grain may touch, by grain.
     pub triangles: Vec<u32>,
-    /// Largest squared displacement since the last build, relative to the flange [m²].
+    /// Largest squared displacement since the last build, relative to the carrier [m²].
     pub displacement_squared_max: Real,
     /// How often the lists were built.
     pub n_builds: u64,
@@ -143,13 +143,15 @@ impl PatchForces {
     };
 }
 
-/// Force of the plate on one grain.
+/// Force of a wall on one grain.
 #[derive(Clone, Copy, Default)]
-pub struct PlateForce {
+pub struct WallForce {
     /// Force on the grain [N].
     pub force: Vec3,
     /// Contact point relative to the grain's centre [m].
     pub arm: Vec3,
+    /// Overlap [m]; no contact if not positive.
+    pub overlap: Real,
     /// Normal force [N], zero without contact.
     pub normal: Real,
 }

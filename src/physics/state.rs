@@ -1,8 +1,10 @@
 //! State: all that must be known to go on. One `Vec` per quantity, index = id.
 
-use crate::base::{Pose, Real, Vec3, digest::Digest, real::Twist};
-
-use super::membrane::MembraneState;
+use super::{
+    boundary::{body::BodyMotion, wall::CARRIER},
+    membrane::MembraneState,
+};
+use crate::base::{Real, Vec3, digest::Digest};
 
 /// Membrane patches that one grain can touch at the same time: the six faces around a vertex that
 /// the vacuum has drawn over it like a cup, and two more, for example in a fold. If one of them were
@@ -22,10 +24,8 @@ pub struct State {
     pub pair_ids: Vec<[u32; 2]>,
     /// Gauge pressure in the chamber, negative under vacuum [Pa]. Written by `chamber`.
     pub gauge: Real,
-    /// Pose of the flange in the world. Written by `cosim`.
-    pub flange: Pose,
-    /// Velocity of the flange's origin [m/s], angular velocity [rad/s]. Written by `cosim`.
-    pub flange_twist: Twist,
+    /// Where the walls are and how they move. Written by `integrate` from the controls.
+    pub walls: Vec<BodyMotion>,
 }
 
 /// The grains.
@@ -62,20 +62,20 @@ pub struct Springs {
     pub pairs: Vec<Vec3>,
     /// Membrane contacts of each grain. Written by `contact::membrane`.
     pub patches: Vec<Patches>,
-    /// Of each grain with the flange's plate [m]. Written by `contact::plate`.
-    pub plate: Vec<Vec3>,
+    /// Of each grain with walls [m], wall by wall. Written by `contact::walls`.
+    pub walls: Vec<Vec3>,
     /// Of membrane samples with bodies [m], body by body: all vertices, then all facets. Written
     /// by `contact::bodies`.
     pub bodies: Vec<Vec3>,
 }
 
 impl Springs {
-    /// No contact yet, for `n_grains` grains and `n_samples` samples on all bodies.
-    pub fn none(n_grains: usize, n_samples: usize) -> Self {
+    /// No contact yet, for `n_grains` grains, `n_walls` walls and `n_samples` samples on all bodies.
+    pub fn none(n_grains: usize, n_walls: usize, n_samples: usize) -> Self {
         Self {
             pairs: Vec::new(),
             patches: vec![Patches::NONE; n_grains],
-            plate: vec![Vec3::zeros(); n_grains],
+            walls: vec![Vec3::zeros(); n_grains * n_walls],
             bodies: vec![Vec3::zeros(); n_samples],
         }
     }
@@ -110,6 +110,11 @@ impl Patches {
 }
 
 impl State {
+    /// Position of the carrier, the first wall [m]; zero without walls.
+    pub fn carrier_position(&self) -> Vec3 {
+        self.walls.get(CARRIER).map_or_else(Vec3::zeros, |it| it.pose.translation.vector)
+    }
+
     /// Adds every number of the state in a fixed order.
     pub fn digest(&self, digest: &mut Digest) {
         digest.vectors(&self.grains.positions);
@@ -120,9 +125,11 @@ impl State {
         digest.vectors(&self.membrane.velocities);
         self.digest_springs(digest);
         digest.real(self.gauge);
-        digest.reals(self.flange.translation.vector.as_slice());
-        digest.reals(self.flange.rotation.coords.as_slice());
-        digest.vectors(&[self.flange_twist.linear, self.flange_twist.angular]);
+        for wall in &self.walls {
+            digest.reals(wall.pose.translation.vector.as_slice());
+            digest.reals(wall.pose.rotation.coords.as_slice());
+            digest.vectors(&[wall.twist.linear, wall.twist.angular]);
+        }
     }
 
     /// Only loaded springs count: which empty pairs are listed is not part of the physics.
@@ -139,7 +146,7 @@ impl State {
                 digest.vectors(&[patch.spring, patch.normal]);
             }
         }
-        digest.vectors(&self.springs.plate);
+        digest.vectors(&self.springs.walls);
         digest.vectors(&self.springs.bodies);
     }
 }

@@ -2,7 +2,7 @@
 
 use super::{
     Controls, Model, Scratch, State, chamber,
-    contact::{bodies, grains, membrane as sheet, plate, sums},
+    contact::{bodies, grains, membrane as sheet, sums, walls},
     integrate, membrane, neighbours,
 };
 
@@ -12,7 +12,7 @@ pub fn substep(model: &Model, controls: &Controls, state: &mut State, scratch: &
     neighbours::refresh(model, state, scratch);
     forces(model, controls, state, scratch);
     sums::on_membrane(model, controls, scratch);
-    sums::on_flange(model, controls, state, scratch);
+    sums::on_walls(model, controls, state, scratch);
     integrate::advance(model, controls, scratch, state);
 }
 
@@ -23,7 +23,7 @@ fn forces(model: &Model, controls: &Controls, state: &mut State, scratch: &mut S
     let lists = &scratch.neighbours;
     grains::forces(model, state_now, &mut springs.pairs, lists, &mut scratch.pair_forces);
     sheet::forces(model, state_now, lists, &mut springs.patches, &mut scratch.patch_forces);
-    plate::forces(model, state_now, &mut springs.plate, &mut scratch.plate_forces);
+    walls::forces(model, state_now, &mut springs.walls, &mut scratch.wall_forces);
     bodies::forces(model, controls, state_now, &mut springs.bodies, &mut scratch.sample_forces);
     membrane::forces(&model.membrane, &state_now.membrane, state_now.gauge, &mut scratch.membrane);
     state.springs = springs;

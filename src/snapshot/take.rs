@@ -7,7 +7,7 @@ use super::{
 };
 use crate::{
     base::{Real, Vec3, real::Wrench},
-    cosim::Coupled,
+    cosim::{Coupled, FLANGE},
     physics::measure,
     session::Session,
 };
@@ -16,14 +16,15 @@ use crate::{
 pub fn snapshot(session: &Session, parts: Parts) -> Snapshot {
     let coupled = session.coupled();
     let state = &coupled.state;
-    let to_flange = state.flange.rotation.inverse();
+    let flange = &state.walls[FLANGE];
+    let to_flange = flange.pose.rotation.inverse();
     let in_flange_axes =
         |it: &Wrench| Wrench { force: to_flange * it.force, torque: to_flange * it.torque };
     let means = session.means();
     Snapshot {
         tick: session.now(),
         time_ns: session.time_ns(),
-        flange: BodySnapshot { pose: state.flange, twist: state.flange_twist },
+        flange: BodySnapshot { pose: flange.pose, twist: flange.twist },
         objects: objects(session),
         contact_wrench: in_flange_axes(&means.objects_on_gripper),
         mount_wrench: in_flange_axes(&means.gripper_on_mount),

@@ -6,11 +6,7 @@ use std::{path::Path, sync::OnceLock};
 use jamgrip::{
     base::{Real, Vec3},
     command::{Command, PoseCommand},
-    cosim::{
-        Coupled,
-        compile::{Compiled, StartState},
-        rapier_world::RapierWorld,
-    },
+    cosim::{Coupled, compile::Compiled, rapier_world::RapierWorld},
     physics::Model,
     scene::{Scene, text},
     session::Session,
@@ -61,7 +57,7 @@ pub(crate) fn session(n_threads: usize, overrides: &[&str]) -> Session {
 pub(crate) fn coupled(change: impl FnOnce(&mut Model)) -> Coupled {
     let mut compiled = compiled(1, &[]);
     change(&mut compiled.model);
-    let mut state = StartState::read(&compiled, start_state()).unwrap();
+    let mut state = compiled.read_start_state(start_state()).unwrap();
     let Compiled { scene, model, plan, bulks, limits, .. } = compiled;
     let mesh = &model.membrane.mesh;
     let n_samples = (mesh.n_vertices() + mesh.triangles.len()) * model.bodies.len();

@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 use jamgrip::{
     base::{Pose, Real, Vec3, parallel},
     command::Command,
-    cosim::{Coupled, Inputs},
+    cosim::{Coupled, FLANGE, Inputs},
     physics::{Controls, Scratch, State, measure, substep},
     session::Session,
     snapshot::{Parts, take},
@@ -62,12 +62,7 @@ fn held_controls(coupled: &Coupled) -> Controls {
         pose: coupled.model.table,
         twist: jamgrip::base::real::Twist::zero(),
     });
-    Controls {
-        gauge_setpoint: coupled.state.gauge,
-        flange: coupled.state.flange,
-        flange_twist: coupled.state.flange_twist,
-        bodies,
-    }
+    Controls { gauge_setpoint: coupled.state.gauge, walls: coupled.state.walls.clone(), bodies }
 }
 
 #[test]
@@ -146,11 +141,11 @@ fn angular_momentum_changes_by_what_flange_objects_and_gravity_give() {
         for _ in 0..40 {
             let (_, before) = momenta(&coupled);
             let weight = moment_of_weight(&coupled);
-            controls.flange.translation.vector += controls.flange_twist.linear * dt;
-            let old_flange = coupled.state.flange.translation.vector;
+            controls.walls[FLANGE].advance(dt);
+            let old_flange = coupled.state.walls[FLANGE].pose.translation.vector;
             let Coupled { model, state, scratch, .. } = &mut coupled;
             substep(model, &controls, state, scratch);
-            let mut given = weight - about_origin(&scratch.flange_wrench, &old_flange);
+            let mut given = weight - about_origin(&scratch.wall_wrenches[FLANGE], &old_flange);
             for (wrench, body) in scratch.body_wrenches.iter().zip(&controls.bodies) {
                 given -= about_origin(wrench, &body.pose.translation.vector);
             }

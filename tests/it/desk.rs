@@ -7,7 +7,7 @@ use jamgrip::{
         Command, CommandCounts, Limit, Outcome, PoseCommand, Refusal,
         apply::{Desk, Frames},
     },
-    cosim::Inputs,
+    cosim::{FLANGE, Inputs},
     session::Session,
 };
 
@@ -251,11 +251,10 @@ fn the_flange_keeps_its_limits_whatever_it_is_told() {
             let orientation = [q.x, q.y, q.z, q.w];
             commands.push(Command::FlangePose(PoseCommand { orientation, ..pose(place) }));
         }
-        let (pose_before, before) =
-            (session.coupled().state.flange, session.coupled().state.flange_twist);
+        let flange_of = |session: &Session| session.coupled().state.walls[FLANGE];
+        let (pose_before, before) = (flange_of(&session).pose, flange_of(&session).twist);
         session.tick(&commands).unwrap();
-        let (pose_after, after) =
-            (session.coupled().state.flange, session.coupled().state.flange_twist);
+        let (pose_after, after) = (flange_of(&session).pose, flange_of(&session).twist);
         // Oracle: the scene's limits. Tolerance: rounding.
         let slack = 1.0 + 1e-9;
         assert!(after.linear.norm() <= flange.speed_max * slack);

@@ -21,7 +21,7 @@ fn alone(test: impl FnOnce() + Send) {
 /// Overlap at which the plate carries a grain's weight: Hertz, ξ = (m g / k)^(2/3).
 fn resting_overlap(rig: &Rig) -> Real {
     let weight = rig.state.grains.masses[0] * G;
-    (weight / hertz_constant(&rig.model.plate_law, RADIUS)).powf(2.0 / 3.0)
+    (weight / hertz_constant(&rig.model.walls[0].law, RADIUS)).powf(2.0 / 3.0)
 }
 
 /// One grain that lies on the plate in equilibrium, `tilt` [rad] about y.
@@ -239,7 +239,7 @@ fn an_elastic_stack_keeps_its_energy_over_a_hundred_contacts() {
         let (mut n_contacts, mut touches, mut worst) = (0, false, 0.0_f64);
         while n_contacts < 100 {
             rig.step();
-            let touching = rig.scratch.plate_forces.iter().any(|p| p.normal > 0.0)
+            let touching = rig.scratch.wall_forces.iter().any(|p| p.normal > 0.0)
                 || rig.scratch.pair_forces.iter().any(|p| p.overlap > 0.0);
             n_contacts += usize::from(touching && !touches);
             if !touching && !touches {
@@ -266,7 +266,7 @@ fn impact_on_the_plate_has_the_restitution_of_the_theory() {
             let mut rig = Rig::on_plate(&GRAIN, surface, 1e-6);
             rig.add_grain(Vec3::z() * RADIUS, Vec3::z() * -speed, RADIUS, GRAIN.density);
             let mass = 4.0 / 3.0 * PI * RADIUS.powi(3) * GRAIN.density;
-            let k = hertz_constant(&rig.model.plate_law, RADIUS);
+            let k = hertz_constant(&rig.model.walls[0].law, RADIUS);
             let v = (1.5 * 7e-6 * (k / mass).powf(0.4)).sqrt() * Real::powf(speed, 0.1);
             let above = 1.0 + 1.07232 * v + 0.574198 * v.powi(2) + 0.141552 * v.powi(3);
             let below = 1.0

@@ -4,8 +4,12 @@ use jamgrip::{
     base::{Pose, Real, Vec3, real::Twist},
     physics::{
         Controls, Model, Scratch, State,
+        boundary::{
+            body::BodyMotion,
+            wall::{WallModel, WallShape},
+        },
         contact::law::{PairLaw, Surface},
-        membrane::{MembraneModel, MembraneState, Sheet, mesh::Mesh},
+        membrane::{CARRIER_ID, MembraneModel, MembraneState, Sheet, mesh::Mesh},
         model::ChamberModel,
         state::{Grains, Springs},
         substep,
@@ -44,7 +48,7 @@ impl Rig {
     /// Grains of `material` on `mesh`, all of whose vertices are held; the plate is far above.
     pub(crate) fn on_sheet(material: &Material, surface: Surface, mesh: Mesh, dt: Real) -> Self {
         let mut rig = Self::new(material, surface, mesh, Pose::translation(0.0, 0.0, 1.0), dt);
-        rig.model.membrane.is_clamped.fill(true);
+        rig.model.membrane.holders.fill(CARRIER_ID);
         rig
     }
 
@@ -60,11 +64,10 @@ impl Rig {
         let state = State {
             grains: Grains::default(),
             membrane: MembraneState::at_rest(&mesh),
-            springs: Springs::none(0, 0),
+            springs: Springs::none(0, 1, 0),
             pair_ids: Vec::new(),
             gauge: 0.0,
-            flange,
-            flange_twist: Twist::zero(),
+            walls: vec![BodyMotion { pose: flange, twist: Twist::zero() }],
         };
         let in_flange = flange.inverse();
         let of_vertex = |p: &Vec3| in_flange.rotation * p + in_flange.translation.vector;
@@ -75,19 +78,20 @@ impl Rig {
             radius_mean: 0.0,
             skin: 2e-4,
             grain_law: PairLaw::between(material, material, surface),
-            plate_law: PairLaw::against_rigid(material, surface),
             membrane_law: PairLaw::between(material, &LATEX, surface),
-            clamped_positions: mesh.positions.iter().map(of_vertex).collect(),
+            held_positions: mesh.positions.iter().map(of_vertex).collect(),
             membrane: MembraneModel::new(mesh, sheet),
-            is_held: false,
+            walls: vec![WallModel {
+                shape: WallShape::Plane { normal: -Vec3::z() },
+                law: PairLaw::against_rigid(material, surface),
+            }],
             chamber: ChamberModel { lag_factor: 0.0, change_max: Real::INFINITY },
             table: Pose::identity(),
             bodies: Vec::new(),
         };
         let controls = Controls {
             gauge_setpoint: 0.0,
-            flange,
-            flange_twist: Twist::zero(),
+            walls: vec![BodyMotion { pose: flange, twist: Twist::zero() }],
             bodies: Vec::new(),
         };
         let scratch = Scratch::new(&model);
@@ -110,7 +114,7 @@ impl Rig {
         grains.masses.push(4.0 / 3.0 * std::f64::consts::PI * radius.powi(3) * density);
         self.model.radius_max = self.model.radius_max.max(radius);
         self.model.radius_mean = radius;
-        self.state.springs = Springs::none(grains.positions.len(), 0);
+        self.state.springs = Springs::none(grains.positions.len(), 1, 0);
         self.scratch = Scratch::new(&self.model);
     }
 

@@ -3,7 +3,12 @@
 
 use jamgrip::{
     base::{Real, Vec3, parallel},
-    physics::{contact::law::Surface, health, membrane::mesh::Mesh, scratch::PatchForce},
+    physics::{
+        contact::law::Surface,
+        health,
+        membrane::{CARRIER_ID, FREE, mesh::Mesh},
+        scratch::PatchForce,
+    },
 };
 
 use crate::rig::{G, GRAIN, Rig, elastic, hertz_constant};
@@ -222,7 +227,8 @@ fn a_grain_pushed_through_is_found() {
 fn sag(n: i32, edge: Real, offset: [Real; 2]) -> (Real, Real) {
     let surface = Surface { friction: 0.0, dissipation_time: 1e-4, tangential_damping: 0.3 };
     let mut rig = rig(hexagon(n, edge), surface, RADIUS, 4e-6);
-    rig.model.membrane.is_clamped = rig.model.membrane.mesh.is_on_rim.clone();
+    let on_rim = |&it: &bool| if it { CARRIER_ID } else { FREE };
+    rig.model.membrane.holders = rig.model.membrane.mesh.is_on_rim.iter().map(on_rim).collect();
     rig.model.membrane.sheet.bending_stiffness = 1e-7;
     rig.model.membrane.scale_rest_lengths(0.9);
     rig.state.grains.masses[0] = 1.3e-3;
@@ -241,7 +247,7 @@ fn sag(n: i32, edge: Real, offset: [Real; 2]) -> (Real, Real) {
         rig.step();
         health::check(&rig.model, &rig.state, &rig.scratch, 0).unwrap();
         if step >= n_steps - n_last {
-            carried -= rig.scratch.flange_wrench.force.z / Real::from(n_last);
+            carried -= rig.scratch.wall_wrenches[0].force.z / Real::from(n_last);
             depth += (RADIUS - rig.state.grains.positions[0].z) / Real::from(n_last);
         }
     }

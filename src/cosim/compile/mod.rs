@@ -8,16 +8,20 @@
 //! packing at full vacuum starts to ring. t_membrane is the limit of springs, hinges and of the
 //! contacts that press on a vertex at full vacuum.
 
-mod start_state;
-
-pub use start_state::{StartState, StartStateError};
-
-use super::{Plan, flange::Limits};
+use super::{
+    FLANGE, Plan,
+    flange::Limits,
+    saved_state::{self, SavedStateError, same_counts},
+};
 use crate::{
-    base::{Pose, Real, digest::Digest, parallel},
+    base::{Pose, Real, Vec3, digest::Digest, parallel, real::Twist},
     physics::{
-        Model,
-        boundary::shape::{Bulk, ShapeFault, Surface},
+        Model, State,
+        boundary::{
+            body::BodyMotion,
+            shape::{Bulk, ShapeFault, Surface},
+            wall::{WallModel, WallShape},
+        },
         contact::law::{self, PairLaw},
         measure::real,
         membrane::{MembraneModel, Sheet, critical_step, mesh::Mesh},
@@ -27,7 +31,7 @@ use crate::{
 };
 
 /// Changes whenever the same scene would settle differently: part of every cache key.
-const PHYSICS_VERSION: u64 = 3;
+const PHYSICS_VERSION: u64 = 4;
 /// Neighbours are listed this share of the largest radius beyond contact.
 const SKIN_SHARE: Real = 0.25;
 /// Longest time between two steps of the rigid world [s].
@@ -107,11 +111,13 @@ impl Compiled {
             radius_mean: (grains.radius_min + grains.radius_max) / 2.0,
             skin: SKIN_SHARE * grains.radius_max,
             grain_law: laws.grain,
-            plate_law: laws.plate,
             membrane_law: laws.membrane,
-            clamped_positions: membrane.mesh.positions.clone(),
+            held_positions: membrane.mesh.positions.clone(),
             membrane,
-            is_held: false,
+            walls: vec![WallModel {
+                shape: WallShape::Plane { normal: -Vec3::z() },
+                law: laws.plate,
+            }],
             chamber: ChamberModel::new(&scene.chamber, dt),
             table: Pose::translation(0.0, 0.0, scene.table.height),
             bodies,
@@ -130,6 +136,25 @@ impl Compiled {
         digest.real(self.model.substep);
         digest.bytes(format!("{gravity:?} {grains:?} {membrane:?} {:?}", flange.pose).as_bytes());
         digest.finish()
+    }
+}
+
+impl Compiled {
+    /// The settled start state in `bytes`: the flange stands at its first pose, the bag is vented.
+    ///
+    /// # Errors
+    /// If the bytes are damaged or of another scene.
+    pub fn read_start_state(&self, bytes: &[u8]) -> Result<State, SavedStateError> {
+        let mut state = saved_state::read(bytes)?;
+        let n_vertices = self.model.membrane.mesh.n_vertices();
+        same_counts(&[
+            ("grains", state.grains.len(), self.scene.grains.count),
+            ("vertices", state.membrane.positions.len(), n_vertices),
+            ("walls", state.walls.len(), self.model.walls.len()),
+        ])?;
+        state.gauge = 0.0;
+        state.walls[FLANGE] = BodyMotion { pose: self.scene.flange.pose, twist: Twist::zero() };
+        Ok(state)
     }
 }
 

@@ -5,3 +5,4 @@ mod polyhedron;
 pub mod shape;
 #[cfg(test)]
 mod tests;
+pub mod wall;

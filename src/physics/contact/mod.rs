@@ -6,5 +6,5 @@ pub mod bodies;
 pub mod grains;
 pub mod law;
 pub mod membrane;
-pub mod plate;
+pub mod walls;
 pub mod sums;

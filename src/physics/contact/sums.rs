@@ -1,14 +1,12 @@
-//! Contact forces summed for those who are touched: each grain, each vertex, each body, the
-//! flange. Every sum has a fixed order.
+//! Contact forces summed for those who are touched: each grain, each vertex, each body, each
+//! wall. Every sum has a fixed order.
 
 use crate::{
-    base::{
-        Vec3,
-        real::{Twist, Wrench},
-    },
+    base::{Vec3, real::Wrench},
     physics::{
         Controls, Model, Scratch,
-        membrane::pressure,
+        boundary::body::BodyMotion,
+        membrane::{FREE, pressure},
         scratch::PairForce,
         state::{Grains, State},
     },
@@ -41,10 +39,13 @@ pub fn on_grain(grains: &Grains, scratch: &Scratch, i: usize) -> (Vec3, Vec3) {
         force += patch.force;
     }
     torque += patches.torque;
-    let plate = &scratch.plate_forces[i];
-    if plate.normal > 0.0 {
-        force += plate.force;
-        torque += plate.arm.cross(&plate.force);
+    // Not by positions: `integrate` has them out while it moves the grains.
+    let n_grains = grains.radii.len();
+    for wall in scratch.wall_forces.iter().skip(i).step_by(n_grains) {
+        if wall.normal > 0.0 {
+            force += wall.force;
+            torque += wall.arm.cross(&wall.force);
+        }
     }
     (force, torque)
 }
@@ -91,46 +92,50 @@ pub fn on_membrane(model: &Model, controls: &Controls, scratch: &mut Scratch) {
     }
 }
 
-/// What bag and grains put on the flange: the plate's contacts, the clamped vertices' forces and
-/// weight less what accelerates them, and the pressure on the plate.
-pub fn on_flange(model: &Model, controls: &Controls, state: &State, scratch: &mut Scratch) {
-    let origin = state.flange.translation.vector;
-    let mut wrench = Wrench::zero();
-    let mut add = |point: &Vec3, force: Vec3| {
-        wrench.force += force;
-        wrench.torque += (point - origin).cross(&force);
+/// What membrane, grains and air put on each wall: the grains' contacts, the held vertices' forces
+/// and weight less what accelerates them, and the pressure on the lids of the rims it holds.
+pub fn on_walls(model: &Model, controls: &Controls, state: &State, scratch: &mut Scratch) {
+    let mesh = &model.membrane.mesh;
+    let Scratch { wall_wrenches, wall_forces, membrane, vertex_forces, .. } = scratch;
+    wall_wrenches.clear();
+    wall_wrenches.resize(model.walls.len(), Wrench::zero());
+    let mut add = |wall: usize, point: &Vec3, force: Vec3| {
+        wall_wrenches[wall].force += force;
+        let arm = point - state.walls[wall].pose.translation.vector;
+        wall_wrenches[wall].torque += arm.cross(&force);
     };
-    for (i, plate) in scratch.plate_forces.iter().enumerate() {
-        if plate.normal > 0.0 {
-            add(&(state.grains.positions[i] + plate.arm), -plate.force);
+    let n_grains = state.grains.len();
+    for (k, contact) in wall_forces.iter().enumerate() {
+        if contact.normal > 0.0 {
+            let position = &state.grains.positions[k % n_grains];
+            add(k / n_grains, &(position + contact.arm), -contact.force);
         }
     }
-    let rim = &model.membrane.mesh.rim;
-    for &vertex in rim {
-        let v = vertex as usize;
-        let force = scratch.membrane.forces[v] + scratch.vertex_forces[v];
-        let gained = clamped_velocity(model, controls, v) - state.membrane.velocities[v];
+    for (v, &holder) in model.membrane.holders.iter().enumerate().filter(|(_, it)| **it != FREE) {
+        let wall = &controls.walls[holder as usize];
+        let force = membrane.forces[v] + vertex_forces[v];
+        let velocity = wall_velocity(wall, &held_position(model, wall, v));
+        let gained = velocity - state.membrane.velocities[v];
         let own = model.gravity - gained / model.substep;
-        add(&state.membrane.positions[v], force + own * model.membrane.masses[v]);
+        let position = &state.membrane.positions[v];
+        add(holder as usize, position, force + own * model.membrane.masses[v]);
     }
     let positions = &state.membrane.positions;
-    let lid = pressure::lid_area_vector(&model.membrane.mesh, positions);
-    add(&pressure::lid_centre(&model.membrane.mesh, positions), lid * state.gauge);
-    scratch.flange_wrench = wrench;
+    for rim in &mesh.rims {
+        let holder = model.membrane.holders[rim[0] as usize];
+        if holder != FREE {
+            let lid = pressure::lid_area_vector(rim, positions);
+            add(holder as usize, &pressure::lid_centre(rim, positions), lid * state.gauge);
+        }
+    }
 }
 
-/// Where the flange holds vertex `v` at the end of this substep [m].
-pub fn clamped_position(model: &Model, controls: &Controls, v: usize) -> Vec3 {
-    controls.flange.rotation * model.clamped_positions[v] + controls.flange.translation.vector
+/// Where `wall` holds vertex `v` [m].
+pub fn held_position(model: &Model, wall: &BodyMotion, v: usize) -> Vec3 {
+    wall.pose.rotation * model.held_positions[v] + wall.pose.translation.vector
 }
 
-/// Velocity of vertex `v` if the flange holds it [m/s].
-fn clamped_velocity(model: &Model, controls: &Controls, v: usize) -> Vec3 {
-    flange_velocity(controls, &clamped_position(model, controls, v))
-}
-
-/// Velocity of a point fixed to the flange [m/s].
-pub fn flange_velocity(controls: &Controls, point: &Vec3) -> Vec3 {
-    let twist: &Twist = &controls.flange_twist;
-    twist.at(&(point - controls.flange.translation.vector))
+/// Velocity of a point fixed to `wall` [m/s].
+pub fn wall_velocity(wall: &BodyMotion, point: &Vec3) -> Vec3 {
+    wall.twist.at(&(point - wall.pose.translation.vector))
 }

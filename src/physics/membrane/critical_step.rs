@@ -17,7 +17,7 @@
 //! λ(s dt) ≤ s² λ(dt) for s > 1, steps dt ← dt √(4/λ) approach the limit from the safe side.
 
 use super::bridson_2003::Fold;
-use super::{Facet, Link, MembraneModel};
+use super::{FREE, Facet, Link, MembraneModel};
 use crate::base::{Real, Vec3};
 
 /// Iterations for the first eigenvalue: about a percent, whatever its neighbours.
@@ -79,7 +79,7 @@ impl Linear<'_> {
             let forces = self.apply(weights, mode);
             let (mut xkx, mut xmx, mut yy) = (0.0, 0.0, 0.0);
             for (v, x) in mode.iter_mut().enumerate() {
-                if model.is_clamped[v] {
+                if model.holders[v] != FREE {
                     *x = Vec3::zeros();
                     continue;
                 }

@@ -62,7 +62,7 @@ impl Incidence {
     }
 }
 
-/// A connected, consistently oriented surface: closed, or with one rim.
+/// A consistently oriented surface of one or more parts, each closed or with rims.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mesh {
     /// Reference position of each vertex [m].
@@ -79,9 +79,9 @@ pub struct Mesh {
     pub edges_of_triangle: Vec<[u32; 3]>,
     /// Triangle across each edge of each triangle, `NONE` on the boundary.
     pub neighbours_of_triangle: Vec<[u32; 3]>,
-    /// Vertices of the boundary in order around, right-handed about the outward normal of a lid
-    /// that closes it; empty for a closed mesh.
-    pub rim: Vec<u32>,
+    /// Each loop of the boundary: its vertices in order around, right-handed about the outward
+    /// normal of a lid that closes it. None for a closed mesh.
+    pub rims: Vec<Vec<u32>>,
     /// True for vertices of the boundary.
     pub is_on_rim: Vec<bool>,
     /// Triangles at each vertex.
@@ -146,13 +146,11 @@ pub enum MeshFault {
         /// The vertex.
         vertex: usize,
     },
-    /// A boundary that is more than one loop.
-    #[error("{on_loop} of {on_boundary} boundary edges make one loop; the surface needs one rim")]
-    SeveralRims {
-        /// Edges on the first loop.
-        on_loop: usize,
-        /// Edges on the boundary.
-        on_boundary: usize,
+    /// A boundary that meets itself.
+    #[error("vertex {vertex} is on two rims: take it apart")]
+    TwoRims {
+        /// The vertex.
+        vertex: u32,
     },
     /// A frequency without a ring of edges on the equator.
     #[error("subdivision frequency {frequency} is not an even number of at least 2")]
@@ -176,12 +174,12 @@ impl Mesh {
     /// Finds edges, hinges and rim of `triangles`.
     ///
     /// # Errors
-    /// If the triangles are no consistently oriented surface with at most one rim.
+    /// If the triangles are no consistently oriented surface with rims that do not touch.
     pub fn new(positions: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Result<Self, MeshFault> {
         check_triangles(&positions, &triangles)?;
         let sides = sorted_sides(&triangles);
         let (inner, outer) = pair_sides(&sides)?;
-        let rim = rim_loop(positions.len(), &triangles, &outer)?;
+        let rims = rim_loops(positions.len(), &triangles, &outer)?;
 
         let mut mesh = Self {
             edges: Vec::with_capacity(inner.len() + outer.len()),
@@ -192,11 +190,11 @@ impl Mesh {
             is_on_rim: vec![false; positions.len()],
             triangles_of_vertex: triangles_of_vertex(positions.len(), &triangles),
             slots_of_vertex: Incidence { starts: vec![], entries: vec![] },
-            rim,
+            rims,
             positions,
             triangles,
         };
-        for &vertex in &mesh.rim {
+        for &vertex in mesh.rims.iter().flatten() {
             mesh.is_on_rim[vertex as usize] = true;
         }
         for [up, down] in inner {
@@ -260,7 +258,7 @@ impl Mesh {
 
     /// True when the mesh has no rim.
     pub fn is_closed(&self) -> bool {
-        self.rim.is_empty()
+        self.rims.is_empty()
     }
 
     /// A third of the reference area of the triangles at each vertex [m²].
@@ -368,27 +366,32 @@ fn pair_sides(sides: &[Side]) -> Result<(Vec<[Side; 2]>, Vec<Side>), MeshFault> 
     Ok((inner, outer))
 }
 
-/// The one loop of boundary sides, against the direction in which their triangles run.
-fn rim_loop(
+/// The loops of boundary sides, against the direction in which their triangles run, in the order of
+/// their first sides.
+fn rim_loops(
     n_vertices: usize,
     triangles: &[[u32; 3]],
     outer: &[Side],
-) -> Result<Vec<u32>, MeshFault> {
-    let Some(first) = outer.first() else { return Ok(Vec::new()) };
+) -> Result<Vec<Vec<u32>>, MeshFault> {
     let mut before = vec![NONE; n_vertices];
     for side in outer {
         let [from, to] = ends(&triangles[side.triangle as usize], side.place as usize);
+        if before[to as usize] != NONE {
+            return Err(MeshFault::TwoRims { vertex: to });
+        }
         before[to as usize] = from;
     }
-    let mut rim = Vec::with_capacity(outer.len());
-    let mut vertex = first.low;
-    while before[vertex as usize] != NONE {
-        rim.push(vertex);
-        vertex = std::mem::replace(&mut before[vertex as usize], NONE);
+    let mut rims = Vec::new();
+    for first in outer {
+        let mut rim = Vec::new();
+        let mut vertex = first.low;
+        while before[vertex as usize] != NONE {
+            rim.push(vertex);
+            vertex = std::mem::replace(&mut before[vertex as usize], NONE);
+        }
+        if !rim.is_empty() {
+            rims.push(rim);
+        }
     }
-    if rim.len() == outer.len() && vertex == first.low {
-        Ok(rim)
-    } else {
-        Err(MeshFault::SeveralRims { on_loop: rim.len(), on_boundary: outer.len() })
-    }
+    Ok(rims)
 }

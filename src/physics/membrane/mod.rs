@@ -37,6 +37,11 @@ pub struct Sheet {
     pub bending_damping: Real,
 }
 
+/// Stands for the holder of a vertex that no wall holds.
+pub const FREE: u32 = u32::MAX;
+/// The first wall as a holder.
+pub const CARRIER_ID: u32 = 0;
+
 /// The membrane as it stays during a run.
 #[derive(Clone, Debug)]
 pub struct MembraneModel {
@@ -46,9 +51,9 @@ pub struct MembraneModel {
     pub sheet: Sheet,
     /// Mass of each vertex: ρ d times a third of the areas at it [kg].
     pub masses: Vec<Real>,
-    /// True for the vertices that the flange holds: those of the rim. Forces on them are computed
-    /// like all others: they are what the sheet exerts on the flange.
-    pub is_clamped: Vec<bool>,
+    /// Which wall holds each vertex, `FREE` for none. Forces on held vertices are computed like all
+    /// others: they are what the sheet exerts on the wall.
+    pub holders: Vec<u32>,
     /// Springs and hinges, numbered like the edges.
     links: Vec<Link>,
 }
@@ -110,7 +115,7 @@ pub struct MembraneScratch {
 }
 
 impl MembraneModel {
-    /// Makes `sheet` in the shape of `mesh`, free of stress there, clamped at its rim.
+    /// Makes `sheet` in the shape of `mesh`, free of stress there; the carrier holds its rims.
     pub fn new(mesh: Mesh, sheet: Sheet) -> Self {
         let mass_per_area = sheet.density * sheet.thickness;
         let masses: Vec<Real> = mesh.vertex_areas().iter().map(|a| a * mass_per_area).collect();
@@ -138,8 +143,9 @@ impl MembraneModel {
             }
             links.push(link);
         }
-        let is_clamped = mesh.is_on_rim.clone();
-        Self { masses, is_clamped, links, sheet, mesh }
+        let holder = |&is_on_rim: &bool| if is_on_rim { CARRIER_ID } else { FREE };
+        let holders = mesh.is_on_rim.iter().map(holder).collect();
+        Self { masses, holders, links, sheet, mesh }
     }
 
     /// Makes every spring's rest length `scale` times its length in the reference shape.

@@ -9,26 +9,30 @@
 //! n̂_a outward unit normal                            [-]
 //! ```
 //!
-//! Source: Götz (2024) eqs. 30, 31. The load follows the surface. A rim is closed by a lid: a fan of
-//! triangles from the rim to the mean of its vertices. That mean is taken as the origin, so the lid
-//! adds nothing to the sum for V.
+//! Source: Götz (2024) eqs. 30, 31. The load follows the surface. Each rim is closed by a lid: a fan
+//! of triangles from the rim to the mean of its vertices. The mean of the first rim is taken as the
+//! origin, so its lid adds nothing to the sum for V.
 
 use super::mesh::{Mesh, area_normal};
 use crate::base::{Real, Vec3};
 
-/// Volume inside sheet and lid [m³].
+/// Volume inside sheet and lids [m³].
 pub fn volume(mesh: &Mesh, positions: &[Vec3]) -> Real {
-    let origin = lid_centre(mesh, positions);
+    let origin = mesh.rims.first().map_or(positions[0], |rim| lid_centre(rim, positions));
     let mut six_volumes = 0.0;
     for triangle in &mesh.triangles {
         let [a, b, c] = triangle.map(|v| positions[v as usize] - origin);
         six_volumes += a.dot(&b.cross(&c));
     }
+    for rim in mesh.rims.iter().skip(1) {
+        let height = lid_centre(rim, positions) - origin;
+        six_volumes += 2.0 * height.dot(&lid_area_vector(rim, positions));
+    }
     six_volumes / 6.0
 }
 
 /// Derivative of the volume with respect to each vertex [m²]. Inside the sheet it is the load per
-/// unit pressure; at the rim it has the lid's share as well.
+/// unit pressure; at a rim it has the lid's share as well.
 pub fn volume_gradient(mesh: &Mesh, positions: &[Vec3]) -> Vec<Vec3> {
     let mut gradient = vec![Vec3::zeros(); positions.len()];
     for triangle in &mesh.triangles {
@@ -37,43 +41,42 @@ pub fn volume_gradient(mesh: &Mesh, positions: &[Vec3]) -> Vec<Vec3> {
             gradient[vertex as usize] += sixth;
         }
     }
-    let centre = lid_centre(mesh, positions);
-    let to_each = lid_area_vector(mesh, positions) / (3.0 * mesh.rim.len().max(1) as Real);
-    for (from, to) in rim_edges(mesh) {
-        let sixth = (positions[from] - centre).cross(&(positions[to] - centre)) / 6.0;
-        gradient[from] += sixth;
-        gradient[to] += sixth;
-        // The centre's own third is carried by the rim, whose mean it is.
-        gradient[from] += to_each;
+    for rim in &mesh.rims {
+        let centre = lid_centre(rim, positions);
+        let to_each = lid_area_vector(rim, positions) / (3.0 * rim.len() as Real);
+        for (from, to) in rim_edges(rim) {
+            let sixth = (positions[from] - centre).cross(&(positions[to] - centre)) / 6.0;
+            gradient[from] += sixth;
+            gradient[to] += sixth;
+            // The centre's own third is carried by the rim, whose mean it is.
+            gradient[from] += to_each;
+        }
     }
     gradient
 }
 
-/// Area of the sheet without its lid [m²].
+/// Area of the sheet without its lids [m²].
 pub fn area(mesh: &Mesh, positions: &[Vec3]) -> Real {
     mesh.triangles.iter().map(|triangle| 0.5 * area_normal(positions, triangle).norm()).sum()
 }
 
-/// Area vector of the lid, outward [m²]: times the gauge pressure, the air's force on it.
-pub fn lid_area_vector(mesh: &Mesh, positions: &[Vec3]) -> Vec3 {
-    let centre = lid_centre(mesh, positions);
+/// Area vector of the lid on a rim, outward [m²]: times the gauge pressure, the air's force on it.
+pub fn lid_area_vector(rim: &[u32], positions: &[Vec3]) -> Vec3 {
+    let centre = lid_centre(rim, positions);
     let mut twice = Vec3::zeros();
-    for (from, to) in rim_edges(mesh) {
+    for (from, to) in rim_edges(rim) {
         twice += (positions[from] - centre).cross(&(positions[to] - centre));
     }
     0.5 * twice
 }
 
-/// Mean of the rim's vertices [m]; of a closed mesh its first vertex, which is as good an origin.
-pub fn lid_centre(mesh: &Mesh, positions: &[Vec3]) -> Vec3 {
-    if mesh.is_closed() {
-        return positions[0];
-    }
-    let sum: Vec3 = mesh.rim.iter().map(|&v| positions[v as usize]).sum();
-    sum / mesh.rim.len() as Real
+/// Mean of a rim's vertices [m].
+pub fn lid_centre(rim: &[u32], positions: &[Vec3]) -> Vec3 {
+    let sum: Vec3 = rim.iter().map(|&v| positions[v as usize]).sum();
+    sum / rim.len() as Real
 }
 
-fn rim_edges(mesh: &Mesh) -> impl Iterator<Item = (usize, usize)> {
-    let n = mesh.rim.len();
-    (0..n).map(move |k| (mesh.rim[k] as usize, mesh.rim[(k + 1) % n] as usize))
+fn rim_edges(rim: &[u32]) -> impl Iterator<Item = (usize, usize)> {
+    let n = rim.len();
+    (0..n).map(move |k| (rim[k] as usize, rim[(k + 1) % n] as usize))
 }

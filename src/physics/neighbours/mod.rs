@@ -1,6 +1,6 @@
 //! Who may touch whom: lists with a skin, built anew only when something has moved far enough.
 //!
-//! Distances are taken relative to the flange, so that carrying the whole gripper through the
+//! Distances are taken relative to the carrier, the first wall, so that carrying the whole gripper through the
 //! room costs no rebuild. History outlives rebuilds: pairs stay sorted, and springs move by merge.
 
 mod cell_grid;
@@ -28,7 +28,7 @@ pub fn refresh(model: &Model, state: &mut State, scratch: &mut Scratch) {
     weigh_pairs(state, lists);
     lists.grain_positions.clone_from(&state.grains.positions);
     lists.vertex_positions.clone_from(&state.membrane.positions);
-    lists.flange_position = state.flange.translation.vector;
+    lists.carrier_position = state.carrier_position();
     lists.displacement_squared_max = 0.0;
     lists.is_built = true;
     lists.n_builds += 1;

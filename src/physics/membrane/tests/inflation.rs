@@ -46,7 +46,7 @@ fn the_volume_under_a_lid_has_its_gradient() {
         // Oracle: inside the sheet, load = p · gradient. Tolerance: rounding.
         assert!((scratch.forces[v] - loads[v]).norm() < 1e-13 * loads[v].norm().max(1e-3));
     }
-    let lid = pressure::lid_area_vector(&model.mesh, &state.positions);
+    let lid = pressure::lid_area_vector(&model.mesh.rims[0], &state.positions);
     let on_sheet: Vec3 = scratch.forces.iter().sum();
     // Oracle: sheet and lid together are closed. Tolerance: rounding.
     assert!((on_sheet + lid * p).norm() < 1e-13 * on_sheet.norm());

@@ -11,11 +11,11 @@ fn meshes_have_the_published_numbers() {
     let inner = Mesh::icosphere(0.01, 4).unwrap();
     // Oracle: Götz (2024) section 4: 1321 vertices of the gripper, 162 and 2562 of the hollow
     // sphere; 5·16 = 80 on the equator; Euler's formula V − E + F = 1 for a disc, 2 for a sphere.
-    assert_eq!((half.n_vertices(), half.rim.len()), (1321, 80));
+    assert_eq!((half.n_vertices(), half.rims[0].len()), (1321, 80));
     assert_eq!((whole.n_vertices(), inner.n_vertices()), (2562, 162));
     assert_eq!(half.n_vertices() + half.triangles.len(), half.edges.len() + 1);
     assert_eq!(whole.n_vertices() + whole.triangles.len(), whole.edges.len() + 2);
-    assert_eq!(half.hinges.len() + half.rim.len(), half.edges.len());
+    assert_eq!(half.hinges.len() + half.rims[0].len(), half.edges.len());
     for (v, position) in half.positions.iter().enumerate() {
         // Oracle: construction; the rim lies exactly in the plane, all else strictly below.
         assert!(if half.is_on_rim[v] { position.z.to_bits() == 0 } else { position.z < 0.0 });
@@ -40,11 +40,11 @@ fn normals_point_out_and_the_rim_runs_around_the_lid() {
         // Oracle: a sphere about the origin has its outward normals along the position.
         assert!(area_normal(&mesh.positions, triangle).dot(&centre) > 0.0);
     }
-    let lid = pressure::lid_area_vector(&mesh, &mesh.positions);
+    let lid = pressure::lid_area_vector(&mesh.rims[0], &mesh.positions);
     // Oracle: area of the regular-ish polygon, between those of inscribed and circumscribed circle.
     assert!(lid.z > 0.99 * std::f64::consts::PI * 0.04 * 0.04 * 0.99 && lid.xy().norm() < 1e-15);
-    for k in 0..mesh.rim.len() {
-        let (a, b) = (mesh.rim[k], mesh.rim[(k + 1) % mesh.rim.len()]);
+    for k in 0..mesh.rims[0].len() {
+        let (a, b) = (mesh.rims[0][k], mesh.rims[0][(k + 1) % mesh.rims[0].len()]);
         let is_edge = |e: &[u32; 2]| *e == [a, b] || *e == [b, a];
         assert!(mesh.edges[mesh.hinges.len()..].iter().any(is_edge), "{a}-{b} is no boundary edge");
     }

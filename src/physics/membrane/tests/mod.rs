@@ -7,7 +7,7 @@ mod inflation;
 mod motion;
 
 use super::mesh::{Mesh, MeshFault};
-use super::{MembraneModel, MembraneScratch, MembraneState, Sheet, forces};
+use super::{FREE, MembraneModel, MembraneScratch, MembraneState, Sheet, forces};
 use crate::base::random::{Random, Stream};
 use crate::base::{Real, Vec3};
 
@@ -60,7 +60,7 @@ fn run(model: &MembraneModel, state: &mut MembraneState, dt: Real, steps: usize,
     let mut scratch = MembraneScratch::new(model);
     for _ in 0..steps {
         forces(model, state, p, &mut scratch);
-        for v in (0..model.mesh.n_vertices()).filter(|&v| !model.is_clamped[v]) {
+        for v in (0..model.mesh.n_vertices()).filter(|&v| model.holders[v] == FREE) {
             state.velocities[v] += scratch.forces[v] * (dt / model.masses[v]);
             state.positions[v] += state.velocities[v] * dt;
         }

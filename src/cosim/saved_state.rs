@@ -1,0 +1,186 @@
+//! A state as bytes: what is kept between two starts of a scene, or between two halves of a run.
+
+use serde::{Deserialize, Serialize};
+use xxhash_rust::xxh3::xxh3_64;
+
+use crate::{
+    base::{Pose, Quat, Real, Vec3, real::Twist},
+    physics::{
+        State,
+        boundary::body::BodyMotion,
+        membrane::MembraneState,
+        state::{Grains, N_PATCHES, Patch, Patches, Springs},
+    },
+};
+
+/// Why bytes are not a state that can be used.
+#[derive(Debug, PartialEq, Eq, thiserror::Error)]
+pub enum SavedStateError {
+    /// The digest at the end does not match the bytes before it.
+    #[error("saved state: {n_bytes} bytes are truncated or corrupt; it is computed anew")]
+    Corrupt {
+        /// How many bytes there are.
+        n_bytes: usize,
+    },
+    /// The bytes are whole, but of another scene.
+    #[error("saved state: {found} {what}, the scene has {expected}; it is computed anew")]
+    OtherScene {
+        /// What differs.
+        what: &'static str,
+        /// In the bytes.
+        found: usize,
+        /// In the scene.
+        expected: usize,
+    },
+}
+
+/// The numbers of a state in the order they are written.
+#[derive(Serialize, Deserialize)]
+struct Numbers {
+    grain_positions: Vec<[Real; 3]>,
+    grain_velocities: Vec<[Real; 3]>,
+    grain_spins: Vec<[Real; 3]>,
+    radii: Vec<Real>,
+    masses: Vec<Real>,
+    vertex_positions: Vec<[Real; 3]>,
+    vertex_velocities: Vec<[Real; 3]>,
+    pair_ids: Vec<[u32; 2]>,
+    pair_springs: Vec<[Real; 3]>,
+    patches: Vec<Vec<[Real; 6]>>,
+    wall_springs: Vec<[Real; 3]>,
+    body_springs: Vec<[Real; 3]>,
+    gauge: Real,
+    walls: Vec<[Real; 13]>,
+}
+
+const DIGEST_BYTES: usize = 8;
+
+/// The bytes of `state`, all of it.
+pub fn write(state: &State) -> Vec<u8> {
+    let numbers = Numbers {
+        grain_positions: arrays(&state.grains.positions),
+        grain_velocities: arrays(&state.grains.velocities),
+        grain_spins: arrays(&state.grains.spins),
+        radii: state.grains.radii.clone(),
+        masses: state.grains.masses.clone(),
+        vertex_positions: arrays(&state.membrane.positions),
+        vertex_velocities: arrays(&state.membrane.velocities),
+        pair_ids: state.pair_ids.clone(),
+        pair_springs: arrays(&state.springs.pairs),
+        patches: state.springs.patches.iter().map(patch_rows).collect(),
+        wall_springs: arrays(&state.springs.walls),
+        body_springs: arrays(&state.springs.bodies),
+        gauge: state.gauge,
+        walls: state.walls.iter().map(motion_row).collect(),
+    };
+    let mut bytes = postcard::to_stdvec(&numbers).expect("a list of numbers always serialises");
+    bytes.extend_from_slice(&xxh3_64(&bytes).to_le_bytes());
+    bytes
+}
+
+/// The state in `bytes`, with the same bits.
+///
+/// # Errors
+/// If they are damaged, or their lists do not fit each other.
+pub fn read(bytes: &[u8]) -> Result<State, SavedStateError> {
+    let corrupt = SavedStateError::Corrupt { n_bytes: bytes.len() };
+    let Some(n) = bytes.len().checked_sub(DIGEST_BYTES) else { return Err(corrupt) };
+    let (body, digest) = bytes.split_at(n);
+    if xxh3_64(body).to_le_bytes() != digest {
+        return Err(corrupt);
+    }
+    let numbers: Numbers = postcard::from_bytes(body).map_err(|_| corrupt)?;
+    numbers.check()?;
+    Ok(State {
+        grains: Grains {
+            positions: vectors(&numbers.grain_positions),
+            velocities: vectors(&numbers.grain_velocities),
+            spins: vectors(&numbers.grain_spins),
+            radii: numbers.radii,
+            masses: numbers.masses,
+        },
+        membrane: MembraneState {
+            positions: vectors(&numbers.vertex_positions),
+            velocities: vectors(&numbers.vertex_velocities),
+        },
+        springs: Springs {
+            pairs: vectors(&numbers.pair_springs),
+            patches: numbers.patches.iter().map(|rows| patches(rows)).collect(),
+            walls: vectors(&numbers.wall_springs),
+            bodies: vectors(&numbers.body_springs),
+        },
+        pair_ids: numbers.pair_ids,
+        gauge: numbers.gauge,
+        walls: numbers.walls.iter().map(motion).collect(),
+    })
+}
+
+/// Refuses counts that differ: what, found, expected.
+///
+/// # Errors
+/// The first that differs.
+pub(super) fn same_counts(counts: &[(&'static str, usize, usize)]) -> Result<(), SavedStateError> {
+    match counts.iter().find(|(_, found, expected)| found != expected) {
+        Some(&(what, found, expected)) => {
+            Err(SavedStateError::OtherScene { what, found, expected })
+        }
+        None => Ok(()),
+    }
+}
+
+impl Numbers {
+    fn check(&self) -> Result<(), SavedStateError> {
+        let n_grains = self.grain_positions.len();
+        let n_vertices = self.vertex_positions.len();
+        same_counts(&[
+            ("velocities", self.grain_velocities.len(), n_grains),
+            ("spins", self.grain_spins.len(), n_grains),
+            ("radii", self.radii.len(), n_grains),
+            ("masses", self.masses.len(), n_grains),
+            ("patches", self.patches.len(), n_grains),
+            ("wall springs", self.wall_springs.len(), n_grains * self.walls.len()),
+            ("vertex velocities", self.vertex_velocities.len(), n_vertices),
+            ("pair springs", self.pair_springs.len(), self.pair_ids.len()),
+        ])
+    }
+}
+
+fn arrays(vectors: &[Vec3]) -> Vec<[Real; 3]> {
+    vectors.iter().map(|v| [v.x, v.y, v.z]).collect()
+}
+
+fn vectors(arrays: &[[Real; 3]]) -> Vec<Vec3> {
+    arrays.iter().map(|&a| Vec3::from(a)).collect()
+}
+
+fn patch_rows(patches: &Patches) -> Vec<[Real; 6]> {
+    let row = |p: &Patch| [p.spring.x, p.spring.y, p.spring.z, p.normal.x, p.normal.y, p.normal.z];
+    patches.slots[..patches.n].iter().map(row).collect()
+}
+
+fn patches(rows: &[[Real; 6]]) -> Patches {
+    let mut patches = Patches::NONE;
+    for &[sx, sy, sz, nx, ny, nz] in rows.iter().take(N_PATCHES) {
+        patches.slots[patches.n] =
+            Patch { spring: Vec3::new(sx, sy, sz), normal: Vec3::new(nx, ny, nz) };
+        patches.n += 1;
+    }
+    patches
+}
+
+/// Position, quaternion x y z w, velocity, angular velocity.
+fn motion_row(motion: &BodyMotion) -> [Real; 13] {
+    let (p, q) = (motion.pose.translation.vector, motion.pose.rotation.coords);
+    let (v, w) = (motion.twist.linear, motion.twist.angular);
+    [p.x, p.y, p.z, q.x, q.y, q.z, q.w, v.x, v.y, v.z, w.x, w.y, w.z]
+}
+
+fn motion(row: &[Real; 13]) -> BodyMotion {
+    let [px, py, pz, qx, qy, qz, qw, vx, vy, vz, wx, wy, wz] = *row;
+    // Not normalised again: the bits must come back.
+    let rotation = Quat::new_unchecked(nalgebra::Quaternion::new(qw, qx, qy, qz));
+    BodyMotion {
+        pose: Pose::from_parts(Vec3::new(px, py, pz).into(), rotation),
+        twist: Twist { linear: Vec3::new(vx, vy, vz), angular: Vec3::new(wx, wy, wz) },
+    }
+}

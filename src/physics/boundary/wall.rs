@@ -1,0 +1,104 @@
+//! Walls: rigid surfaces with prescribed motion that grains touch and that hold vertices of the
+//! membrane. They feel forces but do not yield.
+
+use super::body::BodyMotion;
+use crate::{
+    base::{Real, Vec3},
+    physics::contact::law::PairLaw,
+};
+
+/// The first wall carries the bag; a gripper's is the flange, whose inner face is the plate.
+pub const CARRIER: usize = 0;
+
+/// A wall as it stays during a run.
+#[derive(Clone, Copy, Debug)]
+pub struct WallModel {
+    /// Its surface.
+    pub shape: WallShape,
+    /// Law between grains and the wall.
+    pub law: PairLaw,
+}
+
+/// The surface of a wall in its own frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum WallShape {
+    /// A plane through the frame's origin.
+    Plane {
+        /// Unit normal, towards the grains.
+        normal: Vec3,
+    },
+    /// The inner side of a cylinder around z, without ends.
+    Tube {
+        /// Radius [m].
+        radius: Real,
+    },
+    /// The inner side of a sphere.
+    Bowl {
+        /// Radius [m].
+        radius: Real,
+    },
+    /// The outer side of a sphere.
+    Ball {
+        /// Radius [m].
+        radius: Real,
+    },
+    /// Holds vertices and touches no grain.
+    Frame,
+}
+
+impl WallShape {
+    /// Distance [m] of the point at `arm` [m] from the wall's origin, and the normal towards it,
+    /// world axes. `None` where the wall has no surface.
+    #[inline(always)]
+    pub fn distance(&self, motion: &BodyMotion, arm: &Vec3) -> Option<(Real, Vec3)> {
+        match self {
+            Self::Plane { normal } => {
+                let normal = motion.pose.rotation * normal;
+                Some((normal.dot(arm), normal))
+            }
+            Self::Tube { radius } => {
+                let axis = motion.pose.rotation * Vec3::z();
+                inside(*radius, arm - axis * axis.dot(arm))
+            }
+            Self::Bowl { radius } => inside(*radius, *arm),
+            Self::Ball { radius } => {
+                let length = arm.norm();
+                (length > 0.0).then(|| (length - radius, arm / length))
+            }
+            Self::Frame => None,
+        }
+    }
+}
+
+/// From the axis or the centre there is no nearest point of the wall.
+#[inline(always)]
+fn inside(radius: Real, outward: Vec3) -> Option<(Real, Vec3)> {
+    let length = outward.norm();
+    (length > 0.0).then(|| (radius - length, outward / -length))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::base::{Pose, real::Twist};
+
+    /// Oracle: the surfaces' own equations in a turned and shifted frame; to rounding.
+    #[test]
+    fn distances_and_normals_are_those_of_the_surfaces() {
+        let pose = Pose::new(Vec3::new(0.1, -0.2, 0.3), Vec3::new(0.4, 0.5, -0.6));
+        let motion = BodyMotion { pose, twist: Twist::zero() };
+        let local = Vec3::new(0.03, -0.04, 0.2);
+        let arm = pose.rotation * local;
+        let expect = |shape: WallShape, distance: Real, normal: Vec3| {
+            let (found, direction) = shape.distance(&motion, &arm).unwrap();
+            assert!((found - distance).abs() < 1e-15, "{shape:?}: {found}");
+            assert!((direction - pose.rotation * normal).norm() < 1e-14, "{shape:?}");
+        };
+        expect(WallShape::Plane { normal: -Vec3::z() }, -0.2, -Vec3::z());
+        expect(WallShape::Tube { radius: 0.08 }, 0.03, Vec3::new(-0.6, 0.8, 0.0));
+        let length = local.norm();
+        expect(WallShape::Bowl { radius: 0.3 }, 0.3 - length, -local / length);
+        expect(WallShape::Ball { radius: 0.1 }, length - 0.1, local / length);
+        assert!(WallShape::Frame.distance(&motion, &arm).is_none());
+    }
+}
