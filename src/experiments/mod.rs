@@ -7,6 +7,8 @@
 
 pub mod findings; // what was found
 mod number; // numbers in text
+pub mod laws; // closed forms, equation by equation
+pub mod oracles; // closed forms to compare with
 pub mod record; // what a case leaves
 
 use serde::{Deserialize, Serialize};
@@ -19,7 +21,7 @@ use findings::Findings;
 use record::Record;
 
 /// All experiments, in the order of the sources.
-pub static EXPERIMENTS: &[&dyn Experiment] = &[];
+pub static EXPERIMENTS: &[&dyn Experiment] = &[&laws::Laws];
 
 /// How much of an experiment is run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
