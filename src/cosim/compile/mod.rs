@@ -110,6 +110,7 @@ impl Compiled {
             radius_max: grains.radius_max,
             radius_mean: (grains.radius_min + grains.radius_max) / 2.0,
             skin: SKIN_SHARE * grains.radius_max,
+            period: None,
             grain_law: laws.grain,
             membrane_law: laws.membrane,
             held_positions: membrane.mesh.positions.clone(),

@@ -38,6 +38,7 @@ pub fn forces(
     let n_samples = mesh.n_vertices() + mesh.triangles.len();
     samples.resize(n_samples * model.bodies.len(), SampleForce::NONE);
     if n_samples == 0 {
+    if samples.is_empty() {
         return;
     }
     let of_bodies = samples.chunks_mut(n_samples).zip(springs.chunks_mut(n_samples));

@@ -21,10 +21,19 @@ pub fn refresh(model: &Model, state: &mut State, scratch: &mut Scratch) {
         return;
     }
     let lists = &mut scratch.neighbours;
-    let grid =
-        cell_grid::CellGrid::new(&state.grains.positions, 2.0 * model.radius_max + model.skin);
-    verlet_list::build(model, &grid, state, lists);
-    triangle_list::build(model, &grid, state, lists);
+    let cell = 2.0 * model.radius_max + model.skin;
+    if let Some(period) = &model.period {
+        let wrapped = verlet_list::wrap(&state.grains.positions, period);
+        let grid = cell_grid::CellGrid::new(&wrapped, cell);
+        verlet_list::build(model, &grid, &wrapped, state, lists);
+        triangle_list::build(model, &grid, state, lists);
+    } else {
+        let positions = std::mem::take(&mut state.grains.positions);
+        let grid = cell_grid::CellGrid::new(&positions, cell);
+        verlet_list::build(model, &grid, &positions, state, lists);
+        state.grains.positions = positions;
+        triangle_list::build(model, &grid, state, lists);
+    }
     weigh_pairs(state, lists);
     lists.grain_positions.clone_from(&state.grains.positions);
     lists.vertex_positions.clone_from(&state.membrane.positions);
