@@ -22,7 +22,10 @@ use crate::{
             shape::{Bulk, ShapeFault, Surface},
             wall::{WallModel, WallShape},
         },
-        contact::law::{self, PairLaw},
+        contact::{
+            self,
+            law::{self, PairLaw},
+        },
         measure::real,
         membrane::{MembraneModel, Sheet, critical_step, mesh::Mesh},
         model::{BodyModel, BodySurface, ChamberModel},
@@ -31,7 +34,7 @@ use crate::{
 };
 
 /// Changes whenever the same scene would settle differently: part of every cache key.
-const PHYSICS_VERSION: u64 = 4;
+const PHYSICS_VERSION: u64 = 5;
 /// Neighbours are listed this share of the largest radius beyond contact.
 const SKIN_SHARE: Real = 0.25;
 /// Longest time between two steps of the rigid world [s].
@@ -297,20 +300,14 @@ fn critical_step(
     // that on its share of the sheet.
     let pressure = scene.chamber.gauge_min.abs().max(scene.chamber.gauge_max);
     let of_grain =
-        stiffness(&laws.membrane, grains.radius_max, pressure * 4.0 * grains.radius_max.powi(2));
+        contact::stiffness_at_vertex(membrane, &laws.membrane, grains.radius_max, pressure);
     let area = membrane.mesh.vertex_areas().into_iter().fold(0.0, Real::max);
     let of_body = bodies
         .iter()
-        .map(|body| stiffness(&body.law, body.contact_radius, pressure * area))
+        .map(|body| contact::stiffness(&body.law, body.contact_radius, pressure * area))
         .fold(0.0, Real::max);
     let sheet = critical_step::critical_step(membrane, of_grain + of_body);
     sheet.min(RAYLEIGH_SHARE * rayleigh)
-}
-
-/// Normal stiffness [N/m] of a Hertz contact that carries `force` [N].
-fn stiffness(law: &PairLaw, radius: Real, force: Real) -> Real {
-    let overlap = (0.75 * force / (law.modulus * radius.sqrt())).powf(2.0 / 3.0);
-    2.0 * law.modulus * (radius * overlap).sqrt()
 }
 
 /// A whole positive real as a count, at least 1.
