@@ -148,7 +148,6 @@ pub(super) struct Runs {
 /// Before it is read: every number is NaN, so that nothing forgotten can pass for a value.
 pub(super) fn blank() -> Setup {
     const NAN: Real = Real::NAN;
-    let blank::Parts { grains, material } = blank::parts();
     let size = Size {
         radius: NAN,
         height: NAN,
@@ -157,10 +156,10 @@ pub(super) fn blank() -> Setup {
         sphere_radius: NAN,
     };
     Setup {
-        grains,
+        grains: blank::GRAINS,
         plate_friction: NAN,
         membrane: Membrane {
-            material,
+            material: blank::MATERIAL,
             thickness: NAN,
             friction: NAN,
             spring_damping: NAN,

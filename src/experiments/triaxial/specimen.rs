@@ -13,7 +13,7 @@ use crate::{
         real::Twist,
     },
     physics::{
-        Controls, Model, State, System,
+        Model, System,
         boundary::{
             body::BodyMotion,
             wall::{WallModel, WallShape},
@@ -21,12 +21,12 @@ use crate::{
         contact::law::{PairLaw, Surface},
         critical_step::{RAYLEIGH_SHARE, critical_step, rayleigh_time},
         membrane::{
-            FREE, MembraneModel, MembraneState, SheetContact,
+            FREE, MembraneModel, SheetContact,
             mesh::{Mesh, MeshFault},
         },
         model::ChamberModel,
         packing::{Room, first_scale, scatter, sphere_volume},
-        state::{Grains, Springs},
+        state::Grains,
     },
     scene::Material,
 };
@@ -108,13 +108,8 @@ impl Recipe {
             growth_step,
             step,
         };
-        let state = recipe.scattered(&model, &room);
-        let controls = Controls {
-            gauge_setpoint: 0.0,
-            walls: state.walls.clone(),
-            bodies: Vec::new(),
-        };
-        Ok((recipe, System::new(model, controls, state)))
+        let system = recipe.scattered(model, &room);
+        Ok((recipe, system))
     }
 
     /// Size of the specimen as it is built.
@@ -123,30 +118,18 @@ impl Recipe {
     }
 
     /// Thin grains at rest in the straight membrane.
-    fn scattered(&self, model: &Model, room: &Room) -> State {
+    fn scattered(&self, model: Model, room: &Room) -> System {
         let small: Vec<Real> = self.final_radii.iter().map(|r| self.first_scale * r).collect();
         let mut random = Random::new(self.setup.seeds[self.choice.initial], Stream::Position);
         let margin = model.radius_max;
         let positions = scatter(&small, None, &mut random, |it| room.place(margin, it))
             .expect("the first solid fraction is limited to what always finds a place");
-        let n = positions.len();
         let density = self.setup.grains.material.density;
+        let masses = self.final_radii.iter().map(|&r| sphere_volume(r) * density).collect();
         let half = 0.5 * self.size().height;
         let at = |z: Real| BodyMotion { pose: Pose::translation(0.0, 0.0, z), twist: Twist::zero() };
-        State {
-            grains: Grains {
-                positions,
-                velocities: vec![Vec3::zeros(); n],
-                spins: vec![Vec3::zeros(); n],
-                masses: self.final_radii.iter().map(|&r| sphere_volume(r) * density).collect(),
-                radii: small,
-            },
-            membrane: MembraneState::at_rest(&model.membrane.mesh),
-            springs: Springs::none(n, model.walls.len(), 0),
-            pair_ids: Vec::new(),
-            gauge: 0.0,
-            walls: vec![at(0.0), at(-half), at(half)],
-        }
+        let walls = vec![at(0.0), at(-half), at(half)];
+        System::at_rest(model, walls, Grains::at_rest(positions, small, masses))
     }
 
     /// The frame holds the whole membrane; grains are soft.
