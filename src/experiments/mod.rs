@@ -7,13 +7,14 @@
 
 pub mod findings; // what was found
 pub mod record; // what a case leaves
+pub mod triaxial; // grains under confining pressure
 
 use crate::{physics::health::Diverged, scene::SceneError};
 use findings::Findings;
 use record::Record;
 
 /// All experiments, in the order of the sources.
-pub static EXPERIMENTS: &[&dyn Experiment] = &[];
+pub static EXPERIMENTS: &[&dyn Experiment] = &[&triaxial::Triaxial];
 
 /// How much of an experiment is run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -12,10 +12,7 @@
 //!
 //! Source: Thornton & Randall (1988). 0.4 of T_R is where a packing at full vacuum starts to ring.
 
-use super::{
-    contact::law::PairLaw,
-    membrane::{MembraneModel, critical_step::critical_step as membrane_limit},
-};
+use super::membrane::{MembraneModel, critical_step::critical_step as membrane_limit};
 use crate::{base::Real, scene::Material};
 
 /// Share of the Rayleigh time at which a packing under full vacuum starts to ring.
@@ -26,13 +23,6 @@ pub fn rayleigh_time(radius: Real, material: &Material) -> Real {
     let shear_modulus = material.youngs_modulus / (2.0 * (1.0 + material.poisson_ratio));
     std::f64::consts::PI * radius * (material.density / shear_modulus).sqrt()
         / (0.1631 * material.poisson_ratio + 0.8766)
-}
-
-/// Normal stiffness [N/m] of a Hertz contact of effective radius `radius` [m] that carries `force`
-/// [N].
-pub fn contact_stiffness(law: &PairLaw, radius: Real, force: Real) -> Real {
-    let overlap = (0.75 * force / (law.modulus * radius.sqrt())).powf(2.0 / 3.0);
-    2.0 * law.modulus * (radius * overlap).sqrt()
 }
 
 /// The longest stable substep [s] for grains of `material`, the smallest of `radius_min` [m], and a

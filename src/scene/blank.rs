@@ -8,7 +8,8 @@ use crate::base::{Pose, Real, Vec3};
 
 const NAN: Real = Real::NAN;
 /// A material.
-pub(crate) const MATERIAL: Material = Material { youngs_modulus: NAN, poisson_ratio: NAN, density: NAN };
+pub(crate) const MATERIAL: Material =
+    Material { youngs_modulus: NAN, poisson_ratio: NAN, density: NAN };
 /// Grains.
 pub(crate) const GRAINS: Grains = Grains {
     count: 0,

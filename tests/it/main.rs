@@ -23,6 +23,7 @@ mod rig; // a bare model by hand
 mod ros_loop; // what goes out reaches others, what others say comes in
 mod scenes; // scenes that run, scenes that are refused
 mod sheet; // a grain on the membrane
+mod spheres; // grains on the spheres of the classic membrane
 #[cfg(feature = "shm")]
 mod stream; // what other processes read in shared memory
 mod synthetic; // a scene and snapshots made up for tests

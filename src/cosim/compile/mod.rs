@@ -17,8 +17,11 @@ use crate::{
             shape::{Bulk, ShapeFault, Surface},
             wall::{WallModel, WallShape},
         },
-        contact::law::{self, PairLaw},
-        critical_step::{self, contact_stiffness},
+        contact::{
+            self,
+            law::{self, PairLaw},
+        },
+        critical_step,
         measure::real,
         membrane::{MembraneModel, Sheet, mesh::Mesh},
         model::{BodyModel, BodySurface, ChamberModel},
@@ -27,7 +30,7 @@ use crate::{
 };
 
 /// Changes whenever the same scene would settle differently: part of every cache key.
-const PHYSICS_VERSION: u64 = 4;
+const PHYSICS_VERSION: u64 = 5;
 /// Neighbours are listed this share of the largest radius beyond contact.
 const SKIN_SHARE: Real = 0.25;
 /// Longest time between two steps of the rigid world [s].
@@ -284,15 +287,12 @@ fn critical_step(
     // Under the strongest vacuum a grain carries the pressure on its square of sheet, a sample
     // that on its share of the sheet.
     let pressure = scene.chamber.gauge_min.abs().max(scene.chamber.gauge_max);
-    let of_grain = contact_stiffness(
-        &laws.membrane,
-        grains.radius_max,
-        pressure * 4.0 * grains.radius_max.powi(2),
-    );
+    let of_grain =
+        contact::stiffness_at_vertex(membrane, &laws.membrane, grains.radius_max, pressure);
     let area = membrane.mesh.vertex_areas().into_iter().fold(0.0, Real::max);
     let of_body = bodies
         .iter()
-        .map(|body| contact_stiffness(&body.law, body.contact_radius, pressure * area))
+        .map(|body| contact::stiffness(&body.law, body.contact_radius, pressure * area))
         .fold(0.0, Real::max);
     critical_step::critical_step(grains.radius_min, &grains.material, membrane, of_grain + of_body)
 }

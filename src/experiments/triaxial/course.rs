@@ -87,11 +87,15 @@ pub(super) struct Test {
 }
 
 impl Test {
-    /// Before the grains grow; shearing goes at `speed` [m/s] to `strain`.
-    pub(super) fn new(recipe: Recipe, mut system: System, speed: Real, strain: Real) -> Self {
+    /// Before the grains grow; shearing goes at `speed` [m/s] to a strain in a number of points.
+    pub(super) fn new(
+        recipe: Recipe,
+        mut system: System,
+        speed: Real,
+        (strain, n_points): (Real, usize),
+    ) -> Self {
         recipe.hold(&mut system.model);
         let growth = growth(&recipe, &system);
-        let n_points = recipe.setup.shear.n_points;
         let course = Course {
             stage: Stage::Growing,
             n_in_stage: 0,
@@ -204,7 +208,7 @@ impl Test {
         if !self.course.n_in_stage.is_multiple_of(LOOK_EVERY) {
             return;
         }
-        let confining = &self.recipe.setup.confining;
+        let confining = self.recipe.setup.confining;
         let carried = gauges::carried(&self.system);
         let kinetic = measure::kinetic_energy(&self.system.model, &self.system.state);
         let missing = self.plate_pressure() / confining.pressure - 1.0;
@@ -240,7 +244,7 @@ impl Test {
 
     /// One substep under `share` of the confining pressure, which the plates follow.
     fn press(&mut self, share: Real) {
-        let confining = &self.recipe.setup.confining;
+        let confining = self.recipe.setup.confining;
         let (damping, pressure) = (confining.damping, confining.pressure * share);
         let (gain, fastest) = (confining.servo_speed, confining.servo_speed_max);
         self.system.controls.gauge_setpoint = -pressure;

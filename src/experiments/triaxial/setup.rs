@@ -187,13 +187,7 @@ pub(super) fn blank() -> Setup {
             rest_stress: NAN,
             rest_time_max: NAN,
         },
-        shear: Shear {
-            speed: NAN,
-            speed_factor: NAN,
-            start_time: NAN,
-            strain: NAN,
-            n_points: 0,
-        },
+        shear: Shear { speed: NAN, speed_factor: NAN, start_time: NAN, strain: NAN, n_points: 0 },
         runs: Runs { case2: false, half_speed_strain: NAN, timing: NAN },
         safety: NAN,
     }

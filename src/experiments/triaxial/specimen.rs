@@ -127,7 +127,8 @@ impl Recipe {
         let density = self.setup.grains.material.density;
         let masses = self.final_radii.iter().map(|&r| sphere_volume(r) * density).collect();
         let half = 0.5 * self.size().height;
-        let at = |z: Real| BodyMotion { pose: Pose::translation(0.0, 0.0, z), twist: Twist::zero() };
+        let at =
+            |z: Real| BodyMotion { pose: Pose::translation(0.0, 0.0, z), twist: Twist::zero() };
         let walls = vec![at(0.0), at(-half), at(half)];
         System::at_rest(model, walls, Grains::at_rest(positions, small, masses))
     }
@@ -172,10 +173,8 @@ fn model(setup: &Setup, choice: Choice) -> Result<Model, MeshFault> {
         membrane.contact = SheetContact::Spheres { radius: size.sphere_radius };
     }
     let [frame, grains, sheet] = laws(setup, 0.0);
-    let plate = |sign: Real| WallModel {
-        shape: WallShape::Plane { normal: Vec3::z() * sign },
-        law: frame,
-    };
+    let plate =
+        |sign: Real| WallModel { shape: WallShape::Plane { normal: Vec3::z() * sign }, law: frame };
     let mut model = Model {
         gravity: Vec3::zeros(),
         substep: Real::NAN,

@@ -38,6 +38,18 @@ pub struct Sheet {
     pub bending_damping: Real,
 }
 
+/// What of the sheet grains touch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SheetContact {
+    /// Its triangles: a closed surface without thickness.
+    Triangles,
+    /// Spheres around its vertices, the classic mass-spring membrane. They do not touch each other.
+    Spheres {
+        /// Radius of each sphere [m].
+        radius: Real,
+    },
+}
+
 /// Stands for the holder of a vertex that no wall holds.
 pub const FREE: u32 = u32::MAX;
 /// The first wall as a holder.
@@ -55,6 +67,8 @@ pub struct MembraneModel {
     /// Which wall holds each vertex, `FREE` for none. Forces on held vertices are computed like all
     /// others: they are what the sheet exerts on the wall.
     pub holders: Vec<u32>,
+    /// What of it grains touch.
+    pub contact: SheetContact,
     /// Springs and hinges, numbered like the edges.
     links: Vec<Link>,
 }
@@ -116,7 +130,8 @@ pub struct MembraneScratch {
 }
 
 impl MembraneModel {
-    /// Makes `sheet` in the shape of `mesh`, free of stress there; the carrier holds its rims.
+    /// Makes `sheet` in the shape of `mesh`, free of stress there; the carrier holds its rims, and
+    /// grains touch its triangles.
     pub fn new(mesh: Mesh, sheet: Sheet) -> Self {
         let mass_per_area = sheet.density * sheet.thickness;
         let masses: Vec<Real> = mesh.vertex_areas().iter().map(|a| a * mass_per_area).collect();
@@ -146,7 +161,7 @@ impl MembraneModel {
         }
         let holder = |&is_on_rim: &bool| if is_on_rim { CARRIER_ID } else { FREE };
         let holders = mesh.is_on_rim.iter().map(holder).collect();
-        Self { masses, holders, links, sheet, mesh }
+        Self { masses, holders, contact: SheetContact::Triangles, links, sheet, mesh }
     }
 
     /// Makes every spring's rest length `scale` times its length in the reference shape.

@@ -4,11 +4,14 @@
 //! room costs no rebuild. History outlives rebuilds: pairs stay sorted, and springs move by merge.
 
 mod cell_grid;
+mod crossings;
+mod sphere_list;
 mod triangle_list;
 mod verlet_list;
 
 use super::{
     Model, Scratch, State,
+    membrane::SheetContact,
     scratch::{Neighbours, PairSize},
 };
 
@@ -24,7 +27,17 @@ pub fn refresh(model: &Model, state: &mut State, scratch: &mut Scratch) {
     let grid =
         cell_grid::CellGrid::new(&state.grains.positions, 2.0 * model.radius_max + model.skin);
     verlet_list::build(model, &grid, state, lists);
-    triangle_list::build(model, &grid, state, lists);
+    match model.membrane.contact {
+        SheetContact::Triangles => {
+            triangle_list::build(model, &grid, state, lists);
+            sphere_list::clear(state, lists);
+        }
+        SheetContact::Spheres { radius } => {
+            triangle_list::clear(state, lists);
+            sphere_list::build(model, radius, &grid, state, lists);
+            scratch.leaked = scratch.leaked.or_else(|| crossings::first(model, &grid, state));
+        }
+    }
     weigh_pairs(state, lists);
     lists.grain_positions.clone_from(&state.grains.positions);
     lists.vertex_positions.clone_from(&state.membrane.positions);
