@@ -10,6 +10,7 @@ mod number; // numbers in text
 pub mod laws; // closed forms, equation by equation
 pub mod oracles; // closed forms to compare with
 pub mod record; // what a case leaves
+pub mod triaxial; // grains under confining pressure
 
 use serde::{Deserialize, Serialize};
 
@@ -22,6 +23,7 @@ use record::Record;
 
 /// All experiments, in the order of the sources.
 pub static EXPERIMENTS: &[&dyn Experiment] = &[&laws::Laws];
+pub static EXPERIMENTS: &[&dyn Experiment] = &[&triaxial::Triaxial];
 
 /// How much of an experiment is run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

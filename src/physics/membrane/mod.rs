@@ -6,6 +6,7 @@
 
 pub mod mesh;
 mod icosphere;
+mod tube;
 pub mod stretch;
 pub mod bridson_2003;
 pub mod pressure;
