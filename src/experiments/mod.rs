@@ -6,6 +6,8 @@
 //! which a measured value stands beside its oracle. Tests, reports and benches run the same cases.
 
 pub mod findings; // what was found
+pub mod hollow_sphere; // how much vacuum reaches an object
+pub mod oracles; // closed forms
 pub mod record; // what a case leaves
 
 use crate::{physics::health::Diverged, scene::SceneError};
@@ -13,7 +15,7 @@ use findings::Findings;
 use record::Record;
 
 /// All experiments, in the order of the sources.
-pub static EXPERIMENTS: &[&dyn Experiment] = &[];
+pub static EXPERIMENTS: &[&dyn Experiment] = &[&hollow_sphere::HollowSphere];
 
 /// How much of an experiment is run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -120,6 +122,9 @@ pub enum StartError {
     /// The membrane cannot be meshed.
     #[error("membrane: {0}")]
     Mesh(#[from] crate::physics::membrane::mesh::MeshFault),
+    /// The grains find no place to grow from.
+    #[error("packing: {0}")]
+    NoRoom(#[from] crate::physics::packing::scatter::NoRoom),
 }
 
 /// Why a saved run cannot be resumed.
