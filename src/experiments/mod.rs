@@ -10,7 +10,10 @@ pub mod hollow_sphere; // how much vacuum reaches an object
 pub mod oracles; // closed forms
 pub mod record; // what a case leaves
 
-use crate::{physics::health::Diverged, scene::SceneError};
+use crate::{
+    physics::health::Diverged,
+    scene::{SceneError, text::Layers},
+};
 use findings::Findings;
 use record::Record;
 
@@ -37,6 +40,18 @@ pub struct SceneText<'a> {
     pub overrides: &'a [String],
     /// Which of the sections `quick` and `full` is laid over the rest.
     pub size: Size,
+}
+
+impl SceneText<'_> {
+    /// The layers of the scene; `on_defaults` if the gripper's defaults lie below.
+    pub(crate) fn layers(&self, on_defaults: bool) -> Layers<'_> {
+        let chosen = match self.size {
+            Size::Quick => "quick",
+            Size::Full => "full",
+        };
+        let Self { text, source, overrides, .. } = *self;
+        Layers { text, source, variants: (&["quick", "full"], chosen), overrides, on_defaults }
+    }
 }
 
 /// One experiment.
