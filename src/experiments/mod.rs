@@ -15,7 +15,7 @@ use crate::{
     scene::{SceneError, text::Layers},
 };
 use findings::Findings;
-use record::Record;
+pub use record::Record;
 
 /// All experiments, in the order of the sources.
 pub static EXPERIMENTS: &[&dyn Experiment] = &[&hollow_sphere::HollowSphere];
