@@ -17,6 +17,7 @@ pub mod measure; // energies, stresses, coordination
 pub mod membrane; // the flexible bag
 pub mod model;
 pub mod neighbours; // who may touch whom
+pub mod packing; // grains made dense
 pub mod scratch;
 pub mod state;
 pub mod substep;

@@ -1,5 +1,7 @@
 //! What can be read off a state: energies, volumes, coordination, validity. Changes nothing.
 
+pub mod stress; // what the contacts carry
+
 use super::{Model, Scratch, State, membrane::pressure};
 use crate::base::Real;
 
