@@ -59,11 +59,12 @@ pub(super) fn system(scene: &Scene, case: &Case) -> Result<(System, Parts), Star
     let seed = scene.seed + case.filling as u64;
     let mut random = Random::new(seed, Stream::Radius);
     let grains = &scene.grains;
-    let final_radii: Vec<Real> = (0..grains.count)
-        .map(|_| random.between(grains.radius_min, grains.radius_max))
-        .collect();
-    let room =
-        Room::Shell { inner: inner_radius, outer: scene.membrane.fill_stretch * scene.membrane.radius };
+    let final_radii: Vec<Real> =
+        (0..grains.count).map(|_| random.between(grains.radius_min, grains.radius_max)).collect();
+    let room = Room::Shell {
+        inner: inner_radius,
+        outer: scene.membrane.fill_stretch * scene.membrane.radius,
+    };
     let first = first_scale(&final_radii, FIRST_SOLID_FRACTION, room.volume());
     let density = scene.grains.material.density * case.mass_factor;
     let state = scattered(&model, &room, (&final_radii, first), density, seed)?;
@@ -102,14 +103,16 @@ fn model(scene: &Scene, case: &Case, mut membrane: MembraneModel, n_outer: usize
         dissipation_time: scene.membrane.dissipation_time,
         tangential_damping: scene.membrane.tangential_damping,
     };
-    let sheet_law =
-        PairLaw::between(&material, &scene.membrane.material, on_sheet(friction(scene.membrane.friction)));
+    let sheet_law = PairLaw::between(
+        &material,
+        &scene.membrane.material,
+        on_sheet(friction(scene.membrane.friction)),
+    );
     let object_law = PairLaw::between(
         &scene.membrane.material,
         &scene.object.material,
         on_sheet(scene.object.friction),
     );
-    membrane.holders.fill(CARRIER_ID);
     let stretch = |v: usize| if v < n_outer { scene.membrane.fill_stretch } else { 1.0 };
     let held = membrane.mesh.positions.iter().enumerate().map(|(v, p)| p * stretch(v));
     let held_positions: Vec<Vec3> = held.collect();
@@ -127,7 +130,10 @@ fn model(scene: &Scene, case: &Case, mut membrane: MembraneModel, n_outer: usize
     let area = membrane.mesh.vertex_areas().into_iter().fold(0.0, Real::max);
     let pressed = contact_stiffness(&sheet_law, radius, vacuum * 4.0 * radius.powi(2))
         + contact_stiffness(&object_law, scene.object.radius, vacuum * area);
+    // Before the vertices are held: those that are do not count.
+    membrane.holders.fill(FREE);
     let critical = critical_step(scene.grains.radius_min, &material, &membrane, pressed);
+    membrane.holders.fill(CARRIER_ID);
     Model {
         gravity: Vec3::zeros(),
         substep: scene.protocol.safety * critical,

@@ -53,8 +53,10 @@ fn groups<'a>(scene: &Scene, records: &'a [Record]) -> Vec<Group<'a>> {
     let mut groups: Vec<Group<'a>> = Vec::new();
     for case in cases::of(scene) {
         let Some(record) = records.iter().find(|it| it.case == case.name) else { continue };
-        let same = |it: &&mut Group<'_>| Case { filling: 0, name: String::new(), ..it.case.clone() }
-            == Case { filling: 0, name: String::new(), ..case.clone() };
+        let same = |it: &&mut Group<'_>| {
+            Case { filling: 0, name: String::new(), ..it.case.clone() }
+                == Case { filling: 0, name: String::new(), ..case.clone() }
+        };
         match groups.iter_mut().find(same) {
             Some(group) => group.records.push(record),
             None => groups.push(Group { case, records: vec![record] }),
@@ -93,7 +95,10 @@ impl Group<'_> {
         let (value, deviation) = self.pressure();
         Quantity {
             name: format!("object_pressure_{}", self.label().replace(' ', "_")),
-            meaning: format!("pressure on the object under full vacuum, grains of {}", self.label()),
+            meaning: format!(
+                "pressure on the object under full vacuum, grains of {}",
+                self.label()
+            ),
             value,
             deviation: (self.records.len() > 1).then_some(deviation),
             n: self.records.len(),
@@ -194,7 +199,8 @@ fn distance(radius: f64, scene: &Scene) -> f64 {
 
 /// Distance of the levels from a straight line, over the last level.
 fn disproportion(record: &Record) -> f64 {
-    let (Some(vacuum), Some(pressure)) = (record.column("vacuum"), record.column("object_pressure"))
+    let (Some(vacuum), Some(pressure)) =
+        (record.column("vacuum"), record.column("object_pressure"))
     else {
         return f64::NAN;
     };

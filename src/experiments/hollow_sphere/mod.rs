@@ -7,11 +7,7 @@ mod found; // what the records show
 mod keys; // the scene
 mod run; // a packing on its way
 
-use super::{
-    Experiment, Plan, Run, SceneText, StartError,
-    findings::Findings,
-    record::Record,
-};
+use super::{Experiment, Plan, Run, SceneText, StartError, findings::Findings, record::Record};
 use crate::scene::{SceneError, text::fill};
 use keys::Scene;
 
@@ -53,9 +49,7 @@ impl Plan for Shells {
         let known = cases::of(&self.scene);
         match known.iter().find(|it| it.name == case) {
             Some(case) => Ok(Box::new(run::Shell::new(&self.scene, case)?)),
-            None => {
-                Err(StartError::NoSuchCase { name: case.to_owned(), known: self.cases() })
-            }
+            None => Err(StartError::NoSuchCase { name: case.to_owned(), known: self.cases() }),
         }
     }
 

@@ -15,7 +15,8 @@ use crate::{
         record::{Column, Record},
     },
     physics::{
-        System,
+        Scratch, State, System,
+        contact::sums,
         health::Diverged,
         measure::{self, real},
         packing::{Grown, Growth, grow},
@@ -190,7 +191,7 @@ impl Shell {
         let System { model, state, scratch, .. } = &self.system;
         let packing = measure::packing(state, scratch);
         let radii = state.membrane.positions[..self.parts.n_outer].iter().map(|p| p.norm());
-        let unbalanced = measure::unbalanced_force(state, scratch);
+        let unbalanced = unbalanced_force(state, scratch);
         let row = [
             gauge(&self.scene.protocol, real(level)),
             self.now.sum / real(self.now.n_sum.max(1)),
@@ -206,7 +207,10 @@ impl Shell {
         }
         let validity = &mut record.validity;
         validity.overlap_over_diameter_max = validity.overlap_over_diameter_max.max(row[5]);
-        validity.unbalanced_force = validity.unbalanced_force.max(unbalanced);
+        // Before there is a vacuum hardly a force is there to be balanced.
+        if level > 0 {
+            validity.unbalanced_force = validity.unbalanced_force.max(unbalanced);
+        }
         (self.now.sum, self.now.n_sum) = (0.0, 0);
     }
 
@@ -273,7 +277,7 @@ impl Run for Shell {
             return Err(refuse(format!("it is of case `{name}`")));
         }
         let state = saved_state::read(&state).map_err(|error| refuse(error.to_string()))?;
-        self.system.scratch = crate::physics::Scratch::new(&self.system.model);
+        self.system.scratch = Scratch::new(&self.system.model);
         self.system.controls.gauge_setpoint = state.gauge;
         self.system.state = state;
         self.growth =
@@ -305,4 +309,11 @@ fn gauge(protocol: &Protocol, level: Real) -> Real {
 )]
 fn count(value: Real) -> usize {
     value.ceil().max(1.0) as usize
+}
+
+/// Mean force on a grain over the mean of the normal forces that press on it.
+fn unbalanced_force(state: &State, scratch: &Scratch) -> Real {
+    let left = (0..state.grains.len()).map(|i| sums::on_grain(&state.grains, scratch, i).0.norm());
+    let pressed: Real = measure::normal_forces(state, scratch).iter().sum();
+    left.sum::<Real>() / pressed.max(Real::MIN_POSITIVE)
 }
