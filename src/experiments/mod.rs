@@ -9,6 +9,8 @@ pub mod findings; // what was found
 mod number; // numbers in text
 pub mod laws; // closed forms, equation by equation
 pub mod oracles; // closed forms to compare with
+pub mod hollow_sphere; // how much vacuum reaches an object
+pub mod oracles; // closed forms
 pub mod record; // what a case leaves
 pub mod triaxial; // grains under confining pressure
 
@@ -19,11 +21,12 @@ use crate::{
     scene::{SceneError, text::Layers},
 };
 use findings::Findings;
-use record::Record;
+pub use record::Record;
 
 /// All experiments, in the order of the sources.
 pub static EXPERIMENTS: &[&dyn Experiment] = &[&laws::Laws];
 pub static EXPERIMENTS: &[&dyn Experiment] = &[&triaxial::Triaxial];
+pub static EXPERIMENTS: &[&dyn Experiment] = &[&hollow_sphere::HollowSphere];
 
 /// How much of an experiment is run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -149,6 +152,9 @@ pub enum StartError {
     /// The membrane cannot be meshed.
     #[error("membrane: {0}")]
     Mesh(#[from] crate::physics::membrane::mesh::MeshFault),
+    /// The grains find no place to grow from.
+    #[error("packing: {0}")]
+    NoRoom(#[from] crate::physics::packing::scatter::NoRoom),
 }
 
 /// Why a saved run cannot be resumed.
