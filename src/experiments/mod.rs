@@ -6,11 +6,10 @@
 //! which a measured value stands beside its oracle. Tests, reports and benches run the same cases.
 
 pub mod findings; // what was found
-mod number; // numbers in text
-pub mod laws; // closed forms, equation by equation
-pub mod oracles; // closed forms to compare with
 pub mod hollow_sphere; // how much vacuum reaches an object
-pub mod oracles; // closed forms
+pub mod laws; // closed forms, equation by equation
+mod number; // numbers in text
+pub mod oracles; // closed forms to compare with
 pub mod record; // what a case leaves
 pub mod triaxial; // grains under confining pressure
 
@@ -24,9 +23,8 @@ use findings::Findings;
 pub use record::Record;
 
 /// All experiments, in the order of the sources.
-pub static EXPERIMENTS: &[&dyn Experiment] = &[&laws::Laws];
-pub static EXPERIMENTS: &[&dyn Experiment] = &[&triaxial::Triaxial];
-pub static EXPERIMENTS: &[&dyn Experiment] = &[&hollow_sphere::HollowSphere];
+pub static EXPERIMENTS: &[&dyn Experiment] =
+    &[&laws::Laws, &triaxial::Triaxial, &hollow_sphere::HollowSphere];
 
 /// How much of an experiment is run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

@@ -14,8 +14,11 @@ use crate::{
             shape::Surface as BodyShape,
             wall::{WallModel, WallShape},
         },
-        contact::law::{PairLaw, Surface},
-        critical_step::{contact_stiffness, critical_step},
+        contact::{
+            self,
+            law::{PairLaw, Surface},
+        },
+        critical_step::critical_step,
         membrane::{CARRIER_ID, FREE, MembraneModel, MembraneState, Sheet, mesh::Mesh},
         model::{BodyModel, BodySurface, ChamberModel},
         packing::{Growth, Recipe, Room, first_scale, scatter, sphere_volume},
@@ -128,8 +131,8 @@ fn model(scene: &Scene, case: &Case, mut membrane: MembraneModel, n_outer: usize
     let radius = scene.grains.radius_max;
     let vacuum = scene.protocol.vacuum;
     let area = membrane.mesh.vertex_areas().into_iter().fold(0.0, Real::max);
-    let pressed = contact_stiffness(&sheet_law, radius, vacuum * 4.0 * radius.powi(2))
-        + contact_stiffness(&object_law, scene.object.radius, vacuum * area);
+    let pressed = contact::stiffness_at_vertex(&membrane, &sheet_law, radius, vacuum)
+        + contact::stiffness(&object_law, scene.object.radius, vacuum * area);
     // Before the vertices are held: those that are do not count.
     membrane.holders.fill(FREE);
     let critical = critical_step(scene.grains.radius_min, &material, &membrane, pressed);
@@ -140,6 +143,7 @@ fn model(scene: &Scene, case: &Case, mut membrane: MembraneModel, n_outer: usize
         radius_max: scene.grains.radius_max,
         radius_mean: (scene.grains.radius_min + scene.grains.radius_max) / 2.0,
         skin: SKIN_SHARE * scene.grains.radius_max,
+        period: None,
         grain_law: PairLaw::between(&material, &material, among_grains),
         membrane_law: sheet_law,
         held_positions,

@@ -15,10 +15,9 @@ use crate::{
         record::{Column, Record},
     },
     physics::{
-        Scratch, State, System,
-        contact::sums,
+        Scratch, System,
         health::Diverged,
-        measure::{self, real},
+        measure::{self, real, rest::unbalanced_force},
         packing::{Grown, Growth, grow},
     },
 };
@@ -191,7 +190,7 @@ impl Shell {
         let System { model, state, scratch, .. } = &self.system;
         let packing = measure::packing(state, scratch);
         let radii = state.membrane.positions[..self.parts.n_outer].iter().map(|p| p.norm());
-        let unbalanced = unbalanced_force(state, scratch);
+        let unbalanced = unbalanced_force(model, state, scratch);
         let row = [
             gauge(&self.scene.protocol, real(level)),
             self.now.sum / real(self.now.n_sum.max(1)),
@@ -309,11 +308,4 @@ fn gauge(protocol: &Protocol, level: Real) -> Real {
 )]
 fn count(value: Real) -> usize {
     value.ceil().max(1.0) as usize
-}
-
-/// Mean force on a grain over the mean of the normal forces that press on it.
-fn unbalanced_force(state: &State, scratch: &Scratch) -> Real {
-    let left = (0..state.grains.len()).map(|i| sums::on_grain(&state.grains, scratch, i).0.norm());
-    let pressed: Real = measure::normal_forces(state, scratch).iter().sum();
-    left.sum::<Real>() / pressed.max(Real::MIN_POSITIVE)
 }

@@ -37,7 +37,6 @@ pub fn forces(
     let mesh = &model.membrane.mesh;
     let n_samples = mesh.n_vertices() + mesh.triangles.len();
     samples.resize(n_samples * model.bodies.len(), SampleForce::NONE);
-    if n_samples == 0 {
     if samples.is_empty() {
         return;
     }
