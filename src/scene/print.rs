@@ -79,6 +79,16 @@ impl Walk for Printer {
         self.line(key, &format!("[{}]", numbers.join(", ")));
     }
 
+    fn quantities(&mut self, key: &'static str, kind: Quantity, value: &mut Vec<Real>) {
+        let numbers: Vec<String> = value.iter().map(|&it| kind.dimension.print(it)).collect();
+        self.line(key, &format!("[{}]", numbers.join(", ")));
+    }
+
+    fn plain_numbers(&mut self, key: &'static str, _range: Range, value: &mut Vec<Real>) {
+        let numbers: Vec<String> = value.iter().map(Real::to_string).collect();
+        self.line(key, &format!("[{}]", numbers.join(", ")));
+    }
+
     fn whole(&mut self, key: &'static str, _min: u64, _max: u64, value: &mut u64) {
         self.line(key, &value.to_string());
     }

@@ -298,6 +298,25 @@ impl Walk for Reader<'_> {
         }
     }
 
+    fn quantities(&mut self, key: &'static str, kind: Quantity, value: &mut Vec<Real>) {
+        let Some(node) = self.take(key) else { return };
+        let Value::List(items) = &node.value else {
+            let one = unit_example(kind.dimension);
+            self.wrong_kind(node, key, "a list of numbers with units", &format!("[{one}, {one}]"));
+            return;
+        };
+        *value = items.iter().filter_map(|item| self.parse_quantity(item, key, kind)).collect();
+    }
+
+    fn plain_numbers(&mut self, key: &'static str, range: Range, value: &mut Vec<Real>) {
+        let Some(node) = self.take(key) else { return };
+        let Value::List(items) = &node.value else {
+            self.wrong_kind(node, key, "a list of numbers", "[0.5, 1]");
+            return;
+        };
+        *value = items.iter().filter_map(|item| self.parse_number(item, key, range)).collect();
+    }
+
     fn whole(&mut self, key: &'static str, min: u64, max: u64, value: &mut u64) {
         let found = self.take(key).and_then(|node| self.parse_whole(node, key, (min, max)));
         *value = found.unwrap_or(0);

@@ -110,6 +110,12 @@ pub(crate) trait Walk: Sized {
     /// A list of `N` numbers without a dimension.
     fn numbers<const N: usize>(&mut self, key: &'static str, value: &mut [Real; N]);
 
+    /// A list of numbers with units.
+    fn quantities(&mut self, key: &'static str, kind: Quantity, value: &mut Vec<Real>);
+
+    /// A list of any number of numbers without a dimension.
+    fn plain_numbers(&mut self, key: &'static str, range: Range, value: &mut Vec<Real>);
+
     /// A whole number.
     fn whole(&mut self, key: &'static str, min: u64, max: u64, value: &mut u64);
 

@@ -92,6 +92,7 @@ impl Bench {
             radius_max: 0.0,
             radius_mean: 0.0,
             skin: 0.0,
+            period: None,
             grain_law: PairLaw::between(material, material, surface),
             membrane_law: PairLaw::between(material, &latex, surface),
             held_positions: membrane.mesh.positions.clone(),
