@@ -55,3 +55,62 @@ fn a_case_that_was_saved_goes_on_with_the_same_bits() {
     assert_eq!(second.record(), whole);
     assert!(plan.start("impact").unwrap().resume(&saved).is_err(), "a save of another case");
 }
+
+#[test]
+fn temp_ring() {
+    use crate::{
+        command::Command, cosim::compile::Compiled, physics::measure, scene::text, session::Session,
+    };
+    const TEXT: &str = "
+name: coarse
+membrane: { frequency: 8 }
+grains: { count: 280, radius_min: 3.8 mm, radius_max: 4.2 mm }
+object:
+  name: cylinder
+  shape:
+    cylinder: { radius: 12 mm, height: 50 mm }
+  density: 1200 kg/m^3
+  position: [0 mm, 0 mm, 25 mm]
+flange:
+  position: [0 mm, 0 mm, 101 mm]
+  speed_max: 500 mm/s
+  acceleration_max: 10 m/s^2
+chamber: { lag: 20 ms }
+";
+    let scene = text::parse(TEXT, "coarse", std::path::Path::new(""), &[]).unwrap();
+    let mut session = Session::settle(Compiled::new(&scene, 1).unwrap(), &mut |_| {}).unwrap();
+    for tick in 0..600_u32 {
+        let command = (tick == 0).then_some(Command::Vacuum { gauge_pa: -80e3 });
+        session.tick(command.as_slice()).unwrap();
+        if tick % 50 == 49 {
+            let coupled = session.coupled();
+            let packing = measure::packing(&coupled.state, &coupled.scratch);
+            eprintln!(
+                "tick {tick}: E_kin {:.3e} J, patches {}",
+                measure::kinetic_energy(&coupled.model, &coupled.state),
+                packing.n_membrane_contacts
+            );
+        }
+    }
+    let coupled = session.coupled();
+    let multi: Vec<usize> =
+        (0..9).map(|n| coupled.scratch.patch_forces.iter().filter(|p| p.n == n).count()).collect();
+    eprintln!("grains by number of patches {multi:?}");
+    let mut springs = coupled.state.springs.patches.clone();
+    let mut forces = Vec::new();
+    let mut best = f64::INFINITY;
+    for _ in 0..30 {
+        let start = Instant::now();
+        for _ in 0..50 {
+            crate::physics::contact::membrane::forces(
+                &coupled.model,
+                &coupled.state,
+                &coupled.scratch.neighbours,
+                &mut springs,
+                &mut forces,
+            );
+        }
+        best = best.min(start.elapsed().as_secs_f64() / 50.0);
+    }
+    eprintln!("sheet pass {:.1} us", best * 1e6);
+}

@@ -15,7 +15,7 @@ use arrayvec::ArrayVec;
 
 use super::{
     law::{self, Touch},
-    sharing::{self, Minimum, N_TOUCHED, Pass, Passes},
+    sharing::{self, Minimum, N_TOUCHED, Passes},
 };
 use crate::{
     base::{Real, Vec3, parallel},
@@ -31,6 +31,9 @@ use crate::{
 const SAME_HISTORY: Real = 0.7;
 /// Squared distances that differ by less than this share are equal.
 const EQUAL: Real = 1e-9;
+/// Edges of a triangle by their short numbers.
+const NUMBER: [u8; 3] = [0, 1, 2];
+
 /// A triangle within reach of a grain.
 #[derive(Clone, Copy)]
 struct Touched {
@@ -103,18 +106,24 @@ fn on_grain(
 fn passes(model: &Model, state: &State, i: usize, touched: &[Touched]) -> Passes {
     let mesh = &model.membrane.mesh;
     let centre = &state.grains.positions[i];
+    let ids: ArrayVec<u32, N_TOUCHED> = touched.iter().map(|it| it.triangle).collect();
     let mut passes = Passes::new();
     for (place, contact) in touched.iter().enumerate() {
         let triangle = contact.triangle as usize;
         for (k, neighbour) in mesh.neighbours_of_triangle[triangle].into_iter().enumerate() {
-            let later = touched[place + 1..].iter().position(|it| it.triangle == neighbour);
+            let later = ids[place + 1..].iter().position(|&it| it == neighbour);
             let Some(later) = later else { continue };
-            let [from, to] = [k, (k + 1) % 3]
-                .map(|corner| &state.membrane.positions[mesh.triangles[triangle][corner] as usize]);
-            let side = to - from;
-            let share = ((centre - from).dot(&side) / side.norm_squared()).clamp(0.0, 1.0);
-            let distance_squared = (centre - (from + side * share)).norm_squared();
-            passes.push(Pass { distance_squared, between: [place, place + 1 + later] });
+            let height_squared = if contact.feature == Feature::Edge(NUMBER[k]) {
+                contact.distance_squared
+            } else {
+                let [from, to] = [k, (k + 1) % 3].map(|corner| {
+                    &state.membrane.positions[mesh.triangles[triangle][corner] as usize]
+                });
+                let (side, arm) = (to - from, centre - from);
+                let share = (arm.dot(&side) / side.norm_squared()).clamp(0.0, 1.0);
+                (arm - side * share).norm_squared()
+            };
+            passes.add([place, place + 1 + later], height_squared);
         }
     }
     passes

@@ -26,8 +26,6 @@
 //! contact goes on, from a valley, where it is lost; it left jumps of a fifth of the force. A vertex
 //! of 5 mg feels such a jump as an impact.
 
-use arrayvec::ArrayVec;
-
 use crate::{
     base::{Real, Vec3},
     physics::state::N_PATCHES,
@@ -60,17 +58,49 @@ pub(super) struct Minimum {
     pub(super) distance_squared: Real,
 }
 
-/// An edge between two touched triangles.
+/// All edges between touched triangles.
 #[derive(Clone, Copy)]
-pub(super) struct Pass {
-    /// Squared distance of the grain's centre from the edge [m²].
-    pub(super) distance_squared: Real,
+pub(super) struct Passes {
+    n: usize,
+    /// Squared distances of the grain's centre from the edges [m²]; infinite from `n` on.
+    heights_squared: [Real; N_PASSES],
     /// Places of both triangles in the list of touched ones.
-    pub(super) between: [usize; 2],
+    between: [[u8; 2]; N_PASSES],
 }
 
-/// All edges between touched triangles.
-pub(super) type Passes = ArrayVec<Pass, N_PASSES>;
+impl Passes {
+    /// None yet.
+    pub(super) const fn new() -> Self {
+        Self { n: 0, heights_squared: [Real::INFINITY; N_PASSES], between: [[0; 2]; N_PASSES] }
+    }
+
+    /// Adds an edge between the triangles at two places.
+    #[inline(always)]
+    pub(super) fn add(&mut self, between: [usize; 2], height_squared: Real) {
+        self.heights_squared[self.n] = height_squared;
+        self.between[self.n] = between.map(short);
+        self.n += 1;
+    }
+
+    /// Takes the lowest one out.
+    #[inline(always)]
+    fn take_lowest(&mut self) -> (Real, [u8; 2]) {
+        let (mut lowest, mut at) = (Real::INFINITY, 0);
+        for (k, &height) in self.heights_squared[..self.n].iter().enumerate() {
+            if height < lowest {
+                (lowest, at) = (height, k);
+            }
+        }
+        self.heights_squared[at] = Real::INFINITY;
+        (lowest, self.between[at])
+    }
+}
+
+/// A place among few.
+#[expect(clippy::cast_possible_truncation, reason = "places are below N_TOUCHED")]
+fn short(place: usize) -> u8 {
+    place as u8
+}
 
 /// Share c of each of several minima of a grain of radius R = `radius` [m].
 pub(super) fn shares(minima: &[Minimum], passes: &mut Passes, radius: Real) -> [Real; N_PATCHES] {
@@ -114,33 +144,39 @@ fn hold(i: usize, minima: &[Minimum], heights: &[Real; N_PATCHES]) -> Real {
     hold.max(HOLD_MIN)
 }
 
-/// b² between all pairs of minima: passes are opened from the lowest up, and what they join is one.
+/// b² between all pairs of minima: passes are opened from the lowest up, and what they join is one,
+/// until all minima are joined.
 fn heights(
     minima: &[Minimum],
     passes: &mut Passes,
     radius_squared: Real,
 ) -> [[Real; N_PATCHES]; N_PATCHES] {
-    passes.sort_unstable_by(|a, b| a.distance_squared.total_cmp(&b.distance_squared));
     let mut heights = [[radius_squared; N_PATCHES]; N_PATCHES];
-    let mut basins: [usize; N_TOUCHED] = std::array::from_fn(|place| place);
-    for pass in passes.iter().take_while(|pass| pass.distance_squared < radius_squared) {
-        let [a, b] = pass.between.map(|place| basins[place]);
+    let mut basins: [u8; N_TOUCHED] = std::array::from_fn(short);
+    let mut n_apart = minima.len();
+    while n_apart > 1 {
+        let (height, between) = passes.take_lowest();
+        if height >= radius_squared {
+            break;
+        }
+        let [a, b] = between.map(|place| basins[usize::from(place)]);
         if a == b {
             continue;
         }
-        for (i, one) in minima.iter().enumerate().filter(|(_, one)| basins[one.place] == a) {
-            for (j, other) in minima.iter().enumerate() {
-                if basins[other.place] == b {
-                    debug_assert!(one.place != other.place);
-                    heights[i][j] = pass.distance_squared;
-                    heights[j][i] = pass.distance_squared;
+        let mut joined = false;
+        for (i, one) in minima.iter().enumerate() {
+            if basins[one.place] == a {
+                for (j, other) in minima.iter().enumerate() {
+                    if basins[other.place] == b {
+                        (heights[i][j], heights[j][i]) = (height, height);
+                        joined = true;
+                    }
                 }
             }
         }
+        n_apart -= usize::from(joined);
         for basin in &mut basins {
-            if *basin == b {
-                *basin = a;
-            }
+            *basin = if *basin == b { a } else { *basin };
         }
     }
     heights
@@ -166,7 +202,7 @@ mod tests {
 
     fn shares_over(pass: Real, minima: &[Minimum]) -> [Real; 2] {
         let mut passes = Passes::new();
-        passes.push(Pass { distance_squared: pass * pass, between: [0, 1] });
+        passes.add([0, 1], pass * pass);
         let [a, b, ..] = shares(minima, &mut passes, 1.0);
         [a, b]
     }
@@ -197,7 +233,7 @@ mod tests {
         for (between, height) in
             [([0, 2], 0.9), ([2, 1], 0.97), ([0, 3], 0.93), ([3, 4], 0.86), ([4, 1], 0.91)]
         {
-            passes.push(Pass { distance_squared: height * height, between });
+            passes.add(between, height * height);
         }
         // Oracle: by hand, min(max(0.9, 0.97), max(0.93, 0.86, 0.91)). Tolerance: rounding.
         let found = heights(&minima, &mut passes, 1.0);
