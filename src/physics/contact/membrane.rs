@@ -170,26 +170,24 @@ fn touching(
 /// True if no triangle that shares the contact's edge or vertex has a closer point, or holds the
 /// same point with higher priority.
 fn is_local_minimum(model: &Model, contact: &Touched, touched: &[Touched]) -> bool {
-    let triangles = &model.membrane.mesh.triangles;
-    if contact.feature == Feature::Face {
-        return true;
-    }
-    let shared = contact.shared_vertices(model);
-    let beats = |other: &Touched| {
-        let theirs = triangles[other.triangle as usize];
-        if other.triangle == contact.triangle
-            || !shared.iter().flatten().all(|vertex| theirs.contains(vertex))
-        {
-            return false;
+    let mesh = &model.membrane.mesh;
+    let triangle = contact.triangle as usize;
+    match contact.feature {
+        Feature::Face => true,
+        Feature::Edge(k) => {
+            let neighbour = mesh.neighbours_of_triangle[triangle][usize::from(k)];
+            let other = touched.iter().find(|it| it.triangle == neighbour);
+            !other.is_some_and(|other| other.beats(contact))
         }
-        let difference = other.distance_squared - contact.distance_squared;
-        let tolerance = EQUAL * contact.distance_squared;
-        let (mine, yours) = (contact.feature.priority(), other.feature.priority());
-        difference < -tolerance
-            || (difference <= tolerance
-                && (yours > mine || (yours == mine && other.triangle < contact.triangle)))
-    };
-    !touched.iter().any(beats)
+        Feature::Vertex(k) => {
+            let vertex = mesh.triangles[triangle][usize::from(k)];
+            !touched.iter().any(|other| {
+                mesh.triangles[other.triangle as usize].contains(&vertex)
+                    && other.triangle != contact.triangle
+                    && other.beats(contact)
+            })
+        }
+    }
 }
 
 /// The spring of the patch that had nearly this normal, if there was one.
@@ -236,6 +234,17 @@ fn of_patch(
 }
 
 impl Touched {
+    /// True if this contact of a neighbour is closer than `other`, or holds the same point with
+    /// higher priority.
+    fn beats(&self, other: &Self) -> bool {
+        let difference = self.distance_squared - other.distance_squared;
+        let tolerance = EQUAL * other.distance_squared;
+        let (mine, yours) = (self.feature.priority(), other.feature.priority());
+        difference < -tolerance
+            || (difference <= tolerance
+                && (mine > yours || (mine == yours && self.triangle < other.triangle)))
+    }
+
     /// As a local minimum of a grain of `radius` [m].
     fn minimum(&self, place: usize, radius: Real) -> Minimum {
         let distance = self.distance_squared.sqrt();
@@ -256,14 +265,17 @@ impl Touched {
                 .map(|vertex| state.membrane.positions[vertex as usize]);
             (b - a).cross(&(c - a)).dot(&self.from_membrane) > 0.0
         };
+        // Most contacts are inside: one look at their own triangle is enough.
+        if !sees_outside(self.triangle) {
+            return false;
+        }
         let shared = self.shared_vertices(model);
         touched
             .iter()
             .filter(|other| {
                 let theirs = model.membrane.mesh.triangles[other.triangle as usize];
-                other.triangle == self.triangle
-                    || (self.feature != Feature::Face
-                        && shared.iter().flatten().all(|vertex| theirs.contains(vertex)))
+                self.feature != Feature::Face
+                    && shared.iter().flatten().all(|vertex| theirs.contains(vertex))
             })
             .all(|other| sees_outside(other.triangle))
     }
