@@ -250,7 +250,7 @@ mod tests {
                 text.matches(what).count() - svg(&self::plot(vec![], log)).matches(what).count()
             };
             assert_eq!(count(Kind::Points, "<circle"), 2);
-            assert_eq!(count(Kind::Source, "fill=\"none\" stroke=\"#0072B2\""), 2);
+            assert_eq!(count(Kind::Source, "fill=\"none\" stroke=\"#333A44\""), 2);
             assert!(10 < count(Kind::Analytic, "<polyline"));
             // Two bars and one line.
             assert_eq!(count(Kind::Line, "<polyline"), 3);
