@@ -251,9 +251,9 @@ mod tests {
             };
             assert_eq!(count(Kind::Points, "<circle"), 2);
             assert_eq!(count(Kind::Source, "fill=\"none\" stroke=\"#333A44\""), 2);
-            assert!(10 < count(Kind::Analytic, "<polyline"));
+            assert!(10 < count(Kind::Analytic, "stroke=\"#333A44\""));
             // Two bars and one line.
-            assert_eq!(count(Kind::Line, "<polyline"), 3);
+            assert_eq!(count(Kind::Line, "stroke=\"#0072B2\""), 3);
         }
         drop(svg(&plot(vec![], true)));
         drop(svg(&plot(vec![series(Kind::Line, vec![[-1.0, 0.0]])], true)));
