@@ -6,8 +6,12 @@
 //! which a measured value stands beside its oracle. Tests, reports and benches run the same cases.
 
 pub mod findings; // what was found
+pub mod hollow_sphere; // how much vacuum reaches an object
+pub mod laws; // closed forms, equation by equation
 mod number; // numbers in text
+pub mod oracles; // closed forms to compare with
 pub mod record; // what a case leaves
+pub mod triaxial; // grains under confining pressure
 
 use serde::{Deserialize, Serialize};
 
@@ -16,10 +20,11 @@ use crate::{
     scene::{SceneError, text::Layers},
 };
 use findings::Findings;
-use record::Record;
+pub use record::Record;
 
 /// All experiments, in the order of the sources.
-pub static EXPERIMENTS: &[&dyn Experiment] = &[];
+pub static EXPERIMENTS: &[&dyn Experiment] =
+    &[&laws::Laws, &triaxial::Triaxial, &hollow_sphere::HollowSphere];
 
 /// How much of an experiment is run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -145,6 +150,9 @@ pub enum StartError {
     /// The membrane cannot be meshed.
     #[error("membrane: {0}")]
     Mesh(#[from] crate::physics::membrane::mesh::MeshFault),
+    /// The grains find no place to grow from.
+    #[error("packing: {0}")]
+    NoRoom(#[from] crate::physics::packing::scatter::NoRoom),
 }
 
 /// Why a saved run cannot be resumed.
