@@ -45,10 +45,12 @@ pub(crate) enum Action {
     /// Runs all quick experiments and prints one table of verdicts
     #[command(after_help = VALIDATE_HELP)]
     Validate(Validate),
-    /// Prints kept results beside their sources, as Markdown
+    /// Writes kept results beside what their sources show, as Markdown with figures
     Report {
-        /// Folder of result files
-        folder: PathBuf,
+        /// Folder of result files, for example tests/golden/validation
+        from: PathBuf,
+        /// Folder for validation.md and figures/*.svg, for example docs
+        to: PathBuf,
     },
 }
 
