@@ -76,6 +76,50 @@ fn cases_side_by_side_give_what_one_after_the_other_gives() {
     }
 }
 
+/// Oracle: each of them alone.
+#[test]
+fn experiments_share_one_queue_and_keep_their_order() {
+    let experiments = [with(&["growing"]), with(&[])];
+    let task = |experiment| {
+        let order = Order { experiment, size: Size::Full, overrides: Vec::new(), scene: None };
+        Task { order, out: None }
+    };
+    let tasks = [task(&experiments[0]), task(&experiments[1])];
+    let shutdown = Shutdown::default();
+    let policy = Policy::default();
+    let options = Options { n_threads: 3, is_quiet: true, policy, shutdown: &shutdown };
+    let Ending::Finished(found) = lab::run(&tasks, &options).unwrap() else { panic!("stopped") };
+    for (found, experiment) in found.into_iter().zip(&experiments) {
+        let alone = Outcome { size: Size::Full, ..outcome(run(experiment, None, 1, policy)) };
+        assert_eq!(timeless(found), timeless(alone));
+    }
+}
+
+/// Oracle: the file itself; a file that is not there is named.
+#[test]
+fn a_scene_file_takes_the_place_of_the_scene_that_comes_along() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("mine.yaml");
+    let experiment = with(&[]);
+    let run_mine = || {
+        let scene = Some(file.clone());
+        let (size, overrides) = (Size::Quick, Vec::new());
+        let tasks =
+            [Task { order: Order { experiment: &experiment, size, overrides, scene }, out: None }];
+        let shutdown = Shutdown::default();
+        let policy = Policy::default();
+        lab::run(&tasks, &Options { n_threads: 1, is_quiet: true, policy, shutdown: &shutdown })
+    };
+    let error = run_mine().unwrap_err();
+    assert!(error.is_of_command_line() && error.to_string().contains("mine.yaml"), "{error}");
+    fs::write(&file, "dampings: []").unwrap();
+    let found = outcome(run_mine());
+    assert_eq!(found.scene.source, file.display().to_string());
+    let usual = outcome(run(&experiment, None, 1, Policy::default()));
+    assert_ne!(found.scene.digest, usual.scene.digest);
+    assert!(table::command(&found).contains("--scene"));
+}
+
 /// Oracle: the run without the failing cases; their faults are those that they were made for.
 #[test]
 fn a_case_that_fails_stops_no_other_and_is_a_red_row() {
