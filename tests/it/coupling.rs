@@ -276,12 +276,9 @@ fn a_hanging_object_weighs_what_it_weighs() {
         (mount.z + own_weight) / weight
     );
     assert!(*lifted > 0.01, "lifted by {lifted} m");
-    // Oracle: statics. Sign: force of the object on the gripper, so −m g. Tolerance 0.5 %: what is
-    // demanded of the wrench topics.
-    assert!((contact.z / -weight - 1.0).abs() < 5e-3, "{contact:?}");
-    assert!((on_object.z / weight - 1.0).abs() < 5e-3, "{on_object:?}");
-    assert!(((mount.z + own_weight) / -weight - 1.0).abs() < 5e-3, "{mount:?}");
-    // All components: the light object still swings a little, which Newton's second law accounts for.
+    // Oracle: Newton's second law. Sign: force of the object on the gripper, so −m g. The object swings
+    // like a pendulum, hardly damped, so that its mean acceleration is part of the balance. Tolerance
+    // 0.5 %: what is demanded of the wrench topics.
     let up = Vec3::z() * *weight;
     for (what, off) in [
         ("contact", contact + up + swing),

@@ -22,6 +22,7 @@ use crate::{
         record::Record,
     },
     physics::{
+        contact::law::Surface,
         measure::real,
         membrane::{MembraneModel, mesh::Mesh},
     },
@@ -33,6 +34,8 @@ pub(super) struct Crossing;
 const N_HALVINGS: usize = 24;
 /// Change within a step from which on it is halved, over the force.
 const SUSPICIOUS: Real = 1e-4;
+/// Speed of a slide [m/s]: that of the sources' friction test.
+const SPEED: Real = 0.05;
 /// Rings of the patch.
 const RINGS: usize = 5;
 
@@ -42,12 +45,15 @@ impl Law for Crossing {
     }
 
     fn n_points(&self, scene: &Scene) -> usize {
-        2 * scene.crossing.n_ways
+        2 * scene.crossing.n_ways + 1
     }
 
     fn measure(&self, scene: &Scene, point: usize, record: &mut Record) {
+        if point == 2 * scene.crossing.n_ways {
+            return slide(scene, record);
+        }
         let (way, is_dented) = (point / 2, point % 2 == 1);
-        let mut path = Path::new(scene, way, is_dented);
+        let mut path = Path::new(scene, way, is_dented, elastic(0.0));
         let seen = path.walk(scene.crossing.step);
         if is_dented {
             push(record, "way", "1", real(way));
@@ -69,6 +75,21 @@ impl Law for Crossing {
             .curves
             .push(Curve { name: "laws_crossing".to_owned(), columns: record.columns.clone() });
     }
+}
+
+/// With friction, at one speed on the same ways: the largest change of force in a substep, and in half
+/// of it. What is continuous changes half as much.
+fn slide(scene: &Scene, record: &mut Record) {
+    let substep = 1e-5;
+    let mut largest = [0.0; 2];
+    for way in 0..scene.crossing.n_ways {
+        for (dt, largest) in [substep, 0.5 * substep].into_iter().zip(&mut largest) {
+            let mut path = Path::new(scene, way, true, elastic(scene.membrane.friction));
+            *largest = path.slide(SPEED, dt).max(*largest);
+        }
+    }
+    record.set("C4.friction_continuous", largest[1] / largest[0], "1");
+    record.set("friction_change_per_substep", largest[0], "1");
 }
 
 /// What was seen on a way, as shares of the force, of its length and of the edge.
@@ -95,7 +116,7 @@ struct Path {
 }
 
 impl Path {
-    fn new(scene: &Scene, way: usize, is_dented: bool) -> Self {
+    fn new(scene: &Scene, way: usize, is_dented: bool, surface: Surface) -> Self {
         let (edge, radius) = (scene.membrane.edge, scene.grain.radius);
         let mesh = Mesh::hexagonal_patch(edge, RINGS).expect("there are rings");
         let mut random = Random::new(u64::try_from(way).unwrap_or(0), Stream::Position);
@@ -109,7 +130,7 @@ impl Path {
         let mesh = Mesh::new(positions, turned).expect("dents do not change who neighbours whom");
         let sheet = MembraneModel::new(mesh, scene.membrane.sheet);
         let material = &scene.grain.material;
-        let mut bench = Bench::on_sheet(material, elastic(0.0), sheet, 1e-9);
+        let mut bench = Bench::on_sheet(material, surface, sheet, 1e-9);
         bench.add_grain(Vec3::z() * radius, radius, material.density);
         let angle = random.between(0.0, 2.0 * std::f64::consts::PI);
         let along = Vec3::new(angle.cos(), angle.sin(), 0.0);
@@ -164,6 +185,29 @@ impl Path {
         self.bench.step();
         let patches = &self.bench.system.scratch.patch_forces[0];
         patches.contacts[..patches.n].iter().map(|it| it.force).sum()
+    }
+
+    /// Slides all the way in substeps of `dt` [s]; the largest change of force over the mean force.
+    fn slide(&mut self, speed: Real, dt: Real) -> Real {
+        self.bench.system.model.substep = dt;
+        let n_steps = n_steps(self.length / (speed * dt));
+        let (mut largest, mut sum, mut last) = (0.0, 0.0, None::<Vec3>);
+        for k in 0..n_steps {
+            let [here, next] = [k, k + 1].map(|k| self.place((real(k) / real(n_steps)).min(1.0)));
+            let grains = self.bench.grains_mut();
+            grains.positions[0] = here;
+            grains.velocities[0] = (next - here) / dt;
+            grains.spins[0] = Vec3::zeros();
+            self.bench.step();
+            let patches = &self.bench.system.scratch.patch_forces[0];
+            let force: Vec3 = patches.contacts[..patches.n].iter().map(|it| it.force).sum();
+            sum += force.norm();
+            if let Some(last) = last {
+                largest = (force - last).norm().max(largest);
+            }
+            last = Some(force);
+        }
+        largest / (sum / real(n_steps))
     }
 
     fn walk(&mut self, step: Real) -> Seen {
@@ -263,6 +307,14 @@ const ROWS: &[Line] = &[
         Expected::at_most(1e-6),
         "1e-6 of the force is asked for on a flat sheet; here each step that changes the force by more than \
          1e-4 is halved 24 times, to 6e-14 m",
+    ),
+    (
+        "C4.friction_continuous",
+        "largest change of force in half a substep of a slide with friction over a dented sheet, over \
+         that in a whole one",
+        "1/2: the friction spring is handed on from triangle to triangle; a jump would give 1",
+        Expected::within(0.5, 0.1),
+        "0.1: the steepest place is met by either or missed",
     ),
     (
         "C4.momentum",

@@ -23,7 +23,9 @@
 //! spring follows Mindlin and Di Renzo & Di Maio (2005), the dissipative term opposes the motion,
 //! and the viscous tangential term exists only while the contact sticks. Valid while the overlap
 //! is small against R*, say ξ < 0.1 R*. The spring keeps its length when the contact unloads; a
-//! spring rescaled by the shrinking contact radius (Thornton 2013) is not what the source does.
+//! spring rescaled by the shrinking contact radius (Thornton 2013) is not what the source does. It is
+//! carried along when the pair turns about an axis across the normal; about the normal itself it is
+//! not turned, as in the source.
 
 use crate::{
     base::{Real, Vec3},
