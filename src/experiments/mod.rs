@@ -8,6 +8,8 @@
 pub mod findings; // what was found
 pub mod record; // what a case leaves
 
+pub mod slide; // a ball drawn over a membrane
+
 use crate::{
     physics::health::Diverged,
     scene::{SceneError, text::Layers},
@@ -16,7 +18,7 @@ use findings::Findings;
 use record::Record;
 
 /// All experiments, in the order of the sources.
-pub static EXPERIMENTS: &[&dyn Experiment] = &[];
+pub static EXPERIMENTS: &[&dyn Experiment] = &[&slide::Slide];
 
 /// How much of an experiment is run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
