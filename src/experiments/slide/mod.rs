@@ -9,6 +9,7 @@ mod patch; // the lattice
 mod pictures; // for the report
 mod ride; // one case
 mod scene; // key by key
+mod seen; // a record, prepared
 #[cfg(test)]
 mod tests;
 

@@ -11,7 +11,7 @@ use crate::{
 
 /// A direction in which the lattice repeats itself, as the steps i, j that make one period.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Way(i32, i32);
+pub(super) struct Way(pub(super) i32, pub(super) i32);
 
 impl Way {
     /// From vertex to vertex, over edges.

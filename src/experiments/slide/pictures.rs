@@ -1,9 +1,10 @@
 //! The pictures: Fig. 8 of the source for both membranes, and what stands behind it.
 
 use super::{
-    evaluate::{Seen, at_phase, named},
+    evaluate::named,
     expected,
     scene::Scene,
+    seen::{Seen, at_phase},
 };
 use crate::{
     base::Real,
