@@ -14,6 +14,7 @@ mod generated_types; // msgs/*.msg and the Rust types agree
 mod grains; // one, two and three grains
 mod lab; // experiments: side by side, stopped and resumed, told in files
 mod hollow_sphere; // an object in an evacuated shell of grains
+mod leaks; // what comes through the membranes
 mod lifts; // whole runs: what is lifted, and what is not
 #[cfg(feature = "ros")]
 mod main_job; // the main job, commanded from other processes
