@@ -33,3 +33,4 @@ mod stream; // what other processes read in shared memory
 mod synthetic; // a scene and snapshots made up for tests
 #[cfg(feature = "ros")]
 mod toy_run; // a whole run with a toy for physics
+mod triaxial; // a small specimen under confining pressure

@@ -210,16 +210,16 @@ impl Test {
         }
         let confining = self.recipe.setup.confining;
         let carried = gauges::carried(&self.system);
-        let kinetic = measure::kinetic_energy(&self.system.model, &self.system.state);
         let missing = self.plate_pressure() / confining.pressure - 1.0;
-        let is_calm = kinetic < confining.rest_energy * carried.elastic_energy
+        let moving = gauges::grain_energy(&self.system);
+        let is_calm = moving < confining.rest_energy * carried.elastic_energy
             && missing.abs() < confining.rest_stress;
         let time = real_of(self.course.n_in_stage) * self.recipe.step;
         if is_calm || time >= confining.rest_time_max {
             self.drive([0.0; 2]);
             let logbook = &mut self.course.logbook;
             logbook.set("rest_time", time, "s");
-            logbook.set("rest_energy", kinetic / carried.elastic_energy, "1");
+            logbook.set("rest_energy", moving / carried.elastic_energy, "1");
             logbook.set("rest_unbalanced", carried.unbalanced, "1");
             logbook.validity.unbalanced_force = carried.unbalanced;
             logbook.start(&self.system, confining.pressure, self.course.plate_forces);

@@ -33,7 +33,16 @@ pub(super) struct Setup {
     pub(super) shear: Shear,
     /// Which cases are run besides the first size.
     pub(super) runs: Runs,
-    /// Share of the critical step.
+    /// The substep.
+    pub(super) time: Time,
+}
+
+/// How the substep is derived.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Time {
+    /// Share of the Rayleigh time of the smallest grain at which the packing is taken to ring.
+    pub(super) rayleigh_share: Real,
+    /// Share of the critical step that is taken.
     pub(super) safety: Real,
 }
 
@@ -139,8 +148,12 @@ pub(super) struct Shear {
 pub(super) struct Runs {
     /// The larger size too.
     pub(super) case2: bool,
-    /// A wall-model specimen at half the speed, up to this strain.
-    pub(super) half_speed_strain: Real,
+    /// Strain to which a specimen is sheared with all that `quick` speeds up at half or less.
+    pub(super) check_strain: Real,
+    /// The damping of the hinges in that check [N s].
+    pub(super) check_bending_damping: Real,
+    /// The share of the Rayleigh time in that check.
+    pub(super) check_rayleigh_share: Real,
     /// Simulated time of the comparison of run times; 0 for none.
     pub(super) timing: Real,
 }
@@ -188,8 +201,14 @@ pub(super) fn blank() -> Setup {
             rest_time_max: NAN,
         },
         shear: Shear { speed: NAN, speed_factor: NAN, start_time: NAN, strain: NAN, n_points: 0 },
-        runs: Runs { case2: false, half_speed_strain: NAN, timing: NAN },
-        safety: NAN,
+        runs: Runs {
+            case2: false,
+            check_strain: NAN,
+            check_bending_damping: NAN,
+            check_rayleigh_share: NAN,
+            timing: NAN,
+        },
+        time: Time { rayleigh_share: NAN, safety: NAN },
     }
 }
 
@@ -215,12 +234,18 @@ impl Keys for Setup {
         walk.section("shear", |walk| shear(walk, &mut self.shear));
         walk.section("runs", |walk| {
             walk.flag("case2", &mut self.runs.case2);
-            let strain = Range::Between(0.0, 0.5);
-            walk.number("half_speed_strain", strain, &mut self.runs.half_speed_strain);
+            let Runs { check_strain, check_bending_damping, check_rayleigh_share, .. } =
+                &mut self.runs;
+            walk.number("check_strain", Range::Between(0.0, 0.5), check_strain);
+            let damping = Quantity::at_least_zero(&IMPULSE);
+            walk.quantity("check_bending_damping", damping, check_bending_damping);
+            walk.number("check_rayleigh_share", Range::AboveUpTo(0.0, 1.0), check_rayleigh_share);
             walk.quantity("timing", Quantity::at_least_zero(&TIME), &mut self.runs.timing);
         });
         walk.section("time", |walk| {
-            walk.number("safety", Range::AboveUpTo(0.0, 1.0), &mut self.safety);
+            let share = Range::AboveUpTo(0.0, 1.0);
+            walk.number("rayleigh_share", share, &mut self.time.rayleigh_share);
+            walk.number("safety", share, &mut self.time.safety);
         });
     }
 
