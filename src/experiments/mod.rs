@@ -6,6 +6,7 @@
 //! which a measured value stands beside its oracle. Tests, reports and benches run the same cases.
 
 pub mod findings; // what was found
+pub mod gripper; // the granular gripper
 pub mod record; // what a case leaves
 
 use crate::{
@@ -16,7 +17,7 @@ use findings::Findings;
 use record::Record;
 
 /// All experiments, in the order of the sources.
-pub static EXPERIMENTS: &[&dyn Experiment] = &[];
+pub static EXPERIMENTS: &[&dyn Experiment] = &[&gripper::Gripper];
 
 /// How much of an experiment is run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

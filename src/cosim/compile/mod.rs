@@ -1,11 +1,11 @@
 //! A checked scene becomes a model: laws, meshes, surfaces, and the substep that all of them bear.
 //!
 //! ```text
-//! critical step = min(0.4 T_R, t_membrane),   T_R = π R √(ρ/G) / (0.1631 ν + 0.8766)
+//! critical step = min(0.3 T_R, t_membrane),   T_R = π R √(ρ/G) / (0.1631 ν + 0.8766)
 //! ```
 //!
-//! T_R is the Rayleigh time of the smallest grain (Thornton & Randall 1988); 0.4 of it is where a
-//! packing at full vacuum starts to ring. t_membrane is the limit of springs, hinges and of the
+//! T_R is the Rayleigh time of the smallest grain (Thornton & Randall 1988); between 0.28 and 0.37 of
+//! it a packing of grains of 100 MPa at full vacuum starts to ring. t_membrane is the limit of springs, hinges and of the
 //! contacts that press on a vertex at full vacuum.
 
 use super::{
@@ -39,7 +39,7 @@ const EXCHANGE_MAX: Real = 1e-4;
 /// Effective radius R* of a sample of the sheet on the table: that of the source's object [m].
 const TABLE_CONTACT_RADIUS: Real = 0.01;
 /// Share of the Rayleigh time at which a packing under full vacuum starts to ring.
-const RAYLEIGH_SHARE: Real = 0.4;
+const RAYLEIGH_SHARE: Real = 0.3;
 
 /// Why a scene cannot be compiled.
 #[derive(Debug, thiserror::Error)]
