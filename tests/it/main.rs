@@ -12,6 +12,7 @@ mod determinism; // the same bits every time
 mod fanout; // sinks behind their queues: order, drops, failure, closing
 mod generated_types; // msgs/*.msg and the Rust types agree
 mod grains; // one, two and three grains
+mod gripper; // the gripper experiment, coarse
 mod lifts; // whole runs: what is lifted, and what is not
 #[cfg(feature = "ros")]
 mod main_job; // the main job, commanded from other processes
