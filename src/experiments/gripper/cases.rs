@@ -87,7 +87,10 @@ pub(super) fn cases(scene: &GripperScene) -> Vec<Case> {
         .map(Change::SpringDamping)
         .chain(others(&sweep.slowdowns, 1.0).map(Change::Slowdown));
     let families = [
-        ("friction", others(&sweep.frictions, own.objects[0].friction).map(Change::Friction).collect()),
+        (
+            "friction",
+            others(&sweep.frictions, own.objects[0].friction).map(Change::Friction).collect(),
+        ),
         ("radius", others(&sweep.radii, scene.object_radius()).map(Change::Radius).collect()),
         ("checks", checks.collect::<Vec<_>>()),
     ];
@@ -116,10 +119,9 @@ fn over_modulus(scene: &GripperScene) -> Vec<Case> {
             let mut grips = vec![Grip::from_the_start(Change::Nothing)];
             if filling == 0 && is_same(modulus, own.material.youngs_modulus) {
                 let pressures = others(&scene.sweep.pressures, scene.protocol.pressure);
-                grips.extend(pressures.map(|it| Grip {
-                    change: Change::Pressure(it),
-                    is_inserted: true,
-                }));
+                grips.extend(
+                    pressures.map(|it| Grip { change: Change::Pressure(it), is_inserted: true }),
+                );
             }
             let name = modulus_name(modulus, filling);
             cases.push(Case { name, filling, modulus, count: own.count, grips });

@@ -24,7 +24,8 @@ pub(super) fn add(view: &View<'_>, findings: &mut Findings) {
     let points = view.over_count("holding_force");
     if points.len() > 1 {
         let push = view.over_count("force_relaxed").into_iter().map(|[n, f]| [n, -f]).collect();
-        let mut plot = plot("Filling", "nothing: the number of grains is left out", "grains", "force [N]");
+        let mut plot =
+            plot("Filling", "nothing: the number of grains is left out", "grains", "force [N]");
         plot.series = vec![
             series("holding force", Kind::Points, points),
             series("push after relaxation", Kind::Points, push),
@@ -119,12 +120,8 @@ fn over_modulus(view: &View<'_>, findings: &mut Findings) {
 fn over_pressure(view: &View<'_>, findings: &mut Findings) {
     let points = view.over_pressure();
     let Some(&[strongest, force]) = points.last() else { return };
-    let mut plot = plot(
-        "Holding force over the vacuum",
-        "only 90 kPa",
-        "vacuum [Pa]",
-        "holding force [N]",
-    );
+    let mut plot =
+        plot("Holding force over the vacuum", "only 90 kPa", "vacuum [Pa]", "holding force [N]");
     plot.series = vec![
         series("measured, from one relaxed state", Kind::Points, points.clone()),
         series("proportional", Kind::Analytic, vec![[0.0, 0.0], [strongest, force]]),
@@ -143,7 +140,8 @@ fn over_object(view: &View<'_>, findings: &mut Findings) {
             "holding force [N]",
         );
         plot.series.push(series("measured, one filling", Kind::Points, points.clone()));
-        let pinched = view.protocol("normal_force_at_best").zip(view.protocol("contact_angle_at_best"));
+        let pinched =
+            view.protocol("normal_force_at_best").zip(view.protocol("contact_angle_at_best"));
         if let Some((normal, angle)) = pinched {
             let at = |k: i32| 0.03 * Real::from(k);
             let line = (0..=50).map(|k| [at(k), probe::pinch(normal, angle, at(k)).max(0.0)]);

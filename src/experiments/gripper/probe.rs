@@ -186,7 +186,9 @@ mod tests {
     /// Oracle: the thresholds of the pinch formula, found independently by hand to 0.05°.
     #[test]
     fn pinch_changes_its_sign_at_the_known_angles() {
-        for (friction, degrees) in [(0.25, 125.4), (0.5, 100.5), (0.8, 79.5), (1.0, 69.1), (1.2, 60.8)] {
+        for (friction, degrees) in
+            [(0.25, 125.4), (0.5, 100.5), (0.8, 79.5), (1.0, 69.1), (1.2, 60.8)]
+        {
             let found = pinch_threshold(friction).to_degrees();
             assert!((found - degrees).abs() < 0.06, "{friction}: {found}");
         }

@@ -320,11 +320,8 @@ impl Ready {
         // The bag was filled without any body.
         state.springs.bodies.resize(n_samples, Vec3::zeros());
         let object = BodyMotion { pose: Pose::identity(), twist: Twist::zero() };
-        let controls = Controls {
-            gauge_setpoint: 0.0,
-            walls: state.walls.clone(),
-            bodies: vec![object],
-        };
+        let controls =
+            Controls { gauge_setpoint: 0.0, walls: state.walls.clone(), bodies: vec![object] };
         System::new(self.model.clone(), controls, state)
     }
 

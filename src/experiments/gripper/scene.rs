@@ -149,11 +149,7 @@ impl Keys for GripperScene {
         let gripper = &mut self.gripper;
         walk.text("name", &mut gripper.name);
         walk.whole("seed", 0, u64::MAX, &mut gripper.seed);
-        walk.vector(
-            "gravity",
-            Quantity::any(&scene::quantity::ACCELERATION),
-            &mut gripper.gravity,
-        );
+        walk.vector("gravity", Quantity::any(&scene::quantity::ACCELERATION), &mut gripper.gravity);
         walk.section("time", |walk| schema::time(walk, &mut gripper.time));
         walk.section("grains", |walk| schema::grains(walk, &mut gripper.grains));
         walk.section("membrane", |walk| schema::membrane(walk, &mut gripper.membrane));

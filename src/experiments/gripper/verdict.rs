@@ -105,8 +105,8 @@ impl View<'_> {
         reference: Real,
         quantity: &str,
     ) -> Vec<[Real; 2]> {
-        let varied = changes
-            .filter_map(|(at, change)| Some([at, self.number(family, change, quantity)?]));
+        let varied =
+            changes.filter_map(|(at, change)| Some([at, self.number(family, change, quantity)?]));
         let own = self.protocol(quantity).map(|it| [reference, it]);
         let mut points: Vec<[Real; 2]> = varied.chain(own).collect();
         points.sort_by(|a, b| a[0].total_cmp(&b[0]));
@@ -179,7 +179,8 @@ fn smallest_rise(points: &[[Real; 2]]) -> Option<Real> {
 fn force_record(view: &View<'_>, judge: &mut Judge<'_>) {
     let record = view.record(&view.reference());
     let force = |phase| record.map(|it| rows(it, 0, phase, "force")).filter(|it| !it.is_empty());
-    let insert = force(Phase::Insert).zip(record.map(|it| rows(it, 0, Phase::Insert, "penetration")));
+    let insert =
+        force(Phase::Insert).zip(record.map(|it| rows(it, 0, Phase::Insert, "penetration")));
     let last = |phase| force(phase).and_then(|it| it.last().copied());
     let depth = view.scene.protocol.penetration;
     let push_at = |share: Real| {
