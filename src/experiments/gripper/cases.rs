@@ -5,7 +5,7 @@
 //! between fillings.
 
 use super::scene::GripperScene;
-use crate::base::Real;
+use crate::{base::Real, physics::measure::real};
 
 /// One filling and the grips that are done with it.
 #[derive(Clone, Debug)]
@@ -82,23 +82,17 @@ impl Change {
 /// All cases of a scene.
 pub(super) fn cases(scene: &GripperScene) -> Vec<Case> {
     let mut cases = over_modulus(scene);
-    let (own, sweep) = (&scene.gripper, &scene.sweep);
-    let checks = others(&sweep.spring_dampings, own.membrane.spring_damping)
-        .map(Change::SpringDamping)
-        .chain(others(&sweep.slowdowns, 1.0).map(Change::Slowdown));
-    let families = [
-        (
-            "friction",
-            others(&sweep.frictions, own.objects[0].friction).map(Change::Friction).collect(),
-        ),
-        ("radius", others(&sweep.radii, scene.object_radius()).map(Change::Radius).collect()),
-        ("checks", checks.collect::<Vec<_>>()),
-    ];
-    let modulus = own.grains.material.youngs_modulus;
+    let grains = &scene.gripper.grains;
+    let (modulus, count) = (grains.material.youngs_modulus, grains.count);
+    let radii = others(&scene.sweep.radii, scene.object_radius()).map(Change::Radius);
+    let mut families = vec![("radius", radii.collect::<Vec<_>>())];
+    if !scene.accelerations.is_varied_relaxed {
+        families.push(("history", histories(scene)));
+    }
     for (family, changes) in families {
         if !changes.is_empty() {
             let grips = changes.into_iter().map(Grip::from_the_start).collect();
-            let (name, count) = (format!("{family}_filling_0"), own.grains.count);
+            let name = format!("{family}_filling_0");
             cases.push(Case { name, filling: 0, modulus, count, grips });
         }
     }
@@ -109,25 +103,63 @@ pub(super) fn cases(scene: &GripperScene) -> Vec<Case> {
     cases
 }
 
+/// Changes that can also be made in the relaxed state.
+fn histories(scene: &GripperScene) -> Vec<Change> {
+    let (own, sweep) = (&scene.gripper, &scene.sweep);
+    others(&sweep.frictions, own.objects[0].friction)
+        .map(Change::Friction)
+        .chain(
+            others(&sweep.spring_dampings, own.membrane.spring_damping).map(Change::SpringDamping),
+        )
+        .chain(others(&sweep.slowdowns, 1.0).map(Change::Slowdown))
+        .collect()
+}
+
 /// The protocol for each modulus and filling; the first filling of the reference also shows other
-/// pressures.
+/// pressures, and all that is varied in the relaxed state.
 fn over_modulus(scene: &GripperScene) -> Vec<Case> {
     let own = &scene.gripper.grains;
     let mut cases = Vec::new();
     for modulus in moduli(scene) {
         for filling in 0..scene.sweep.n_fillings {
-            let mut grips = vec![Grip::from_the_start(Change::Nothing)];
+            let mut changes = Vec::new();
             if filling == 0 && is_same(modulus, own.material.youngs_modulus) {
                 let pressures = others(&scene.sweep.pressures, scene.protocol.pressure);
-                grips.extend(
-                    pressures.map(|it| Grip { change: Change::Pressure(it), is_inserted: true }),
-                );
+                changes.extend(pressures.map(Change::Pressure));
+                if scene.accelerations.is_varied_relaxed {
+                    changes.extend(histories(scene));
+                }
             }
+            let mut grips = vec![Grip::from_the_start(Change::Nothing)];
+            grips.extend(changes.into_iter().map(|change| Grip { change, is_inserted: true }));
             let name = modulus_name(modulus, filling);
             cases.push(Case { name, filling, modulus, count: own.count, grips });
         }
     }
     cases
+}
+
+/// What a grip of 4200 soft grains takes at ten times the source's speed, in seconds on one thread
+/// of a machine of 2026; the filling takes half of it.
+const GRIP_S: Real = 35.0;
+/// Modulus above which the grains and not the membrane limit the substep [Pa].
+const HARD: Real = 3.2e7;
+
+impl Case {
+    /// About how long it takes on one thread [s].
+    pub(super) fn expected_s(&self, scene: &GripperScene) -> Real {
+        let size = real(self.count) / 4200.0;
+        let hardness = (self.modulus / HARD).sqrt().max(1.0);
+        let speed = 10.0 / scene.accelerations.insert_speed_factor;
+        let slowness = |grip: &Grip| match grip.change {
+            Change::Slowdown(factor) => 1.0 / factor,
+            _ => 1.0,
+        };
+        // Without the insertion it is a third.
+        let share = |grip: &Grip| if grip.is_inserted { 1.0 / 3.0 } else { 1.0 };
+        let grips: Real = self.grips.iter().map(|grip| slowness(grip) * share(grip)).sum();
+        GRIP_S * size * hardness * (0.5 + speed * grips)
+    }
 }
 
 impl Grip {

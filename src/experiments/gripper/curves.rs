@@ -4,7 +4,7 @@ use super::{
     cases::{self, modulus_text},
     phase::Phase,
     probe,
-    run::rows,
+    summary::rows,
     verdict::View,
 };
 use crate::{

@@ -6,10 +6,13 @@
 
 mod cases; // which grips are done
 mod curves; // what is drawn
+mod force_record; // the force over a whole grip
 mod phase; // what is done in a grip
 mod probe; // what is read off
+mod ready; // a grip ready to run
 mod run; // a case on its way
 mod scene; // what the scene says
+mod summary; // what a grip amounts to
 mod verdict; // what the records show
 
 use super::{Experiment, Plan, Run, SceneText, StartError, findings::Findings, record::Record};
@@ -53,6 +56,11 @@ struct GripperPlan {
 impl Plan for GripperPlan {
     fn cases(&self) -> Vec<String> {
         self.cases.iter().map(|case| case.name.clone()).collect()
+    }
+
+    fn expected_s(&self, name: &str) -> Option<f64> {
+        let case = self.cases.iter().find(|case| case.name == name)?;
+        Some(case.expected_s(&self.scene))
     }
 
     fn start(&self, name: &str) -> Result<Box<dyn Run>, StartError> {

@@ -18,7 +18,7 @@ use crate::{
 const FORCE_WITHIN: Real = 0.98;
 
 /// What is recorded in every tick: name and unit.
-const COLUMNS: [(&str, &str); 13] = [
+const COLUMNS: [(&str, &str); 14] = [
     ("time", "s"),
     ("grip", "1"),
     ("phase", "1"),
@@ -29,6 +29,7 @@ const COLUMNS: [(&str, &str); 13] = [
     ("coordination", "1"),
     ("normal_force", "N"),
     ("contact_angle", "rad"),
+    ("coulomb_limit", "N"),
     ("grain_pressure", "Pa"),
     ("kinetic_energy", "J"),
     ("contact_energy", "J"),
@@ -73,6 +74,7 @@ pub(super) fn look(record: &mut Record, system: &System, when: When) -> (Real, R
         packing.coordination_number,
         grip.normal_force,
         grip.angle,
+        grip.coulomb_limit,
         pressure,
         measure::kinetic_energy(model, state),
         energy,
@@ -129,6 +131,8 @@ pub(super) struct Grip {
     pub(super) normal_force: Real,
     /// Polar angle from the top within which the membrane presses [rad].
     pub(super) angle: Real,
+    /// Largest pull that Coulomb friction allows with these normal forces, Σ F_n (μ sin θ − cos θ) [N].
+    pub(super) coulomb_limit: Real,
 }
 
 impl Grip {
@@ -139,6 +143,9 @@ impl Grip {
             .map(|it| (angle_from_top(&(it.point - centre)), it.force.dot(&it.normal)))
             .collect();
         presses.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let friction = system.model.bodies[0].law.friction;
+        let coulomb_limit =
+            presses.iter().map(|(at, force)| force * (friction * at.sin() - at.cos())).sum();
         let normal_force: Real = presses.iter().map(|it| it.1).sum();
         let mut within = 0.0;
         let mut angle = 0.0;
@@ -149,7 +156,7 @@ impl Grip {
             within += force;
             angle = at;
         }
-        Self { normal_force, angle }
+        Self { normal_force, angle, coulomb_limit }
     }
 }
 

@@ -3,21 +3,19 @@
 use serde::{Deserialize, Serialize};
 
 use super::{
-    cases::{Case, Change, Grip},
-    phase::{Phase, Way, staircase},
+    cases::{Case, Change},
+    phase::Phase,
     probe::{self, When},
+    ready::{Ready, compile},
     scene::GripperScene,
+    summary::{has_passed, summarise},
 };
 use crate::{
-    base::{Pose, Real, Vec3, digest::Digest, real::Twist},
-    cosim::{
-        compile::{CompileError, Compiled},
-        saved_state,
-    },
+    base::{Real, digest::Digest},
+    cosim::{compile::CompileError, saved_state},
     experiments::{Progress, ResumeError, Run, record::Record},
     physics::{
-        Controls, Model, State, System,
-        boundary::body::BodyMotion,
+        Model, State, System,
         fill::{self, Filling},
         health::Diverged,
         measure::real,
@@ -26,8 +24,6 @@ use crate::{
 
 /// Substeps in a slice of work, about.
 const SLICE: usize = 300;
-/// How far the object goes down beyond its starting point if the bag does not let go of it [m].
-const WAY_OUT_BEYOND: Real = 0.02;
 
 /// How far a case is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -47,20 +43,6 @@ enum Place {
     },
     /// All grips are over.
     Done,
-}
-
-/// A grip ready to run.
-struct Ready {
-    scene: GripperScene,
-    model: Model,
-    change: Change,
-    is_inserted: bool,
-    /// True if it may end before the object is free.
-    is_cut: bool,
-    /// Substeps in a tick.
-    n_substeps: usize,
-    /// Length of a tick [s].
-    tick: Real,
 }
 
 /// A case on its way.
@@ -246,167 +228,6 @@ impl GripRun {
             }
         }
     }
-}
-
-/// True if the largest force of the withdrawal is past and so much of it is gone that the grip ends.
-fn has_passed(record: &Record, grip: usize, scene: &GripperScene) -> bool {
-    let until = scene.accelerations.withdraw_until;
-    let force = rows(record, grip, Phase::Withdraw, "force");
-    let largest = force.iter().copied().fold(0.0, Real::max);
-    let last = force.last().copied().unwrap_or(0.0);
-    until > 0.0 && largest > 0.0 && last < until * largest
-}
-
-/// The values of a column in one phase of one grip.
-pub(super) fn rows(record: &Record, grip: usize, phase: Phase, name: &str) -> Vec<Real> {
-    let column = |name: &str| record.column(name).unwrap_or(&[]);
-    let keys = column("grip").iter().zip(column("phase"));
-    let wanted = [real(grip), real(phase as usize)].map(Real::to_bits);
-    keys.zip(column(name))
-        .filter(|((grip, phase), _)| [grip.to_bits(), phase.to_bits()] == wanted)
-        .map(|(_, value)| *value)
-        .collect()
-}
-
-/// What a grip amounts to, as numbers under its name.
-fn summarise(record: &mut Record, grip: usize, ready: &Ready) {
-    let name = ready.change.name();
-    let last = |record: &Record, phase, column: &str| {
-        rows(record, grip, phase, column).last().copied().unwrap_or(Real::NAN)
-    };
-    let pull = rows(record, grip, Phase::Withdraw, "force");
-    let best = (0..pull.len()).max_by(|&a, &b| pull[a].total_cmp(&pull[b]));
-    let at_best = |column: &str| {
-        let values = rows(record, grip, Phase::Withdraw, column);
-        best.and_then(|k| values.get(k).copied()).unwrap_or(Real::NAN)
-    };
-    let friction = ready.scene.gripper.objects[0].friction;
-    let normal = last(record, Phase::Hold, "normal_force");
-    let angle = last(record, Phase::Hold, "contact_angle");
-    let depth = ready.scene.protocol.penetration;
-    let numbers = [
-        ("holding_force", at_best("force"), "N"),
-        ("holding_distance", depth - at_best("penetration"), "m"),
-        ("normal_force_at_best", at_best("normal_force"), "N"),
-        ("contact_angle_at_best", at_best("contact_angle"), "rad"),
-        ("force_relaxed", last(record, Phase::Relax, "force"), "N"),
-        ("force_held", last(record, Phase::Hold, "force"), "N"),
-        ("normal_force", normal, "N"),
-        ("contact_angle", angle, "rad"),
-        ("pinch_force", probe::pinch(normal, angle, friction), "N"),
-        ("volume", last(record, Phase::Hold, "volume"), "m^3"),
-        ("coordination", last(record, Phase::Hold, "coordination"), "1"),
-        ("force_at_end", pull.last().copied().unwrap_or(Real::NAN), "N"),
-    ];
-    for (quantity, value, unit) in numbers {
-        record.set(&format!("{name}.{quantity}"), value, unit);
-    }
-}
-
-impl Ready {
-    /// The case of several pressures goes on until the object is free: it shows the whole record.
-    fn new(scene: &GripperScene, grip: &Grip, case: &Case) -> Result<Self, CompileError> {
-        let is_cut = !case.grips.iter().any(|it| it.is_inserted);
-        let scene = grip.change.apply(scene);
-        let (model, n_substeps, tick) = compile(&scene)?;
-        let (change, is_inserted) = (grip.change, grip.is_inserted);
-        Ok(Self { scene, model, change, is_inserted, is_cut, n_substeps, tick })
-    }
-
-    /// The system of this grip, beginning with `state`.
-    fn system(&self, mut state: State) -> System {
-        let mesh = &self.model.membrane.mesh;
-        let n_samples = mesh.n_vertices() + mesh.triangles.len();
-        // The bag was filled without any body.
-        state.springs.bodies.resize(n_samples, Vec3::zeros());
-        let object = BodyMotion { pose: Pose::identity(), twist: Twist::zero() };
-        let controls =
-            Controls { gauge_setpoint: 0.0, walls: state.walls.clone(), bodies: vec![object] };
-        System::new(self.model.clone(), controls, state)
-    }
-
-    fn way_in(&self) -> Way {
-        let protocol = &self.scene.protocol;
-        let speed = protocol.insert_speed * self.scene.accelerations.insert_speed_factor;
-        let length = protocol.clearance + protocol.penetration;
-        Way { length, speed, ramp: protocol.ramp_time }
-    }
-
-    fn way_out(&self) -> Way {
-        let protocol = &self.scene.protocol;
-        let speed = protocol.withdraw_speed * self.scene.accelerations.withdraw_speed_factor;
-        let length = protocol.penetration + WAY_OUT_BEYOND;
-        Way { length, speed, ramp: protocol.ramp_time }
-    }
-
-    /// How long a phase takes at most [s].
-    fn duration(&self, phase: Phase) -> Real {
-        let protocol = &self.scene.protocol;
-        match phase {
-            Phase::Insert => self.way_in().duration(),
-            Phase::Relax => protocol.relax_time,
-            Phase::Evacuate => protocol.step_time * real(protocol.n_pressure_steps),
-            Phase::Hold => protocol.hold_time,
-            Phase::Withdraw => self.way_out().duration(),
-        }
-    }
-
-    fn n_substeps_expected(&self) -> usize {
-        let first = if self.is_inserted { Phase::Evacuate } else { Phase::Insert };
-        let n_ticks = |phase| {
-            let ticks = self.duration(phase) / self.tick;
-            #[expect(
-                clippy::cast_possible_truncation,
-                clippy::cast_sign_loss,
-                reason = "a positive number of ticks far below 2^53"
-            )]
-            let ticks = ticks.ceil() as usize;
-            ticks
-        };
-        let phases = Phase::ALL.iter().filter(|it| first <= **it);
-        phases.map(|&phase| n_ticks(phase) * self.n_substeps).sum()
-    }
-
-    /// Where the object and the pump's set-point are at `time` [s] of `phase`; `low` is the height
-    /// of the settled bag's lowest point [m].
-    fn control(&self, controls: &mut Controls, phase: Phase, time: Real, low: Real) {
-        let protocol = &self.scene.protocol;
-        let (start, inside) = (-protocol.clearance, protocol.penetration);
-        let (top, speed) = match phase {
-            Phase::Insert => {
-                let (way, speed) = self.way_in().at(time);
-                (start + way, speed)
-            }
-            Phase::Relax | Phase::Evacuate | Phase::Hold => (inside, 0.0),
-            Phase::Withdraw => {
-                let (way, speed) = self.way_out().at(time);
-                (inside - way, -speed)
-            }
-        };
-        let z = low + top - self.scene.object_radius();
-        controls.bodies[0].pose.translation.vector = Vec3::new(0.0, 0.0, z);
-        controls.bodies[0].twist.linear = Vec3::new(0.0, 0.0, speed);
-        let steps = protocol.n_pressure_steps;
-        controls.gauge_setpoint = match phase {
-            Phase::Insert | Phase::Relax => 0.0,
-            Phase::Evacuate => staircase(protocol.pressure, steps, protocol.step_time, time),
-            Phase::Hold | Phase::Withdraw => protocol.pressure,
-        };
-    }
-
-    /// I = γ̇ d √(ρ/p): the object's speed shears the grains over its diameter.
-    fn inertial_number(&self, speed: Real, pressure: Real) -> Real {
-        let rate = speed / (2.0 * self.scene.object_radius());
-        let density = self.scene.gripper.grains.material.density;
-        rate * 2.0 * self.model.radius_mean * (density / pressure).sqrt()
-    }
-}
-
-/// The model of a scene, without the table, the substeps in a tick, and the tick [s].
-fn compile(scene: &GripperScene) -> Result<(Model, usize, Real), CompileError> {
-    let Compiled { mut model, plan, .. } = Compiled::new(&scene.gripper, 1)?;
-    model.bodies.truncate(1);
-    Ok((model, plan.n_substeps, plan.tick))
 }
 
 /// Height of the lowest vertex [m].

@@ -61,6 +61,9 @@ pub(super) struct Accelerations {
     pub(super) withdraw_until: Real,
     /// Harder grains are filled in with this modulus and hardened in the closed bag [Pa].
     pub(super) filling_modulus: Option<Real>,
+    /// True if friction, damping and slowness are varied from the relaxed state on, instead of
+    /// from the settled bag.
+    pub(super) is_varied_relaxed: bool,
 }
 
 /// What is varied, one at a time; the values of the other sections are the common reference.
@@ -112,6 +115,7 @@ impl GripperScene {
                 withdraw_speed_factor: nan,
                 withdraw_until: nan,
                 filling_modulus: None,
+                is_varied_relaxed: false,
             },
             sweep: Sweep {
                 n_fillings: 0,
@@ -217,6 +221,7 @@ fn accelerations(walk: &mut impl Walk, it: &mut Accelerations) {
     walk.number("withdraw_until", Range::Between(0.0, 0.95), &mut it.withdraw_until);
     let modulus = Quantity::above_zero(&PRESSURE);
     walk.quantity_or("filling_modulus", "own", modulus, &mut it.filling_modulus);
+    walk.flag("vary_relaxed", &mut it.is_varied_relaxed);
 }
 
 fn sweep(walk: &mut impl Walk, it: &mut Sweep) {
