@@ -6,6 +6,7 @@
 //! which a measured value stands beside its oracle. Tests, reports and benches run the same cases.
 
 pub mod findings; // what was found
+pub mod gripper; // the force that holds an object
 pub mod hollow_sphere; // how much vacuum reaches an object
 pub mod laws; // closed forms, equation by equation
 mod number; // numbers in text
@@ -24,7 +25,7 @@ use findings::Findings;
 pub use record::Record;
 
 /// All experiments, in the order of the sources.
-pub static EXPERIMENTS: &[&dyn Experiment] = &[&laws::Laws, &slide::Slide, &triaxial::Triaxial, &hollow_sphere::HollowSphere];
+pub static EXPERIMENTS: &[&dyn Experiment] = &[&laws::Laws, &slide::Slide, &triaxial::Triaxial, &gripper::Gripper, &hollow_sphere::HollowSphere];
 
 /// How much of an experiment is run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

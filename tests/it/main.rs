@@ -12,6 +12,7 @@ mod determinism; // the same bits every time
 mod fanout; // sinks behind their queues: order, drops, failure, closing
 mod generated_types; // msgs/*.msg and the Rust types agree
 mod grains; // one, two and three grains
+mod gripper; // the gripper experiment, coarse
 mod lab; // experiments: side by side, stopped and resumed, told in files
 mod hollow_sphere; // an object in an evacuated shell of grains
 mod leaks; // what comes through the membranes
