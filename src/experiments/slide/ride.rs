@@ -328,6 +328,7 @@ fn model(scene: &Scene, case: &Case, patch: Patch) -> Model {
         radius_max: radius,
         radius_mean: radius,
         skin: SKIN_SHARE * radius,
+        period: None,
         grain_law: law,
         membrane_law: law,
         membrane,
