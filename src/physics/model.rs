@@ -3,7 +3,7 @@
 use super::{
     boundary::{shape::Surface, wall::WallModel},
     contact::law::PairLaw,
-    membrane::MembraneModel,
+    membrane::{MembraneModel, Sheet, mesh::Mesh},
 };
 use crate::base::{Pose, Real, Vec3};
 
@@ -20,6 +20,10 @@ pub struct Model {
     pub radius_mean: Real,
     /// Distance beyond contact within which neighbours are listed [m].
     pub skin: Real,
+    /// Edges of the box that goes on periodically in all directions [m]; each at least twice as long as
+    /// a largest grain's reach, diameter and skin. Only for grains alone. Positions are never wrapped:
+    /// two grains meet by the image that is closest.
+    pub period: Option<Vec3>,
     /// Law between grains.
     pub grain_law: PairLaw,
     /// Law between grains and membrane.
@@ -37,6 +41,37 @@ pub struct Model {
     /// The rigid bodies that the membrane can touch, in the order of `Controls::bodies`; the table
     /// is last.
     pub bodies: Vec<BodyModel>,
+}
+
+impl Model {
+    /// Grains alone, all under one `law`: without gravity, walls, membrane, air or bodies.
+    pub fn of_grains(law: PairLaw, substep: Real, radius_max: Real, radius_mean: Real) -> Self {
+        let mesh = Mesh::new(Vec::new(), Vec::new()).expect("nothing is no bad surface");
+        let sheet = Sheet {
+            thickness: 0.0,
+            youngs_modulus: 0.0,
+            density: 0.0,
+            spring_damping: 0.0,
+            bending_stiffness: 0.0,
+            bending_damping: 0.0,
+        };
+        Self {
+            gravity: Vec3::zeros(),
+            substep,
+            radius_max,
+            radius_mean,
+            skin: 0.25 * radius_max,
+            period: None,
+            grain_law: law,
+            membrane_law: law,
+            membrane: MembraneModel::new(mesh, sheet),
+            held_positions: Vec::new(),
+            walls: Vec::new(),
+            chamber: ChamberModel { lag_factor: 0.0, change_max: Real::INFINITY },
+            table: Pose::identity(),
+            bodies: Vec::new(),
+        }
+    }
 }
 
 /// The pump and its line.

@@ -44,6 +44,13 @@ pub struct Grains {
 }
 
 impl Grains {
+    /// At rest at `positions` [m].
+    pub fn at_rest(positions: Vec<Vec3>, radii: Vec<Real>, masses: Vec<Real>) -> Self {
+        let velocities = vec![Vec3::zeros(); positions.len()];
+        let spins = velocities.clone();
+        Self { positions, velocities, spins, radii, masses }
+    }
+
     /// Number of grains.
     pub fn len(&self) -> usize {
         self.positions.len()

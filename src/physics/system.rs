@@ -2,7 +2,10 @@
 
 use super::{
     Controls, Model, Scratch, State,
+    boundary::body::BodyMotion,
     health::{self, Diverged},
+    membrane::MembraneState,
+    state::{Grains, Springs},
     substep,
 };
 
@@ -24,6 +27,22 @@ impl System {
     pub fn new(model: Model, controls: Controls, state: State) -> Self {
         let scratch = Scratch::new(&model);
         Self { model, controls, state, scratch }
+    }
+
+    /// Grains at rest in `model`, its membrane in its reference shape, walls at `walls`.
+    pub fn at_rest(model: Model, walls: Vec<BodyMotion>, grains: Grains) -> Self {
+        let n_samples = model.membrane.mesh.n_vertices() + model.membrane.mesh.triangles.len();
+        let springs = Springs::none(grains.len(), walls.len(), n_samples * model.bodies.len());
+        let state = State {
+            grains,
+            membrane: MembraneState::at_rest(&model.membrane.mesh),
+            springs,
+            pair_ids: Vec::new(),
+            gauge: 0.0,
+            walls: walls.clone(),
+        };
+        let controls = Controls { gauge_setpoint: 0.0, walls, bodies: Vec::new() };
+        Self::new(model, controls, state)
     }
 
     /// Advances by one substep; walls move on at their velocities.

@@ -37,6 +37,9 @@ pub fn forces(
     let mesh = &model.membrane.mesh;
     let n_samples = mesh.n_vertices() + mesh.triangles.len();
     samples.resize(n_samples * model.bodies.len(), SampleForce::NONE);
+    if samples.is_empty() {
+        return;
+    }
     let of_bodies = samples.chunks_mut(n_samples).zip(springs.chunks_mut(n_samples));
     for ((body, motion), (samples, springs)) in
         model.bodies.iter().zip(&controls.bodies).zip(of_bodies)
