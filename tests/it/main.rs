@@ -13,8 +13,8 @@ mod fanout; // sinks behind their queues: order, drops, failure, closing
 mod generated_types; // msgs/*.msg and the Rust types agree
 mod grains; // one, two and three grains
 mod gripper; // the gripper experiment, coarse
-mod lab; // experiments: side by side, stopped and resumed, told in files
 mod hollow_sphere; // an object in an evacuated shell of grains
+mod lab; // experiments: side by side, stopped and resumed, told in files
 mod leaks; // what comes through the membranes
 mod lifts; // whole runs: what is lifted, and what is not
 #[cfg(feature = "ros")]
