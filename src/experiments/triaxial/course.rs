@@ -139,72 +139,7 @@ impl Test {
     /// # Errors
     /// The first fault in a fixed order.
     pub(super) fn check(&self) -> Result<(), Diverged> {
-        let r = self.system.check(self.course.n_in_stage);
-        if let Err(d) = &r {
-            // DBG
-            if d.what.contains("vertex") {
-                let v = d.which;
-                let m = &self.system.model.membrane.mesh;
-                let x = &self.system.state.membrane.positions;
-                eprintln!(
-                    "DBG v {v} ref {:?} now {:?} vel {:?} wallz {:?}",
-                    m.positions[v].as_slice(),
-                    x[v].as_slice(),
-                    self.system.state.membrane.velocities[v].as_slice(),
-                    gauges::height(&self.system)
-                );
-                for &t in m.triangles_of_vertex.of(v) {
-                    let c = m.triangles[t as usize];
-                    let p = c.map(|i| x[i as usize]);
-                    let q = c.map(|i| m.positions[i as usize]);
-                    eprintln!(
-                        "  tri {c:?} area/ref {:.3} edges {:.3?} mm speeds {:.1?}",
-                        (p[1] - p[0]).cross(&(p[2] - p[0])).norm()
-                            / (q[1] - q[0]).cross(&(q[2] - q[0])).norm(),
-                        [
-                            (p[1] - p[0]).norm() * 1e3,
-                            (p[2] - p[1]).norm() * 1e3,
-                            (p[0] - p[2]).norm() * 1e3
-                        ],
-                        c.map(|i| self.system.state.membrane.velocities[i as usize].norm())
-                    );
-                }
-                let g = &self.system.state.grains;
-                for i in 0..g.len() {
-                    let d = (g.positions[i] - x[v]).norm();
-                    if d < 3.4e-3 {
-                        eprintln!("  grain {i} dist {:.3} mm R {:.3}", d * 1e3, g.radii[i] * 1e3);
-                    }
-                }
-                let mut areas: Vec<(f64, usize)> = m
-                    .triangles
-                    .iter()
-                    .enumerate()
-                    .map(|(t, c)| {
-                        let p = c.map(|i| x[i as usize]);
-                        let q = c.map(|i| m.positions[i as usize]);
-                        (
-                            (p[1] - p[0]).cross(&(p[2] - p[0])).norm()
-                                / (q[1] - q[0]).cross(&(q[2] - q[0])).norm(),
-                            t,
-                        )
-                    })
-                    .collect();
-                areas.sort_by(|a, b| a.0.total_cmp(&b.0));
-                eprintln!(
-                    "  smallest areas {:?}",
-                    areas[..8]
-                        .iter()
-                        .map(|(a, t)| (
-                            format!("{a:.3}"),
-                            m.triangles[*t]
-                                .map(|i| format!("{:.1}", m.positions[i as usize].z * 1e3))
-                        ))
-                        .collect::<Vec<_>>()
-                );
-            }
-        }
-        r
+        self.system.check(self.course.n_in_stage)
     }
 
     /// Share of the whole work that is done, as far as it can be told.

@@ -57,6 +57,8 @@ pub(super) struct Membrane {
     pub(super) bending_damping: Real,
     /// The same for the fine mesh of the model with spheres.
     pub(super) bending_damping_spheres: Real,
+    /// True if hinges take the areas of the straight membrane.
+    pub(super) bends_by_first_areas: bool,
     pub(super) dissipation_time: Real,
     pub(super) tangential_damping: Real,
 }
@@ -179,6 +181,7 @@ pub(super) fn blank() -> Setup {
             bending_stiffness: NAN,
             bending_damping: NAN,
             bending_damping_spheres: NAN,
+            bends_by_first_areas: false,
             dissipation_time: NAN,
             tangential_damping: NAN,
         },
@@ -283,6 +286,7 @@ fn membrane(walk: &mut impl Walk, it: &mut Membrane) {
     let damping = Quantity::at_least_zero(&IMPULSE);
     walk.quantity("bending_damping", damping, &mut it.bending_damping);
     walk.quantity("bending_damping_spheres", damping, &mut it.bending_damping_spheres);
+    walk.flag("bends_by_first_areas", &mut it.bends_by_first_areas);
     walk.quantity("dissipation_time", Quantity::at_least_zero(&TIME), &mut it.dissipation_time);
     walk.number("tangential_damping", Range::AtLeast(0.0), &mut it.tangential_damping);
 }

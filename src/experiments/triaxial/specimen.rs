@@ -176,6 +176,9 @@ fn model(setup: &Setup, choice: Choice) -> Result<Model, MeshFault> {
         Kind::Spheres => setup.membrane.bending_damping_spheres,
     };
     let mut membrane = MembraneModel::new(mesh, setup.membrane.sheet(damping));
+    if setup.membrane.bends_by_first_areas {
+        membrane.bend_by_first_areas();
+    }
     if choice.kind == Kind::Spheres {
         membrane.contact = SheetContact::Spheres { radius: size.sphere_radius };
     }
