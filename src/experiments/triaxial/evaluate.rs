@@ -7,9 +7,12 @@ use super::{
     specimen::{Choice, Kind},
     timing_name,
 };
-use crate::experiments::{
-    findings::{Expected, Findings, Quantity, Row, Told},
-    record::Record,
+use crate::{
+    experiments::{
+        findings::{Expected, Findings, Quantity, Row, Told},
+        record::Record,
+    },
+    physics::measure::real,
 };
 
 const KINDS: [Kind; 2] = [Kind::Triangles, Kind::Spheres];
@@ -53,7 +56,7 @@ pub(super) fn findings(setup: &Setup, records: &[Record]) -> Findings {
         oracle: "Götz (2024), section 3.3.1: the membrane holds the grains",
         reason: "a whole number; a specimen that leaks ends with a fault and has no record",
     };
-    findings.rows.push(Row::new(&told, Expected::at_most(0.0), f64::from(n_leaked as u32)));
+    findings.rows.push(Row::new(&told, Expected::at_most(0.0), count(n_leaked)));
     findings.notes.extend(notes(setup));
     findings
 }
@@ -315,9 +318,9 @@ fn check(setup: &Setup, records: &[Record], findings: &mut Findings) {
     else {
         return;
     };
-    let step = setup.shear.strain / f64::from(setup.shear.n_points as u32);
+    let step = setup.shear.strain / real(setup.shear.n_points);
     let later: Vec<usize> =
-        (0..fast.len().min(slow.len())).filter(|&k| step * k as f64 > RISE).collect();
+        (0..fast.len().min(slow.len())).filter(|&k| step * real(k) > RISE).collect();
     let apart = mean(later.iter().map(|&k| slow[k] - fast[k]));
     let height = mean(later.iter().map(|&k| fast[k]));
     let told = Told {
@@ -328,6 +331,10 @@ fn check(setup: &Setup, records: &[Record], findings: &mut Findings) {
         reason: "3 % per halving; the check has the shorter substep as well",
     };
     findings.rows.push(Row::new(&told, Expected::at_most(0.03), (apart / height).abs()));
+}
+
+fn count(n: u64) -> f64 {
+    real(usize::try_from(n).unwrap_or(usize::MAX))
 }
 
 fn mean(values: impl IntoIterator<Item = f64>) -> f64 {
