@@ -6,18 +6,36 @@
 //! which a measured value stands beside its oracle. Tests, reports and benches run the same cases.
 
 pub mod findings; // what was found
+pub mod gripper; // the force that holds an object
+pub mod hollow_sphere; // how much vacuum reaches an object
+pub mod laws; // closed forms, equation by equation
+mod number; // numbers in text
+pub mod oracles; // closed forms to compare with
 pub mod record; // what a case leaves
+pub mod slide; // a ball drawn over a membrane
 pub mod triaxial; // grains under confining pressure
 
-use crate::{physics::health::Diverged, scene::SceneError};
+use serde::{Deserialize, Serialize};
+
+use crate::{
+    physics::health::Diverged,
+    scene::{SceneError, text::Layers},
+};
 use findings::Findings;
-use record::Record;
+pub use record::Record;
 
 /// All experiments, in the order of the sources.
-pub static EXPERIMENTS: &[&dyn Experiment] = &[&triaxial::Triaxial];
+pub static EXPERIMENTS: &[&dyn Experiment] = &[
+    &laws::Laws,
+    &slide::Slide,
+    &triaxial::Triaxial,
+    &gripper::Gripper,
+    &hollow_sphere::HollowSphere,
+];
 
 /// How much of an experiment is run.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Size {
     /// Smaller or faster, within minutes: for everyday checks.
     Quick,
@@ -36,6 +54,18 @@ pub struct SceneText<'a> {
     pub overrides: &'a [String],
     /// Which of the sections `quick` and `full` is laid over the rest.
     pub size: Size,
+}
+
+impl SceneText<'_> {
+    /// The layers of the scene; `on_defaults` if the gripper's defaults lie below.
+    pub(crate) fn layers(&self, on_defaults: bool) -> Layers<'_> {
+        let chosen = match self.size {
+            Size::Quick => "quick",
+            Size::Full => "full",
+        };
+        let Self { text, source, overrides, .. } = *self;
+        Layers { text, source, variants: (&["quick", "full"], chosen), overrides, on_defaults }
+    }
 }
 
 /// One experiment.
@@ -60,6 +90,12 @@ pub trait Experiment: Sync {
 pub trait Plan: Send + Sync {
     /// Names of the cases, usable as file names; they are independent of each other.
     fn cases(&self) -> Vec<String>;
+
+    /// Seconds that a case is expected to take on one thread, if that is known: the longest are
+    /// begun first. Nothing else depends on it.
+    fn expected_s(&self, _case: &str) -> Option<f64> {
+        None
+    }
 
     /// A case at its start.
     ///
@@ -121,6 +157,9 @@ pub enum StartError {
     /// The membrane cannot be meshed.
     #[error("membrane: {0}")]
     Mesh(#[from] crate::physics::membrane::mesh::MeshFault),
+    /// The grains find no place to grow from.
+    #[error("packing: {0}")]
+    NoRoom(#[from] crate::physics::packing::scatter::NoRoom),
 }
 
 /// Why a saved run cannot be resumed.

@@ -20,6 +20,10 @@ pub struct Model {
     pub radius_mean: Real,
     /// Distance beyond contact within which neighbours are listed [m].
     pub skin: Real,
+    /// Edges of the box that goes on periodically in all directions [m]; each at least twice as long as
+    /// a largest grain's reach, diameter and skin. Only for grains alone. Positions are never wrapped:
+    /// two grains meet by the image that is closest.
+    pub period: Option<Vec3>,
     /// Law between grains.
     pub grain_law: PairLaw,
     /// Law between grains and membrane.
@@ -57,6 +61,7 @@ impl Model {
             radius_max,
             radius_mean,
             skin: 0.25 * radius_max,
+            period: None,
             grain_law: law,
             membrane_law: law,
             membrane: MembraneModel::new(mesh, sheet),

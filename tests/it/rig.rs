@@ -77,6 +77,7 @@ impl Rig {
             radius_max: 0.0,
             radius_mean: 0.0,
             skin: 2e-4,
+            period: None,
             grain_law: PairLaw::between(material, material, surface),
             membrane_law: PairLaw::between(material, &LATEX, surface),
             held_positions: mesh.positions.iter().map(of_vertex).collect(),

@@ -191,6 +191,7 @@ fn model(setup: &Setup, choice: Choice) -> Result<Model, MeshFault> {
         radius_max: setup.grains.radius_max,
         radius_mean: 0.5 * (setup.grains.radius_min + setup.grains.radius_max),
         skin: SKIN_SHARE * setup.grains.radius_max,
+        period: None,
         grain_law: grains,
         membrane_law: sheet,
         held_positions: membrane.mesh.positions.clone(),

@@ -1,4 +1,7 @@
 //! Contacts between grains: the pair pass.
+//!
+//! In a periodic box a pair meets by its closest image. Whether there is a box is decided once for all
+//! pairs, so that open systems do not pay for it.
 
 use super::law::{self, Touch};
 use crate::{
@@ -19,9 +22,32 @@ pub fn forces(
     pair_forces: &mut Vec<PairForce>,
 ) {
     pair_forces.resize(state.pair_ids.len(), PairForce::default());
+    match &model.period {
+        None => of_pairs(model, state, springs, lists, pair_forces, |apart| apart),
+        Some(period) => of_pairs(model, state, springs, lists, pair_forces, |apart| {
+            closest_image(apart, period)
+        }),
+    }
+}
+
+/// The shortest of the vectors `apart` [m] between the images of two points.
+#[inline(always)]
+pub fn closest_image(apart: Vec3, period: &Vec3) -> Vec3 {
+    apart - apart.component_div(period).map(f64::round).component_mul(period)
+}
+
+#[inline(always)]
+fn of_pairs(
+    model: &Model,
+    state: &State,
+    springs: &mut [Vec3],
+    lists: &Neighbours,
+    pair_forces: &mut [PairForce],
+    image: impl Fn(Vec3) -> Vec3 + Sync,
+) {
     parallel::for_each_of_two(pair_forces, springs, |k, force, spring| {
         let pair = Pair { ids: state.pair_ids[k], size: lists.pair_sizes[k] };
-        *force = of_pair(model, &state.grains, &pair, spring);
+        *force = of_pair(model, &state.grains, &pair, &image, spring);
     });
 }
 
@@ -31,9 +57,15 @@ struct Pair {
 }
 
 #[inline(always)]
-fn of_pair(model: &Model, grains: &Grains, pair: &Pair, spring: &mut Vec3) -> PairForce {
+fn of_pair(
+    model: &Model,
+    grains: &Grains,
+    pair: &Pair,
+    image: &impl Fn(Vec3) -> Vec3,
+    spring: &mut Vec3,
+) -> PairForce {
     let [i, j] = pair.ids.map(|id| id as usize);
-    let apart = grains.positions[i] - grains.positions[j];
+    let apart = image(grains.positions[i] - grains.positions[j]);
     let (radius_i, radius_j) = (grains.radii[i], grains.radii[j]);
     let reach = radius_i + radius_j;
     let distance_squared = apart.norm_squared();

@@ -1,6 +1,10 @@
 //! What can be read off a state: energies, volumes, coordination, validity. Changes nothing.
 
+pub mod coordination; // who carries load
+pub mod overlap; // sphere and box, exactly
+pub mod rest; // is it at rest?
 pub mod stress; // what the contacts carry
+pub mod structure; // how grains are arranged
 
 use super::{Model, Scratch, State, membrane::pressure};
 use crate::base::Real;

@@ -14,9 +14,37 @@
 //! the sum equals the mean of Cauchy's stress over V.
 
 use crate::{
-    base::Real,
-    physics::{Scratch, State},
+    base::{Mat3, Real},
+    physics::{Model, Scratch, State, contact::grains::closest_image},
 };
+
+/// Mean stress [Pa] of all contact forces of the last substep in `volume` [m³].
+pub fn contact_stress(model: &Model, state: &State, scratch: &Scratch, volume: Real) -> Mat3 {
+    let positions = &state.grains.positions;
+    let mut sum = Mat3::zeros();
+    for (pair, [i, j]) in scratch.pair_forces.iter().zip(&state.pair_ids) {
+        if pair.overlap > 0.0 {
+            let apart = positions[*i as usize] - positions[*j as usize];
+            let branch = model.period.map_or(apart, |period| closest_image(apart, &period));
+            sum += pair.force * branch.transpose();
+        }
+    }
+    let mesh = &model.membrane.mesh;
+    for (patches, position) in scratch.patch_forces.iter().zip(positions) {
+        for patch in &patches.contacts[..patches.n] {
+            let mut branch = *position;
+            for (&v, &weight) in mesh.triangles[patch.triangle as usize].iter().zip(&patch.weights)
+            {
+                branch -= state.membrane.positions[v as usize] * weight;
+            }
+            sum += patch.force * branch.transpose();
+        }
+    }
+    for wall in scratch.wall_forces.iter().filter(|wall| wall.normal > 0.0) {
+        sum -= wall.force * wall.arm.transpose();
+    }
+    sum / volume
+}
 
 /// Mean pressure [Pa] of the normal forces of the last substep in `volume` [m³].
 pub fn normal_pressure(state: &State, scratch: &Scratch, volume: Real) -> Real {

@@ -6,6 +6,7 @@
 
 pub mod mesh;
 mod icosphere;
+mod parts;
 mod tube;
 pub mod stretch;
 pub mod bridson_2003;
@@ -14,6 +15,8 @@ pub mod critical_step;
 pub mod contact_geometry;
 #[cfg(test)]
 mod tests;
+
+use std::ops::Range;
 
 use bridson_2003::Fold;
 use mesh::{Mesh, area_normal};
@@ -183,9 +186,16 @@ impl MembraneModel {
 
     /// Makes every spring's rest length `scale` times its length in the reference shape.
     pub fn scale_rest_lengths(&mut self, scale: Real) {
+        self.scale_rest_lengths_of(0..self.mesh.n_vertices(), scale);
+    }
+
+    /// The same for the springs of one part: those between the vertices of a range.
+    pub fn scale_rest_lengths_of(&mut self, part: Range<usize>, scale: Real) {
         for (link, ends) in self.links.iter_mut().zip(&self.mesh.edges) {
-            let [a, b] = ends.map(|v| self.mesh.positions[v as usize]);
-            link.spring.rest_length = scale * (b - a).norm();
+            if ends.iter().all(|&v| part.contains(&(v as usize))) {
+                let [a, b] = ends.map(|v| self.mesh.positions[v as usize]);
+                link.spring.rest_length = scale * (b - a).norm();
+            }
         }
     }
 

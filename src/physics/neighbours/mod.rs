@@ -24,9 +24,13 @@ pub fn refresh(model: &Model, state: &mut State, scratch: &mut Scratch) {
         return;
     }
     let lists = &mut scratch.neighbours;
-    let grid =
-        cell_grid::CellGrid::new(&state.grains.positions, 2.0 * model.radius_max + model.skin);
-    verlet_list::build(model, &grid, state, lists);
+    // In a periodic box there is no membrane, so the wrapped grid serves the pairs alone.
+    let positions = match &model.period {
+        Some(period) => verlet_list::wrap(&state.grains.positions, period),
+        None => state.grains.positions.clone(),
+    };
+    let grid = cell_grid::CellGrid::new(&positions, 2.0 * model.radius_max + model.skin);
+    verlet_list::build(model, &grid, &positions, state, lists);
     match model.membrane.contact {
         SheetContact::Triangles => {
             triangle_list::build(model, &grid, state, lists);

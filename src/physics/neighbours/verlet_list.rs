@@ -2,45 +2,96 @@
 
 use super::cell_grid::{CellGrid, id};
 use crate::{
-    base::{Vec3, parallel},
-    physics::{Model, State, scratch::Neighbours, state::Grains},
+    base::{Real, Vec3, parallel},
+    physics::{Model, State, scratch::Neighbours},
 };
 
 /// Grains whose partners one thread looks up at a time.
 const CHUNK: usize = 128;
 
-/// Lists all pairs closer than contact plus skin; springs of pairs listed before are kept.
-pub(super) fn build(model: &Model, grid: &CellGrid, state: &mut State, lists: &mut Neighbours) {
-    let grains = &state.grains;
-    let mut chunks = vec![Vec::new(); grains.len().div_ceil(CHUNK)];
+/// The images of `positions` in the box from the origin to `period`.
+pub(super) fn wrap(positions: &[Vec3], period: &Vec3) -> Vec<Vec3> {
+    let into_box = |p: &Vec3| p - p.component_div(period).map(f64::floor).component_mul(period);
+    positions.iter().map(into_box).collect()
+}
+
+/// Lists all pairs closer than contact plus skin; springs of pairs listed before are kept. The grains
+/// are at `positions`, which are those of `grid`.
+pub(super) fn build(
+    model: &Model,
+    grid: &CellGrid,
+    positions: &[Vec3],
+    state: &mut State,
+    lists: &mut Neighbours,
+) {
+    let radii = &state.grains.radii;
+    let search = Search { model, grid, positions, radii };
+    let mut chunks = vec![Vec::new(); radii.len().div_ceil(CHUNK)];
     parallel::for_each(&mut chunks, |chunk, found| {
-        for i in chunk * CHUNK..grains.len().min((chunk + 1) * CHUNK) {
-            partners(model, grid, grains, i, found);
+        for i in chunk * CHUNK..radii.len().min((chunk + 1) * CHUNK) {
+            search.partners(i, found);
         }
     });
     let ids = chunks.concat();
     let springs = carry_springs(&state.pair_ids, &state.springs.pairs, &ids);
-    index_by_grain(&ids, grains.len(), lists);
+    index_by_grain(&ids, radii.len(), lists);
     state.pair_ids = ids;
     state.springs.pairs = springs;
 }
 
-/// Partners of grain `i` with higher ids, ascending.
-fn partners(model: &Model, grid: &CellGrid, grains: &Grains, i: usize, found: &mut Vec<[u32; 2]>) {
-    let (position, radius) = (grains.positions[i], grains.radii[i]);
-    let reach = Vec3::repeat(radius + model.radius_max + model.skin);
-    let begin = found.len();
-    grid.visit(&(position - reach), &(position + reach), |other| {
-        let j = other as usize;
-        if j <= i {
-            return;
+/// All that is needed to look for partners.
+struct Search<'a> {
+    model: &'a Model,
+    grid: &'a CellGrid,
+    positions: &'a [Vec3],
+    radii: &'a [Real],
+}
+
+impl Search<'_> {
+    /// Partners of grain `i` with higher ids, ascending.
+    fn partners(&self, i: usize, found: &mut Vec<[u32; 2]>) {
+        let begin = found.len();
+        let position = self.positions[i];
+        match &self.model.period {
+            None => self.around(i, &position, found),
+            Some(period) => self.around_images(i, &position, period, found),
         }
-        let cut = radius + grains.radii[j] + model.skin;
-        if (grains.positions[j] - position).norm_squared() < cut * cut {
-            found.push([id(i), other]);
+        found[begin..].sort_unstable();
+    }
+
+    /// Those near `position`, where grain `i` or an image of it is.
+    fn around(&self, i: usize, position: &Vec3, found: &mut Vec<[u32; 2]>) {
+        let (model, radius) = (self.model, self.radii[i]);
+        let reach = Vec3::repeat(radius + model.radius_max + model.skin);
+        self.grid.visit(&(position - reach), &(position + reach), |other| {
+            let j = other as usize;
+            if j <= i {
+                return;
+            }
+            let cut = radius + self.radii[j] + model.skin;
+            if (self.positions[j] - position).norm_squared() < cut * cut {
+                found.push([id(i), other]);
+            }
+        });
+    }
+
+    /// Those near the images of grain `i` that reach into the box. No partner is near two of them,
+    /// since the box is wide enough.
+    fn around_images(&self, i: usize, position: &Vec3, period: &Vec3, found: &mut Vec<[u32; 2]>) {
+        let reach = self.radii[i] + self.model.radius_max + self.model.skin;
+        let shifts = [0, 1, 2].map(|k| {
+            let back = position[k] + reach > period[k];
+            let ahead = position[k] < reach;
+            [Some(0.0), back.then(|| -period[k]), ahead.then_some(period[k])]
+        });
+        for &x in shifts[0].iter().flatten() {
+            for &y in shifts[1].iter().flatten() {
+                for &z in shifts[2].iter().flatten() {
+                    self.around(i, &(position + Vec3::new(x, y, z)), found);
+                }
+            }
         }
-    });
-    found[begin..].sort_unstable();
+    }
 }
 
 /// Springs for the new list: both lists are sorted, so one walk over both finds them.

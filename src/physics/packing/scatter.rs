@@ -6,7 +6,7 @@ use std::collections::HashMap;
 
 use crate::{
     base::{Real, Vec3, random::Random},
-    physics::measure::real,
+    physics::{contact::grains::closest_image, measure::real},
 };
 
 /// Candidates for one grain before it is given up.
@@ -167,7 +167,7 @@ impl Cells {
         keys.filter_map(|key| self.taken.get(&key)).flatten().all(|&other| {
             let mut apart = place - places[other];
             if let Some(period) = self.period {
-                apart -= apart.component_div(&period).map(Real::round).component_mul(&period);
+                apart = closest_image(apart, &period);
             }
             let reach = radius + radii[other];
             apart.norm_squared() > reach * reach
