@@ -61,6 +61,20 @@ pub(super) fn radii(system: &System) -> [Real; 2] {
     [mean(&|z| z <= 0.25), mean(&|z| z >= 0.75)]
 }
 
+/// What the hoop tension of the membrane adds to the confining pressure in the middle half [Pa]; below
+/// zero where the grains have drawn together.
+pub(super) fn hoop_pressure(system: &System) -> Real {
+    let mesh = &system.model.membrane.mesh;
+    let first = mesh.positions.iter().map(|p| p.xy().norm()).fold(0.0, Real::max);
+    let height = 2.0 * mesh.positions.iter().map(|p| p.z).fold(0.0, Real::max);
+    let [middle, _] = radii(system);
+    let (hoop, axial) = (middle / first - 1.0, self::height(system) / height - 1.0);
+    let sheet = &system.model.membrane.sheet;
+    // A hexagonal net of springs has Poisson's ratio 1/3.
+    let tension = sheet.youngs_modulus * sheet.thickness * (hoop + axial / 3.0) / (1.0 - 1.0 / 9.0);
+    tension / middle
+}
+
 /// Kinetic energy of the grains [J]. The membrane's is left out: here and there a vertex of some
 /// milligrams swings for ever between two patches, without anything else moving.
 pub(super) fn grain_energy(system: &System) -> Real {

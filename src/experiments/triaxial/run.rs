@@ -40,7 +40,6 @@ impl Sheared {
             let step = shear.strain / real(shear.n_points);
             shear.n_points = whole(runs.check_strain / step);
             shear.strain = step * real(shear.n_points);
-            setup.membrane.bending_damping = runs.check_bending_damping;
             setup.time.rayleigh_share = runs.check_rayleigh_share;
         }
         let aim = (setup.shear.strain, setup.shear.n_points);

@@ -171,7 +171,14 @@ fn model(setup: &Setup, choice: Choice) -> Result<Model, MeshFault> {
     let size = &setup.cases[choice.size];
     let net = net(setup, choice);
     let mesh = Mesh::tube(size.radius, size.height, net.n_around, net.n_rows)?;
-    let mut membrane = MembraneModel::new(mesh, setup.membrane.sheet());
+    let damping = match choice.kind {
+        Kind::Triangles => setup.membrane.bending_damping,
+        Kind::Spheres => setup.membrane.bending_damping_spheres,
+    };
+    let mut membrane = MembraneModel::new(mesh, setup.membrane.sheet(damping));
+    if setup.membrane.bends_by_first_areas {
+        membrane.bend_by_first_areas();
+    }
     if choice.kind == Kind::Spheres {
         membrane.contact = SheetContact::Spheres { radius: size.sphere_radius };
     }
