@@ -3,6 +3,10 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
+use jamgrip::{
+    experiments::Size,
+    lab::outcome::{n_processors, sized_name},
+};
 
 /// What was asked for.
 #[derive(Debug, Parser)]
@@ -15,9 +19,12 @@ use clap::{Args, Parser, Subcommand};
     after_help = "Examples:\n  \
                   jamgrip run launch_configs/pick_and_lift.yaml\n  \
                   jamgrip run launch_configs/pick_and_lift.yaml --set object.friction=0 --json\n  \
-                  jamgrip check launch_configs/pick_and_lift.yaml\n\n\
+                  jamgrip check launch_configs/pick_and_lift.yaml\n  \
+                  jamgrip experiment --list\n  \
+                  jamgrip validate\n\n\
                   Exit codes: 0 the run came to its end or was interrupted once, 1 it could not \
-                  begin or go on, 2 the command line or the scene is wrong, 130 interrupted twice."
+                  begin or go on, 2 the command line or the scene is wrong, 130 interrupted twice. \
+                  Experiments: see `jamgrip help experiment`."
 )]
 pub(crate) struct Cli {
     /// What to do.
@@ -32,6 +39,116 @@ pub(crate) enum Action {
     Run(Run),
     /// Checks a scene and prints it with all defaults
     Check(SceneArgs),
+    /// Runs an experiment and sets what it finds beside what its source shows
+    #[command(after_help = EXPERIMENT_HELP)]
+    Experiment(Experiment),
+    /// Runs all quick experiments and prints one table of verdicts
+    #[command(after_help = VALIDATE_HELP)]
+    Validate(Validate),
+    /// Prints kept results beside their sources, as Markdown
+    Report {
+        /// Folder of result files
+        folder: PathBuf,
+    },
+}
+
+const EXPERIMENT_HELP: &str = "\
+Writes result.json, report.html and curves/*.csv. Ctrl-C saves all running cases; the same command \
+goes on from there, with the same bits. Cases that run also save themselves once a minute.\n\n\
+Examples:\n  \
+jamgrip experiment triaxial --full --threads 2\n  \
+jamgrip experiment slide --set object.friction=0.3 --out results/slippery\n\n\
+Exit codes: 0 all rows pass, 1 something could not run, 2 the command line or the scene is wrong, \
+3 a row is red, 130 interrupted.";
+
+const VALIDATE_HELP: &str = "\
+Without --out nothing is written to disk and nothing is taken from an earlier run.\n\n\
+With --json standard output is an array of rows, one a line: id, quantity, unit, oracle, tolerance, \
+measured, pass, reason; also oracle_source, relation, experiment, wall_s, left_validity. A number that \
+is none is null.\n\n\
+Exit codes: 0 all rows pass, 1 something could not run (a case that did not come to its end is also a \
+red row), 2 the command line is wrong, 3 a row is red, 130 interrupted.";
+
+/// An experiment and how it is run.
+#[derive(Debug, Args)]
+pub(crate) struct Experiment {
+    /// Name of the experiment
+    #[arg(required_unless_present = "list")]
+    pub(crate) name: Option<String>,
+    /// Names all experiments
+    #[arg(long, conflicts_with = "name")]
+    pub(crate) list: bool,
+    /// Smaller or faster, within minutes; the default
+    #[arg(long, conflicts_with = "full")]
+    quick: bool,
+    /// As in the source; may take hours
+    #[arg(long)]
+    full: bool,
+    /// Changes a value of the scene, for example grains.youngs_modulus=100MPa; may be given more
+    /// than once
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    pub(crate) set: Vec<String>,
+    /// Reads this scene file instead of the experiment's own
+    #[arg(long, value_name = "FILE")]
+    pub(crate) scene: Option<PathBuf>,
+    /// Folder for results and saved states [default: results/NAME_quick or results/NAME_full]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Begins anew, whatever is in the folder
+    #[arg(long)]
+    pub(crate) fresh: bool,
+    /// Goes on with cases that another build of jamgrip has run
+    #[arg(long)]
+    pub(crate) mixed_builds: bool,
+    #[command(flatten)]
+    pub(crate) manner: Manner,
+}
+
+/// All quick experiments and how they are run.
+#[derive(Debug, Args)]
+pub(crate) struct Validate {
+    /// Only these experiments
+    pub(crate) names: Vec<String>,
+    /// Folder for the results of each experiment; the same command goes on where it was ended
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Begins anew, whatever is in the folder
+    #[arg(long, requires = "out")]
+    pub(crate) fresh: bool,
+    #[command(flatten)]
+    pub(crate) manner: Manner,
+}
+
+/// What holds for one experiment and for all.
+#[derive(Debug, Args)]
+pub(crate) struct Manner {
+    /// Cases at a time, each on one thread; the result is the same for any number
+    /// [default: all processors]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+    /// Shows no progress; JSON on standard output and nothing else
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+impl Experiment {
+    /// How much is run.
+    pub(crate) fn size(&self) -> Size {
+        if self.full { Size::Full } else { Size::Quick }
+    }
+
+    /// Where the results go.
+    pub(crate) fn out(&self, name: &str) -> PathBuf {
+        let by_name = || PathBuf::from("results").join(sized_name(name, self.size()));
+        self.out.clone().unwrap_or_else(by_name)
+    }
+}
+
+impl Manner {
+    /// Cases at a time.
+    pub(crate) fn n_threads(&self) -> usize {
+        self.threads.map_or_else(n_processors, usize::from)
+    }
 }
 
 /// A scene and what is changed in it.
@@ -113,8 +230,7 @@ impl Run {
 
     /// How many solver threads.
     pub(crate) fn n_threads(&self) -> usize {
-        let all = || std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
-        self.threads.map_or_else(all, usize::from)
+        self.threads.map_or_else(n_processors, usize::from)
     }
 }
 

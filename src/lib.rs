@@ -15,3 +15,4 @@ pub mod wire; // bytes for the outside
 pub mod sinks; // where snapshots go
 pub mod sources; // where commands come from
 pub mod node; // the running thing
+pub mod lab; // runs experiments: threads, files, reports

@@ -1,6 +1,7 @@
 //! Command line to run.
 
 mod cli;
+mod trials;
 
 use std::{
     error::Error,
@@ -11,6 +12,7 @@ use std::{
 use clap::Parser;
 use cli::{Action, Cli};
 use jamgrip::{
+    lab::fault::LabError,
     node::{
         cache::Cache,
         launch::{Options, launch},
@@ -32,11 +34,16 @@ fn main() -> ExitCode {
     let outcome = match cli.action {
         Action::Run(args) => run(&args),
         Action::Check(args) => check(&args),
+        Action::Experiment(args) => trials::experiment(&args),
+        Action::Validate(args) => trials::validate(&args),
+        Action::Report { folder } => trials::report(&folder),
     };
     outcome.unwrap_or_else(|error| {
         // If standard error is gone there is nobody to tell.
         drop(writeln!(io::stderr().lock(), "{error}"));
-        ExitCode::from(if error.is::<SceneError>() { WRONG } else { FAILED })
+        let is_of_command_line = error.is::<SceneError>()
+            || error.downcast_ref::<LabError>().is_some_and(LabError::is_of_command_line);
+        ExitCode::from(if is_of_command_line { WRONG } else { FAILED })
     })
 }
 

@@ -57,8 +57,11 @@ const DOORS: &[(&str, &[&str])] = &[
     ("rustdds", &["sinks/ros.rs", "sources/ros.rs"]),
     ("iceoryx2", &["wire/rows.rs", "sinks/shm.rs"]),
     ("mcap", &["sinks/bag.rs"]),
-    ("indicatif", &["node/progress.rs"]),
-    ("comfy_table", &["node/summary.rs"]),
+    ("indicatif", &["node/progress.rs", "lab/board.rs"]),
+    ("comfy_table", &["node/summary.rs", "lab/table.rs"]),
+    ("plotters", &["lab/plot.rs", "lab/axis.rs"]),
+    ("maud", &["lab/report.rs"]),
+    ("csv", &["lab/folder.rs"]),
     ("ctrlc", &["node/shutdown.rs", "node/launch.rs"]),
     ("clap", &["src/cli.rs", "src/main.rs"]),
 ];

@@ -9,7 +9,7 @@ use crate::{
         State,
         boundary::body::BodyMotion,
         membrane::MembraneState,
-        state::{Grains, N_PATCHES, Patch, Patches, Springs},
+        state::{Grains, N_PATCHES, Patch, Patches, SphereSprings, Springs},
     },
 };
 
@@ -51,6 +51,8 @@ struct Numbers {
     body_springs: Vec<[Real; 3]>,
     gauge: Real,
     walls: Vec<[Real; 13]>,
+    sphere_ids: Vec<[u32; 2]>,
+    sphere_springs: Vec<[Real; 3]>,
 }
 
 const DIGEST_BYTES: usize = 8;
@@ -72,6 +74,8 @@ pub fn write(state: &State) -> Vec<u8> {
         body_springs: arrays(&state.springs.bodies),
         gauge: state.gauge,
         walls: state.walls.iter().map(motion_row).collect(),
+        sphere_ids: state.springs.spheres.ids.clone(),
+        sphere_springs: arrays(&state.springs.spheres.springs),
     };
     let mut bytes = postcard::to_stdvec(&numbers).expect("a list of numbers always serialises");
     bytes.extend_from_slice(&xxh3_64(&bytes).to_le_bytes());
@@ -106,6 +110,10 @@ pub fn read(bytes: &[u8]) -> Result<State, SavedStateError> {
         springs: Springs {
             pairs: vectors(&numbers.pair_springs),
             patches: numbers.patches.iter().map(|rows| patches(rows)).collect(),
+            spheres: SphereSprings {
+                ids: numbers.sphere_ids,
+                springs: vectors(&numbers.sphere_springs),
+            },
             walls: vectors(&numbers.wall_springs),
             bodies: vectors(&numbers.body_springs),
         },
@@ -141,6 +149,7 @@ impl Numbers {
             ("wall springs", self.wall_springs.len(), n_grains * self.walls.len()),
             ("vertex velocities", self.vertex_velocities.len(), n_vertices),
             ("pair springs", self.pair_springs.len(), self.pair_ids.len()),
+            ("sphere springs", self.sphere_springs.len(), self.sphere_ids.len()),
         ])
     }
 }

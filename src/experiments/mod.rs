@@ -6,20 +6,29 @@
 //! which a measured value stands beside its oracle. Tests, reports and benches run the same cases.
 
 pub mod findings; // what was found
+pub mod hollow_sphere; // how much vacuum reaches an object
+pub mod laws; // closed forms, equation by equation
+mod number; // numbers in text
+pub mod oracles; // closed forms to compare with
 pub mod record; // what a case leaves
+pub mod triaxial; // grains under confining pressure
+
+use serde::{Deserialize, Serialize};
 
 use crate::{
     physics::health::Diverged,
     scene::{SceneError, text::Layers},
 };
 use findings::Findings;
-use record::Record;
+pub use record::Record;
 
 /// All experiments, in the order of the sources.
-pub static EXPERIMENTS: &[&dyn Experiment] = &[];
+pub static EXPERIMENTS: &[&dyn Experiment] =
+    &[&laws::Laws, &triaxial::Triaxial, &hollow_sphere::HollowSphere];
 
 /// How much of an experiment is run.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Size {
     /// Smaller or faster, within minutes: for everyday checks.
     Quick,
@@ -74,6 +83,12 @@ pub trait Experiment: Sync {
 pub trait Plan: Send + Sync {
     /// Names of the cases, usable as file names; they are independent of each other.
     fn cases(&self) -> Vec<String>;
+
+    /// Seconds that a case is expected to take on one thread, if that is known: the longest are
+    /// begun first. Nothing else depends on it.
+    fn expected_s(&self, _case: &str) -> Option<f64> {
+        None
+    }
 
     /// A case at its start.
     ///
@@ -135,6 +150,9 @@ pub enum StartError {
     /// The membrane cannot be meshed.
     #[error("membrane: {0}")]
     Mesh(#[from] crate::physics::membrane::mesh::MeshFault),
+    /// The grains find no place to grow from.
+    #[error("packing: {0}")]
+    NoRoom(#[from] crate::physics::packing::scatter::NoRoom),
 }
 
 /// Why a saved run cannot be resumed.

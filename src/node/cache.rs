@@ -1,18 +1,9 @@
-//! Settled start states on disk, by digest of what they depend on.
-//!
-//! A file is the digest of its bytes followed by the bytes. What is missing, cut off or changed
-//! is settled anew; a new file appears under its name only when it is complete.
+//! Settled start states on disk, by digest of what they depend on. What is missing, cut off or
+//! changed is settled anew.
 
-use std::{
-    fs,
-    io::{self, Write},
-    path::{Path, PathBuf},
-};
+use std::{fs, io, path::PathBuf};
 
-use crate::base::digest::Digest;
-
-/// First bytes of every file: name and version of the format.
-const MAGIC: &[u8; 8] = b"jamgrip1";
+use super::sealed::{self, Opened};
 
 /// A folder of start states.
 #[derive(Clone, Debug)]
@@ -65,10 +56,10 @@ impl Cache {
     /// Looks up `key`.
     pub fn load(&self, key: u64) -> Found {
         let path = self.path(key);
-        let Ok(file) = fs::read(&path) else { return Found::Nothing };
-        match unpack(key, &file) {
-            Some(bytes) => Found::State(bytes.to_vec()),
-            None => Found::Damaged(path),
+        match sealed::open(&path, key) {
+            Opened::Whole(bytes) => Found::State(bytes),
+            Opened::Nothing => Found::Nothing,
+            Opened::Damaged => Found::Damaged(path),
         }
     }
 
@@ -80,41 +71,12 @@ impl Cache {
         let path = self.path(key);
         let fault = |reason| CacheError { path: path.clone(), reason };
         fs::create_dir_all(&self.folder).map_err(fault)?;
-        // Two runs may settle the same scene at once: each writes its own file.
-        let draft = path.with_extension(format!("{}.draft", std::process::id()));
-        let written = write_whole(&draft, key, bytes).and_then(|()| fs::rename(&draft, &path));
-        if written.is_err() {
-            // Nothing more can be done if even this fails.
-            drop(fs::remove_file(&draft));
-        }
-        written.map_err(fault)
+        sealed::seal(&path, key, bytes).map_err(fault)
     }
 
     fn path(&self, key: u64) -> PathBuf {
         self.folder.join(format!("start-{key:016x}.state"))
     }
-}
-
-fn write_whole(path: &Path, key: u64, bytes: &[u8]) -> io::Result<()> {
-    let mut file = fs::File::create(path)?;
-    file.write_all(MAGIC)?;
-    file.write_all(&digest(key, bytes).to_le_bytes())?;
-    file.write_all(bytes)?;
-    file.sync_all()
-}
-
-fn unpack(key: u64, file: &[u8]) -> Option<&[u8]> {
-    let rest = file.strip_prefix(MAGIC)?;
-    let (found, bytes) = rest.split_first_chunk()?;
-    (u64::from_le_bytes(*found) == digest(key, bytes)).then_some(bytes)
-}
-
-/// The key is part of the digest, so that a file under another's name is not taken for it.
-fn digest(key: u64, bytes: &[u8]) -> u64 {
-    let mut digest = Digest::new();
-    digest.integer(key);
-    digest.bytes(bytes);
-    digest.finish()
 }
 
 #[cfg(test)]

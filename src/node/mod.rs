@@ -10,6 +10,7 @@ pub mod pacer; // the only clock
 pub mod plant; // what runs
 pub mod progress; // one line for the terminal
 pub mod schedule; // what is due when
+pub mod sealed; // files that are whole or not there
 pub mod shutdown; // Ctrl-C
 pub mod start; // a settled bag, from the cache or from scratch
 pub mod summary; // what is left at the end

@@ -64,6 +64,33 @@ impl Pacer {
     }
 }
 
+/// Wall time in laps.
+pub struct Stopwatch {
+    start: Instant,
+    lap: Instant,
+}
+
+impl Stopwatch {
+    /// A stopwatch that runs.
+    pub fn start() -> Self {
+        let start = Instant::now();
+        Self { start, lap: start }
+    }
+
+    /// Wall time since the start [s].
+    pub fn total_s(&self) -> f64 {
+        self.start.elapsed().as_secs_f64()
+    }
+
+    /// Wall time since the last lap [s]; a new lap begins.
+    pub fn lap_s(&mut self) -> f64 {
+        let now = Instant::now();
+        let lap = now - self.lap;
+        self.lap = now;
+        lap.as_secs_f64()
+    }
+}
+
 fn ratio(time_ns: u64, wall: Duration) -> f64 {
     let wall = wall.as_secs_f64();
     if wall == 0.0 { 0.0 } else { Duration::from_nanos(time_ns).as_secs_f64() / wall }

@@ -9,6 +9,7 @@ pub mod boundary; // what grains and membrane meet besides each other
 pub mod chamber; // the air inside
 pub mod contact; // who touches, and how hard
 pub mod controls;
+pub mod critical_step; // how long a substep may be
 pub mod fill; // grains into the bag
 pub mod health; // can the run go on?
 pub mod integrate;

@@ -12,6 +12,8 @@ pub struct Scratch {
     pub pair_forces: Vec<PairForce>,
     /// What the membrane does to each grain. Written by `contact::membrane`.
     pub patch_forces: Vec<PatchForces>,
+    /// Force of each listed vertex sphere on its grain. Written by `contact::spheres`.
+    pub sphere_forces: Vec<SphereForce>,
     /// What walls do to each grain, wall by wall. Written by `contact::walls`.
     pub wall_forces: Vec<WallForce>,
     /// What bodies do to samples of the membrane. Written by `contact::bodies`.
@@ -26,7 +28,8 @@ pub struct Scratch {
     /// Wrench of membrane, grains and air on each wall about its origin, world axes, this substep
     /// [N], [N m]. Written by `contact::on_walls`.
     pub wall_wrenches: Vec<Wrench>,
-    /// Grains whose centre left the bag, if any. Written by `contact::on_membrane`.
+    /// Grains whose centre left the bag, if any. Written by `contact::on_membrane` and, if grains
+    /// touch vertex spheres, by `neighbours`.
     pub leaked: Option<usize>,
 }
 
@@ -37,6 +40,7 @@ impl Scratch {
             neighbours: Neighbours::default(),
             pair_forces: Vec::new(),
             patch_forces: Vec::new(),
+            sphere_forces: Vec::new(),
             wall_forces: Vec::new(),
             sample_forces: Vec::new(),
             vertex_forces: vec![Vec3::zeros(); model.membrane.mesh.n_vertices()],
@@ -71,6 +75,8 @@ pub struct Neighbours {
     pub triangle_starts: Vec<u32>,
     /// Triangles that a grain may touch, by grain.
     pub triangles: Vec<u32>,
+    /// Contacts of grain i with vertex spheres are `sphere_starts[i] .. sphere_starts[i + 1]`.
+    pub sphere_starts: Vec<u32>,
     /// Largest squared displacement since the last build, relative to the carrier [m²].
     pub displacement_squared_max: Real,
     /// How often the lists were built.
@@ -141,6 +147,21 @@ impl PatchForces {
         }; N_PATCHES],
         is_outside: false,
     };
+}
+
+/// Force of a vertex sphere of the membrane on a grain.
+#[derive(Clone, Copy, Default)]
+pub struct SphereForce {
+    /// Vertex that carries the sphere.
+    pub vertex: u32,
+    /// Force on the grain [N].
+    pub force: Vec3,
+    /// Torque on the grain [N m].
+    pub torque: Vec3,
+    /// Overlap [m]; no contact if not positive.
+    pub overlap: Real,
+    /// Normal force [N].
+    pub normal: Real,
 }
 
 /// Force of a wall on one grain.

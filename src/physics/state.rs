@@ -69,6 +69,8 @@ pub struct Springs {
     pub pairs: Vec<Vec3>,
     /// Membrane contacts of each grain. Written by `contact::membrane`.
     pub patches: Vec<Patches>,
+    /// Contacts of grains with the membrane's vertex spheres.
+    pub spheres: SphereSprings,
     /// Of each grain with walls [m], wall by wall. Written by `contact::walls`.
     pub walls: Vec<Vec3>,
     /// Of membrane samples with bodies [m], body by body: all vertices, then all facets. Written
@@ -82,10 +84,20 @@ impl Springs {
         Self {
             pairs: Vec::new(),
             patches: vec![Patches::NONE; n_grains],
+            spheres: SphereSprings::default(),
             walls: vec![Vec3::zeros(); n_grains * n_walls],
             bodies: vec![Vec3::zeros(); n_samples],
         }
     }
+}
+
+/// Springs of the listed contacts with vertex spheres; empty if grains touch triangles.
+#[derive(Clone, Debug, Default)]
+pub struct SphereSprings {
+    /// Grain and vertex of each, ascending. Written by `neighbours`.
+    pub ids: Vec<[u32; 2]>,
+    /// Zero without contact [m]. Written by `contact::spheres`.
+    pub springs: Vec<Vec3>,
 }
 
 /// One patch of membrane that a grain touches: the contact lives on while the grain slides from
@@ -141,12 +153,16 @@ impl State {
 
     /// Only loaded springs count: which empty pairs are listed is not part of the physics.
     fn digest_springs(&self, digest: &mut Digest) {
-        for (ids, spring) in self.pair_ids.iter().zip(&self.springs.pairs) {
-            if *spring != Vec3::zeros() {
-                digest.integer(u64::from(ids[0]) << 32 | u64::from(ids[1]));
-                digest.reals(spring.as_slice());
+        let mut loaded = |ids: &[[u32; 2]], springs: &[Vec3]| {
+            for (ids, spring) in ids.iter().zip(springs) {
+                if *spring != Vec3::zeros() {
+                    digest.integer(u64::from(ids[0]) << 32 | u64::from(ids[1]));
+                    digest.reals(spring.as_slice());
+                }
             }
-        }
+        };
+        loaded(&self.pair_ids, &self.springs.pairs);
+        loaded(&self.springs.spheres.ids, &self.springs.spheres.springs);
         for patches in &self.springs.patches {
             digest.integer(patches.n as u64);
             for patch in &patches.slots[..patches.n] {

@@ -2,7 +2,7 @@
 
 use super::{
     Controls, Model, Scratch, State, chamber,
-    contact::{bodies, grains, membrane as sheet, sums, walls},
+    contact::{bodies, grains, membrane as sheet, spheres, sums, walls},
     integrate, membrane, neighbours,
 };
 
@@ -23,6 +23,7 @@ fn forces(model: &Model, controls: &Controls, state: &mut State, scratch: &mut S
     let lists = &scratch.neighbours;
     grains::forces(model, state_now, &mut springs.pairs, lists, &mut scratch.pair_forces);
     sheet::forces(model, state_now, lists, &mut springs.patches, &mut scratch.patch_forces);
+    spheres::forces(model, state_now, &mut springs.spheres, &mut scratch.sphere_forces);
     walls::forces(model, state_now, &mut springs.walls, &mut scratch.wall_forces);
     bodies::forces(model, controls, state_now, &mut springs.bodies, &mut scratch.sample_forces);
     membrane::forces(&model.membrane, &state_now.membrane, state_now.gauge, &mut scratch.membrane);

@@ -7,8 +7,11 @@ use super::{
 use crate::base::{Pose, Real, Vec3};
 
 const NAN: Real = Real::NAN;
-const MATERIAL: Material = Material { youngs_modulus: NAN, poisson_ratio: NAN, density: NAN };
-const GRAINS: Grains = Grains {
+/// A material.
+pub(crate) const MATERIAL: Material =
+    Material { youngs_modulus: NAN, poisson_ratio: NAN, density: NAN };
+/// Grains.
+pub(crate) const GRAINS: Grains = Grains {
     count: 0,
     radius_min: NAN,
     radius_max: NAN,

@@ -12,9 +12,12 @@ mod determinism; // the same bits every time
 mod fanout; // sinks behind their queues: order, drops, failure, closing
 mod generated_types; // msgs/*.msg and the Rust types agree
 mod grains; // one, two and three grains
+mod lab; // experiments: side by side, stopped and resumed, told in files
+mod hollow_sphere; // an object in an evacuated shell of grains
 mod lifts; // whole runs: what is lifted, and what is not
 #[cfg(feature = "ros")]
 mod main_job; // the main job, commanded from other processes
+mod oscillator; // a small experiment whose results are known in closed form
 mod peers; // independent programs in Python
 #[cfg(feature = "ros")]
 mod private_network; // where tests may speak DDS
@@ -23,6 +26,7 @@ mod rig; // a bare model by hand
 mod ros_loop; // what goes out reaches others, what others say comes in
 mod scenes; // scenes that run, scenes that are refused
 mod sheet; // a grain on the membrane
+mod spheres; // grains on the spheres of the classic membrane
 #[cfg(feature = "shm")]
 mod stream; // what other processes read in shared memory
 mod synthetic; // a scene and snapshots made up for tests

@@ -18,7 +18,7 @@ const RADIUS: Real = 2e-3;
 
 /// A hexagon of equilateral triangles in z = 0, `n` edges along each side. Its outside is below:
 /// grains lie on it as they lie in a bag.
-fn hexagon(n: i32, edge: Real) -> Mesh {
+pub(crate) fn hexagon(n: i32, edge: Real) -> Mesh {
     let place = |i: i32, j: i32| {
         let (i, j) = (Real::from(i), Real::from(j));
         Vec3::new(i + 0.5 * j, 0.75_f64.sqrt() * j, 0.0) * edge
@@ -78,7 +78,7 @@ fn resultant(rig: &Rig, contacts: &[PatchForce]) -> (Vec3, Vec3) {
 }
 
 /// Runs on one thread, where forking costs next to nothing.
-fn alone(test: impl FnOnce() + Send) {
+pub(crate) fn alone(test: impl FnOnce() + Send) {
     parallel::pool(1).unwrap().install(test);
 }
 

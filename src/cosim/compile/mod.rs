@@ -1,12 +1,7 @@
 //! A checked scene becomes a model: laws, meshes, surfaces, and the substep that all of them bear.
 //!
-//! ```text
-//! critical step = min(0.4 T_R, t_membrane),   T_R = π R √(ρ/G) / (0.1631 ν + 0.8766)
-//! ```
-//!
-//! T_R is the Rayleigh time of the smallest grain (Thornton & Randall 1988); 0.4 of it is where a
-//! packing at full vacuum starts to ring. t_membrane is the limit of springs, hinges and of the
-//! contacts that press on a vertex at full vacuum.
+//! The substep is a share of the critical one (`physics::critical_step`) under the contacts that
+//! press on a vertex at full vacuum.
 
 use super::{
     FLANGE, Plan,
@@ -22,24 +17,26 @@ use crate::{
             shape::{Bulk, ShapeFault, Surface},
             wall::{WallModel, WallShape},
         },
-        contact::law::{self, PairLaw},
+        contact::{
+            self,
+            law::{self, PairLaw},
+        },
+        critical_step,
         measure::real,
-        membrane::{MembraneModel, Sheet, critical_step, mesh::Mesh},
+        membrane::{MembraneModel, Sheet, mesh::Mesh},
         model::{BodyModel, BodySurface, ChamberModel},
     },
     scene::{self, Scene, Shape},
 };
 
 /// Changes whenever the same scene would settle differently: part of every cache key.
-const PHYSICS_VERSION: u64 = 4;
+const PHYSICS_VERSION: u64 = 5;
 /// Neighbours are listed this share of the largest radius beyond contact.
 const SKIN_SHARE: Real = 0.25;
 /// Longest time between two steps of the rigid world [s].
 const EXCHANGE_MAX: Real = 1e-4;
 /// Effective radius R* of a sample of the sheet on the table: that of the source's object [m].
 const TABLE_CONTACT_RADIUS: Real = 0.01;
-/// Share of the Rayleigh time at which a packing under full vacuum starts to ring.
-const RAYLEIGH_SHARE: Real = 0.4;
 
 /// Why a scene cannot be compiled.
 #[derive(Debug, thiserror::Error)]
@@ -288,29 +285,17 @@ fn critical_step(
     bodies: &[BodyModel],
 ) -> Real {
     let grains = &scene.grains;
-    let material = &grains.material;
-    let shear_modulus = material.youngs_modulus / (2.0 * (1.0 + material.poisson_ratio));
-    let rayleigh =
-        std::f64::consts::PI * grains.radius_min * (material.density / shear_modulus).sqrt()
-            / (0.1631 * material.poisson_ratio + 0.8766);
     // Under the strongest vacuum a grain carries the pressure on its square of sheet, a sample
     // that on its share of the sheet.
     let pressure = scene.chamber.gauge_min.abs().max(scene.chamber.gauge_max);
     let of_grain =
-        stiffness(&laws.membrane, grains.radius_max, pressure * 4.0 * grains.radius_max.powi(2));
+        contact::stiffness_at_vertex(membrane, &laws.membrane, grains.radius_max, pressure);
     let area = membrane.mesh.vertex_areas().into_iter().fold(0.0, Real::max);
     let of_body = bodies
         .iter()
-        .map(|body| stiffness(&body.law, body.contact_radius, pressure * area))
+        .map(|body| contact::stiffness(&body.law, body.contact_radius, pressure * area))
         .fold(0.0, Real::max);
-    let sheet = critical_step::critical_step(membrane, of_grain + of_body);
-    sheet.min(RAYLEIGH_SHARE * rayleigh)
-}
-
-/// Normal stiffness [N/m] of a Hertz contact that carries `force` [N].
-fn stiffness(law: &PairLaw, radius: Real, force: Real) -> Real {
-    let overlap = (0.75 * force / (law.modulus * radius.sqrt())).powf(2.0 / 3.0);
-    2.0 * law.modulus * (radius * overlap).sqrt()
+    critical_step::critical_step(grains.radius_min, &grains.material, membrane, of_grain + of_body)
 }
 
 /// A whole positive real as a count, at least 1.

@@ -39,6 +39,13 @@ pub fn on_grain(grains: &Grains, scratch: &Scratch, i: usize) -> (Vec3, Vec3) {
         force += patch.force;
     }
     torque += patches.torque;
+    let spheres = lists.sphere_starts[i] as usize..lists.sphere_starts[i + 1] as usize;
+    for sphere in &scratch.sphere_forces[spheres] {
+        if sphere.overlap > 0.0 {
+            force += sphere.force;
+            torque += sphere.torque;
+        }
+    }
     // Not by positions: `integrate` has them out while it moves the grains.
     let n_grains = grains.radii.len();
     for wall in scratch.wall_forces.iter().skip(i).step_by(n_grains) {
@@ -54,9 +61,13 @@ pub fn on_grain(grains: &Grains, scratch: &Scratch, i: usize) -> (Vec3, Vec3) {
 pub fn on_membrane(model: &Model, controls: &Controls, scratch: &mut Scratch) {
     let mesh = &model.membrane.mesh;
     let n_vertices = mesh.n_vertices();
-    let Scratch { vertex_forces, patch_forces, sample_forces, body_wrenches, leaked, .. } = scratch;
+    let Scratch { vertex_forces, patch_forces, sphere_forces, .. } = scratch;
+    let Scratch { sample_forces, body_wrenches, leaked, .. } = scratch;
     vertex_forces.clear();
     vertex_forces.resize(n_vertices, Vec3::zeros());
+    for sphere in sphere_forces.iter().filter(|it| it.overlap > 0.0) {
+        vertex_forces[sphere.vertex as usize] -= sphere.force;
+    }
     for (grain, patches) in patch_forces.iter().enumerate() {
         if patches.n == 0 {
             continue;

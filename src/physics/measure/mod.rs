@@ -14,7 +14,7 @@ use crate::base::Real;
 pub struct Packing {
     /// Contacts between grains.
     pub n_grain_contacts: usize,
-    /// Contacts between grains and membrane.
+    /// Contacts between grains and membrane; of vertex spheres each counts.
     pub n_membrane_contacts: usize,
     /// Contacts between membrane and bodies.
     pub n_body_contacts: usize,
@@ -53,6 +53,13 @@ pub fn packing(state: &State, scratch: &Scratch) -> Packing {
             packing.membrane_overlap_max = packing.membrane_overlap_max.max(patch.overlap);
         }
     }
+    for (sphere, ids) in scratch.sphere_forces.iter().zip(&state.springs.spheres.ids) {
+        if sphere.overlap > 0.0 {
+            packing.n_membrane_contacts += 1;
+            touching[ids[0] as usize] += 1;
+            packing.membrane_overlap_max = packing.membrane_overlap_max.max(sphere.overlap);
+        }
+    }
     for (k, wall) in scratch.wall_forces.iter().enumerate() {
         touching[k % n_grains] += usize::from(wall.normal > 0.0);
     }
@@ -75,6 +82,9 @@ pub fn normal_forces(state: &State, scratch: &Scratch) -> Vec<Real> {
     for (i, patches) in scratch.patch_forces.iter().enumerate() {
         let of_patches: Real = patches.contacts[..patches.n].iter().map(|c| c.normal).sum();
         forces[i] += of_patches;
+    }
+    for (sphere, ids) in scratch.sphere_forces.iter().zip(&state.springs.spheres.ids) {
+        forces[ids[0] as usize] += sphere.normal;
     }
     for (k, wall) in scratch.wall_forces.iter().enumerate() {
         forces[k % state.grains.len()] += wall.normal;

@@ -171,7 +171,7 @@ fn on_sphere(corners: &[Vec3; 12], weights: &Weights) -> Vec3 {
 
 /// Renumbers vertices and triangles so that neighbours in space are neighbours in memory, and
 /// drops vertices without triangle.
-fn coherent(positions: &[Vec3], triangles: Vec<[u32; 3]>) -> (Vec<Vec3>, Vec<[u32; 3]>) {
+pub(super) fn coherent(positions: &[Vec3], triangles: Vec<[u32; 3]>) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let mut order: Vec<u32> = triangles.iter().flatten().copied().collect();
     order.sort_unstable();
     order.dedup();

@@ -152,6 +152,14 @@ pub enum MeshFault {
         /// The vertex.
         vertex: u32,
     },
+    /// A tube that goes around nothing.
+    #[error("a tube needs 3 vertices around and 2 rows at least, not {n_around} and {n_rows}")]
+    TooFew {
+        /// Vertices in a row.
+        n_around: usize,
+        /// Rows.
+        n_rows: usize,
+    },
     /// A frequency without a ring of edges on the equator.
     #[error("subdivision frequency {frequency} is not an even number of at least 2")]
     Frequency {

@@ -6,6 +6,8 @@
 
 pub mod mesh;
 mod icosphere;
+mod parts;
+mod tube;
 pub mod stretch;
 pub mod bridson_2003;
 pub mod pressure;
@@ -13,6 +15,8 @@ pub mod critical_step;
 pub mod contact_geometry;
 #[cfg(test)]
 mod tests;
+
+use std::ops::Range;
 
 use bridson_2003::Fold;
 use mesh::{Mesh, area_normal};
@@ -37,6 +41,18 @@ pub struct Sheet {
     pub bending_damping: Real,
 }
 
+/// What of the sheet grains touch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SheetContact {
+    /// Its triangles: a closed surface without thickness.
+    Triangles,
+    /// Spheres around its vertices, the classic mass-spring membrane. They do not touch each other.
+    Spheres {
+        /// Radius of each sphere [m].
+        radius: Real,
+    },
+}
+
 /// Stands for the holder of a vertex that no wall holds.
 pub const FREE: u32 = u32::MAX;
 /// The first wall as a holder.
@@ -54,6 +70,8 @@ pub struct MembraneModel {
     /// Which wall holds each vertex, `FREE` for none. Forces on held vertices are computed like all
     /// others: they are what the sheet exerts on the wall.
     pub holders: Vec<u32>,
+    /// What of it grains touch.
+    pub contact: SheetContact,
     /// Springs and hinges, numbered like the edges.
     links: Vec<Link>,
 }
@@ -115,7 +133,8 @@ pub struct MembraneScratch {
 }
 
 impl MembraneModel {
-    /// Makes `sheet` in the shape of `mesh`, free of stress there; the carrier holds its rims.
+    /// Makes `sheet` in the shape of `mesh`, free of stress there; the carrier holds its rims, and
+    /// grains touch its triangles.
     pub fn new(mesh: Mesh, sheet: Sheet) -> Self {
         let mass_per_area = sheet.density * sheet.thickness;
         let masses: Vec<Real> = mesh.vertex_areas().iter().map(|a| a * mass_per_area).collect();
@@ -145,14 +164,21 @@ impl MembraneModel {
         }
         let holder = |&is_on_rim: &bool| if is_on_rim { CARRIER_ID } else { FREE };
         let holders = mesh.is_on_rim.iter().map(holder).collect();
-        Self { masses, holders, links, sheet, mesh }
+        Self { masses, holders, contact: SheetContact::Triangles, links, sheet, mesh }
     }
 
     /// Makes every spring's rest length `scale` times its length in the reference shape.
     pub fn scale_rest_lengths(&mut self, scale: Real) {
+        self.scale_rest_lengths_of(0..self.mesh.n_vertices(), scale);
+    }
+
+    /// The same for the springs of one part: those between the vertices of a range.
+    pub fn scale_rest_lengths_of(&mut self, part: Range<usize>, scale: Real) {
         for (link, ends) in self.links.iter_mut().zip(&self.mesh.edges) {
-            let [a, b] = ends.map(|v| self.mesh.positions[v as usize]);
-            link.spring.rest_length = scale * (b - a).norm();
+            if ends.iter().all(|&v| part.contains(&(v as usize))) {
+                let [a, b] = ends.map(|v| self.mesh.positions[v as usize]);
+                link.spring.rest_length = scale * (b - a).norm();
+            }
         }
     }
 

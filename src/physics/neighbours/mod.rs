@@ -4,11 +4,14 @@
 //! room costs no rebuild. History outlives rebuilds: pairs stay sorted, and springs move by merge.
 
 mod cell_grid;
+mod crossings;
+mod sphere_list;
 mod triangle_list;
 mod verlet_list;
 
 use super::{
     Model, Scratch, State,
+    membrane::SheetContact,
     scratch::{Neighbours, PairSize},
 };
 
@@ -21,18 +24,23 @@ pub fn refresh(model: &Model, state: &mut State, scratch: &mut Scratch) {
         return;
     }
     let lists = &mut scratch.neighbours;
-    let cell = 2.0 * model.radius_max + model.skin;
-    if let Some(period) = &model.period {
-        let wrapped = verlet_list::wrap(&state.grains.positions, period);
-        let grid = cell_grid::CellGrid::new(&wrapped, cell);
-        verlet_list::build(model, &grid, &wrapped, state, lists);
-        triangle_list::build(model, &grid, state, lists);
-    } else {
-        let positions = std::mem::take(&mut state.grains.positions);
-        let grid = cell_grid::CellGrid::new(&positions, cell);
-        verlet_list::build(model, &grid, &positions, state, lists);
-        state.grains.positions = positions;
-        triangle_list::build(model, &grid, state, lists);
+    // In a periodic box there is no membrane, so the wrapped grid serves the pairs alone.
+    let positions = match &model.period {
+        Some(period) => verlet_list::wrap(&state.grains.positions, period),
+        None => state.grains.positions.clone(),
+    };
+    let grid = cell_grid::CellGrid::new(&positions, 2.0 * model.radius_max + model.skin);
+    verlet_list::build(model, &grid, &positions, state, lists);
+    match model.membrane.contact {
+        SheetContact::Triangles => {
+            triangle_list::build(model, &grid, state, lists);
+            sphere_list::clear(state, lists);
+        }
+        SheetContact::Spheres { radius } => {
+            triangle_list::clear(state, lists);
+            sphere_list::build(model, radius, &grid, state, lists);
+            scratch.leaked = scratch.leaked.or_else(|| crossings::first(model, &grid, state));
+        }
     }
     weigh_pairs(state, lists);
     lists.grain_positions.clone_from(&state.grains.positions);

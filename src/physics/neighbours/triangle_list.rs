@@ -37,6 +37,12 @@ pub(super) fn build(model: &Model, grid: &CellGrid, state: &State, lists: &mut N
     lists.triangle_starts = starts;
 }
 
+/// No triangle for any grain.
+pub(super) fn clear(state: &State, lists: &mut Neighbours) {
+    lists.triangles.clear();
+    lists.triangle_starts = vec![0; state.grains.len() + 1];
+}
+
 fn grains_near(
     model: &Model,
     grid: &CellGrid,

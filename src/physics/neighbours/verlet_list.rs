@@ -95,7 +95,7 @@ impl Search<'_> {
 }
 
 /// Springs for the new list: both lists are sorted, so one walk over both finds them.
-fn carry_springs(old_ids: &[[u32; 2]], old: &[Vec3], ids: &[[u32; 2]]) -> Vec<Vec3> {
+pub(super) fn carry_springs(old_ids: &[[u32; 2]], old: &[Vec3], ids: &[[u32; 2]]) -> Vec<Vec3> {
     let mut k = 0;
     ids.iter()
         .map(|pair| {

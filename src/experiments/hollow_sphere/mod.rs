@@ -1,0 +1,59 @@
+//! The hollow sphere: an object inside a shell of grains between two membranes, the model of a
+//! gripper of Götz (2024), sections 4.3 and 4.4.
+
+mod build; // the system
+mod cases; // which packings
+mod found; // what the records show
+mod keys; // the scene
+mod run; // a packing on its way
+
+use super::{Experiment, Plan, Run, SceneText, StartError, findings::Findings, record::Record};
+use crate::scene::{SceneError, text::fill};
+use keys::Scene;
+
+/// The experiment.
+pub struct HollowSphere;
+
+impl Experiment for HollowSphere {
+    fn name(&self) -> &'static str {
+        "hollow_sphere"
+    }
+
+    fn about(&self) -> &'static str {
+        "pressure of an evacuated shell of grains on the object inside (Götz 2024, 4.3, 4.4)"
+    }
+
+    fn scene(&self) -> (&'static str, &'static str) {
+        (
+            "launch_configs/experiments/hollow_sphere.yaml",
+            include_str!("../../../launch_configs/experiments/hollow_sphere.yaml"),
+        )
+    }
+
+    fn read(&self, scene: &SceneText<'_>) -> Result<Box<dyn Plan>, SceneError> {
+        Ok(Box::new(Shells { scene: fill(&scene.layers(false), Scene::blank())? }))
+    }
+}
+
+/// All packings of a scene.
+struct Shells {
+    scene: Scene,
+}
+
+impl Plan for Shells {
+    fn cases(&self) -> Vec<String> {
+        cases::of(&self.scene).into_iter().map(|case| case.name).collect()
+    }
+
+    fn start(&self, case: &str) -> Result<Box<dyn Run>, StartError> {
+        let known = cases::of(&self.scene);
+        match known.iter().find(|it| it.name == case) {
+            Some(case) => Ok(Box::new(run::Shell::new(&self.scene, case)?)),
+            None => Err(StartError::NoSuchCase { name: case.to_owned(), known: self.cases() }),
+        }
+    }
+
+    fn evaluate(&self, records: &[Record]) -> Findings {
+        found::findings(&self.scene, records)
+    }
+}

@@ -1,0 +1,325 @@
+//! One or two grains with a plane or a sheet, by hand, moved by the substeps of the simulation.
+
+use crate::{
+    base::{Pose, Real, Vec3, real::Twist},
+    experiments::{oracles::impact::Collision, record::Record},
+    physics::{
+        Controls, Model, Scratch, State, System,
+        boundary::{
+            body::BodyMotion,
+            wall::{WallModel, WallShape},
+        },
+        contact::law::{PairLaw, Surface},
+        measure::real,
+        membrane::{CARRIER_ID, MembraneModel, MembraneState, Sheet, mesh::Mesh},
+        model::ChamberModel,
+        state::{Grains, Springs},
+    },
+    scene::Material,
+};
+
+/// Gravity [m/s²].
+pub(super) const G: Real = 9.81;
+
+/// Some grains, a wall, and a sheet.
+pub(super) struct Bench {
+    pub(super) system: System,
+}
+
+/// A sheet that plays no part.
+const NO_SHEET: Sheet = Sheet {
+    thickness: 3e-4,
+    youngs_modulus: 1e6,
+    density: 1e3,
+    spring_damping: 0.0,
+    bending_stiffness: 0.0,
+    bending_damping: 0.0,
+};
+
+/// Two surfaces with Coulomb friction alone.
+pub(super) const fn elastic(friction: Real) -> Surface {
+    Surface { friction, dissipation_time: 0.0, tangential_damping: 0.0 }
+}
+
+/// Mass of a sphere [kg].
+pub(super) fn mass(radius: Real, density: Real) -> Real {
+    4.0 / 3.0 * std::f64::consts::PI * radius.powi(3) * density
+}
+
+impl Bench {
+    /// Grains of `material` over a rigid plane at z = 0.
+    pub(super) fn on_plane(material: &Material, surface: Surface, dt: Real) -> Self {
+        let mesh = Mesh::new(Vec::new(), Vec::new()).expect("nothing can be wrong with nothing");
+        let plane = WallShape::Plane { normal: Vec3::z() };
+        Self::new(material, surface, MembraneModel::new(mesh, NO_SHEET), plane, dt)
+    }
+
+    /// Grains of `material` on a sheet whose vertices are all held.
+    pub(super) fn on_sheet(
+        material: &Material,
+        surface: Surface,
+        mut sheet: MembraneModel,
+        dt: Real,
+    ) -> Self {
+        sheet.holders.fill(CARRIER_ID);
+        Self::new(material, surface, sheet, WallShape::Frame, dt)
+    }
+
+    fn new(
+        material: &Material,
+        surface: Surface,
+        membrane: MembraneModel,
+        wall: WallShape,
+        dt: Real,
+    ) -> Self {
+        let walls = vec![BodyMotion { pose: Pose::identity(), twist: Twist::zero() }];
+        let state = State {
+            grains: Grains::default(),
+            membrane: MembraneState::at_rest(&membrane.mesh),
+            springs: Springs::none(0, 1, 0),
+            pair_ids: Vec::new(),
+            gauge: 0.0,
+            walls: walls.clone(),
+        };
+        let latex = Material {
+            youngs_modulus: membrane.sheet.youngs_modulus,
+            poisson_ratio: 1.0 / 3.0,
+            density: membrane.sheet.density,
+        };
+        let model = Model {
+            gravity: Vec3::zeros(),
+            substep: dt,
+            radius_max: 0.0,
+            radius_mean: 0.0,
+            skin: 0.0,
+            period: None,
+            grain_law: PairLaw::between(material, material, surface),
+            membrane_law: PairLaw::between(material, &latex, surface),
+            held_positions: membrane.mesh.positions.clone(),
+            membrane,
+            walls: vec![WallModel { shape: wall, law: PairLaw::against_rigid(material, surface) }],
+            chamber: ChamberModel { lag_factor: 0.0, change_max: Real::INFINITY },
+            table: Pose::identity(),
+            bodies: Vec::new(),
+        };
+        let controls = Controls { gauge_setpoint: 0.0, walls, bodies: Vec::new() };
+        Self { system: System::new(model, controls, state) }
+    }
+
+    /// Adds a grain at rest.
+    pub(super) fn add_grain(&mut self, position: Vec3, radius: Real, density: Real) {
+        let System { model, state, scratch, .. } = &mut self.system;
+        let grains = &mut state.grains;
+        grains.positions.push(position);
+        grains.velocities.push(Vec3::zeros());
+        grains.spins.push(Vec3::zeros());
+        grains.radii.push(radius);
+        grains.masses.push(mass(radius, density));
+        model.radius_max = model.radius_max.max(radius);
+        model.radius_mean = radius;
+        model.skin = 0.1 * model.radius_max;
+        state.springs = Springs::none(grains.positions.len(), 1, 0);
+        *scratch = Scratch::new(model);
+    }
+
+    /// One substep.
+    pub(super) fn step(&mut self) {
+        self.system.step();
+    }
+
+    /// The grains.
+    pub(super) fn grains(&self) -> &Grains {
+        &self.system.state.grains
+    }
+
+    /// The grains, to be moved.
+    pub(super) fn grains_mut(&mut self) -> &mut Grains {
+        &mut self.system.state.grains
+    }
+
+    /// Overlap of the first grain with the second, or with the plane if there is none [m].
+    pub(super) fn overlap(&self) -> Real {
+        let grains = self.grains();
+        match grains.len() {
+            1 => grains.radii[0] - grains.positions[0].z,
+            _ => {
+                let apart = grains.positions[0] - grains.positions[1];
+                grains.radii[0] + grains.radii[1] - apart.norm()
+            }
+        }
+    }
+
+    /// Normal force between the grains, or of the plane [N].
+    pub(super) fn normal_force(&self) -> Real {
+        match self.grains().len() {
+            1 => self.system.scratch.wall_forces[0].normal,
+            _ => {
+                self.system.scratch.pair_forces.first().map_or(0.0, |pair| pair.signed_normal.abs())
+            }
+        }
+    }
+
+    /// Momentum, and angular momentum about the origin, of all grains.
+    pub(super) fn momenta(&self) -> (Vec3, Vec3) {
+        let grains = self.grains();
+        let (mut linear, mut angular) = (Vec3::zeros(), Vec3::zeros());
+        for i in 0..grains.len() {
+            let momentum = grains.velocities[i] * grains.masses[i];
+            linear += momentum;
+            angular += grains.positions[i].cross(&momentum)
+                + grains.spins[i] * (0.4 * grains.masses[i] * grains.radii[i].powi(2));
+        }
+        (linear, angular)
+    }
+
+    /// Kinetic energy of all grains [J].
+    pub(super) fn kinetic_energy(&self) -> Real {
+        let grains = self.grains();
+        let of_grain = |i: usize| {
+            let inertia = 0.4 * grains.masses[i] * grains.radii[i].powi(2);
+            0.5 * grains.masses[i] * grains.velocities[i].norm_squared()
+                + 0.5 * inertia * grains.spins[i].norm_squared()
+        };
+        (0..grains.len()).map(of_grain).sum()
+    }
+
+    /// Steps until the bodies, which just touch and approach, have parted again.
+    pub(super) fn collide(&mut self) -> Met {
+        let mut met = Met { overlap_max: 0.0, force_max: 0.0, force_min: 0.0, duration: 0.0 };
+        for step in 1..100_000_000 {
+            self.step();
+            let (overlap, force) = (self.overlap(), self.normal_force());
+            met.overlap_max = met.overlap_max.max(overlap);
+            met.force_max = met.force_max.max(force);
+            met.force_min = met.force_min.min(force);
+            if overlap <= 0.0 {
+                met.duration = real(step) * self.system.model.substep;
+                break;
+            }
+        }
+        met
+    }
+}
+
+/// What was seen of a collision.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Met {
+    /// [m]
+    pub(super) overlap_max: Real,
+    /// [N]
+    pub(super) force_max: Real,
+    /// [N]
+    pub(super) force_min: Real,
+    /// [s]
+    pub(super) duration: Real,
+}
+
+/// A sphere that flies onto a rigid plane.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Flight {
+    /// [m]
+    pub(super) radius: Real,
+    pub(super) material: Material,
+    pub(super) surface: Surface,
+    /// Down is −z [m/s].
+    pub(super) velocity: Vec3,
+    /// [rad/s]
+    pub(super) spin: Vec3,
+}
+
+impl Flight {
+    /// The collision by its numbers.
+    pub(super) fn collision(&self) -> Collision {
+        Collision {
+            modulus: PairLaw::against_rigid(&self.material, self.surface).modulus,
+            radius: self.radius,
+            mass: mass(self.radius, self.material.density),
+            speed: -self.velocity.z,
+        }
+    }
+
+    /// Flies until it has left the plane, with so many steps per elastic contact.
+    pub(super) fn land(&self, steps_per_contact: usize, record: &mut Record) -> (Bench, Met) {
+        let dt = self.collision().duration() / real(steps_per_contact);
+        let mut bench = Bench::on_plane(&self.material, self.surface, dt);
+        bench.add_grain(Vec3::z() * self.radius, self.radius, self.material.density);
+        bench.grains_mut().velocities[0] = self.velocity;
+        bench.grains_mut().spins[0] = self.spin;
+        let met = bench.collide();
+        note_overlap(record, met.overlap_max / (2.0 * self.radius));
+        (bench, met)
+    }
+}
+
+/// Two spheres of one material that fly towards each other along x.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Encounter {
+    /// [m]
+    pub(super) radii: [Real; 2],
+    pub(super) material: Material,
+    /// Of each [kg/m³].
+    pub(super) densities: [Real; 2],
+    pub(super) surface: Surface,
+    /// Of each along x [m/s].
+    pub(super) speeds: [Real; 2],
+    /// Of each [rad/s].
+    pub(super) spins: [Vec3; 2],
+}
+
+impl Encounter {
+    /// Equal grains with half of the closing speed each.
+    pub(super) fn equal(
+        radius: Real,
+        material: Material,
+        surface: Surface,
+        closing_speed: Real,
+    ) -> Self {
+        Self {
+            radii: [radius; 2],
+            material,
+            densities: [material.density; 2],
+            surface,
+            speeds: [0.5 * closing_speed, -0.5 * closing_speed],
+            spins: [Vec3::zeros(); 2],
+        }
+    }
+
+    /// The collision by its numbers.
+    pub(super) fn collision(&self) -> Collision {
+        let half = |[a, b]: [Real; 2]| a * b / (a + b);
+        let masses = [0, 1].map(|i| mass(self.radii[i], self.densities[i]));
+        Collision {
+            modulus: PairLaw::between(&self.material, &self.material, self.surface).modulus,
+            radius: half(self.radii),
+            mass: half(masses),
+            speed: self.speeds[0] - self.speeds[1],
+        }
+    }
+
+    /// Meets and parts, with so many steps per elastic contact.
+    pub(super) fn meet(&self, steps_per_contact: usize, record: &mut Record) -> (Bench, Met) {
+        let dt = self.collision().duration() / real(steps_per_contact);
+        let mut bench = Bench::on_plane(&self.material, self.surface, dt);
+        let high = Vec3::z() * (10.0 * (self.radii[0] + self.radii[1]));
+        for (i, x) in [-self.radii[0], self.radii[1]].into_iter().enumerate() {
+            bench.add_grain(high + Vec3::x() * x, self.radii[i], self.densities[i]);
+            bench.grains_mut().velocities[i] = Vec3::x() * self.speeds[i];
+            bench.grains_mut().spins[i] = self.spins[i];
+        }
+        let met = bench.collide();
+        note_overlap(record, met.overlap_max / (self.radii[0] + self.radii[1]));
+        (bench, met)
+    }
+
+    /// Restitution of a meeting that is over.
+    pub(super) fn restitution(&self, bench: &Bench) -> Real {
+        let velocities = &bench.grains().velocities;
+        (velocities[1].x - velocities[0].x) / self.collision().speed
+    }
+}
+
+/// Keeps the largest overlap for the record's validity.
+fn note_overlap(record: &mut Record, overlap_over_diameter: Real) {
+    let largest = &mut record.validity.overlap_over_diameter_max;
+    *largest = largest.max(overlap_over_diameter);
+}

@@ -1,0 +1,273 @@
+//! The sheet under air: Laplace's law for sphere and cylinder, no resultant on a closed surface, and
+//! the work of the pressure (Götz 2024, eqs. 30, 31).
+//!
+//! ```text
+//! sphere    ΔR/R = p R (1 − ν)/(2 E d)
+//! cylinder  ε_θ = p R/(E d) (1 − ν/2),  ε_z = p R/(E d) (1/2 − ν)
+//! ```
+
+use super::{Law, Line, judge, push, scene::Scene, worst};
+use crate::{
+    base::{
+        Real, Vec3,
+        random::{Random, Stream},
+    },
+    experiments::{
+        findings::{Curve, Expected, Findings, Kind, Plot, Series},
+        record::Record,
+    },
+    physics::{
+        measure::real,
+        membrane::{
+            MembraneModel, MembraneScratch, MembraneState, Sheet, critical_step::critical_step,
+            forces, mesh::Mesh, pressure,
+        },
+    },
+};
+
+pub(super) struct Inflation;
+
+impl Law for Inflation {
+    fn name(&self) -> &'static str {
+        "inflation"
+    }
+
+    fn n_points(&self, scene: &Scene) -> usize {
+        scene.laplace.n_pressures + 2
+    }
+
+    fn measure(&self, scene: &Scene, point: usize, record: &mut Record) {
+        let n = scene.laplace.n_pressures;
+        if point < n {
+            sphere(scene, real(point + 1) / real(n), record);
+        } else if point == n {
+            cylinder(scene, record);
+        } else {
+            closed_surface(scene, record);
+        }
+    }
+
+    fn evaluate(&self, _: &Scene, record: &Record, findings: &mut Findings) {
+        judge(ROWS, record, findings);
+        findings
+            .curves
+            .push(Curve { name: "laws_laplace".to_owned(), columns: record.columns.clone() });
+        findings.plots.push(plot(record));
+    }
+}
+
+/// The scene's sheet without bending, well damped.
+fn bag(scene: &Scene) -> Sheet {
+    let sheet = scene.membrane.sheet;
+    Sheet { bending_stiffness: 0.0, bending_damping: 0.0, spring_damping: 0.5, ..sheet }
+}
+
+/// Lets the sheet come to rest under `pressure` [Pa] and the `pull` on each vertex [N].
+fn settle(model: &MembraneModel, state: &mut MembraneState, pressure: Real, pull: &[Vec3]) {
+    let dt = 0.5 * critical_step(model, 0.0);
+    let mut scratch = MembraneScratch::new(model);
+    for _ in 0..60 {
+        for _ in 0..50 {
+            forces(model, state, pressure, &mut scratch);
+            for v in 0..state.positions.len() {
+                let force = scratch.forces[v] + pull[v];
+                state.velocities[v] += force * (dt / model.masses[v]);
+                state.positions[v] += state.velocities[v] * dt;
+            }
+        }
+        // Slow modes are hardly damped by springs: what they have gained is taken out.
+        for velocity in &mut state.velocities {
+            *velocity *= 0.3;
+        }
+    }
+}
+
+fn sphere(scene: &Scene, share: Real, record: &mut Record) {
+    let radius = scene.membrane.radius;
+    let mesh = Mesh::icosphere(radius, scene.laplace.frequency).expect("a frequency above zero");
+    let model = MembraneModel::new(mesh, bag(scene));
+    let mut state = MembraneState::at_rest(&model.mesh);
+    let overpressure = share * scene.laplace.pressure_max;
+    settle(&model, &mut state, overpressure, &vec![Vec3::zeros(); model.masses.len()]);
+    let volume = |positions: &[Vec3]| pressure::volume(&model.mesh, positions);
+    let found = (volume(&state.positions) / volume(&model.mesh.positions)).cbrt() - 1.0;
+    let in_plane = model.sheet.youngs_modulus * model.sheet.thickness;
+    let oracle = overpressure * radius / (3.0 * in_plane);
+    push(record, "pressure", "Pa", overpressure);
+    push(record, "strain", "1", found);
+    push(record, "strain_laplace", "1", oracle);
+    worst(record, "U13.sphere", found / oracle - 1.0);
+}
+
+/// A tube of rows of triangles; its ends carry what a lid would put on them.
+fn cylinder(scene: &Scene, record: &mut Record) {
+    let (radius, n_around, n_rows) = (scene.membrane.radius, 48, 24);
+    let (model, height) = tube(scene, n_around, n_rows);
+    let overpressure = scene.laplace.pressure_max;
+    let lid = overpressure * std::f64::consts::PI * radius * radius / real(n_around);
+    let pull: Vec<Vec3> = (0..model.masses.len())
+        .map(|v| match v / n_around {
+            0 => Vec3::z() * -lid,
+            row if row == n_rows => Vec3::z() * lid,
+            _ => Vec3::zeros(),
+        })
+        .collect();
+    let mut state = MembraneState::at_rest(&model.mesh);
+    settle(&model, &mut state, overpressure, &pull);
+    let row_mean = |row: usize, of: &dyn Fn(&Vec3) -> Real| {
+        let vertices = &state.positions[row * n_around..(row + 1) * n_around];
+        vertices.iter().map(of).sum::<Real>() / real(n_around)
+    };
+    let (below, above) = (n_rows / 3, 2 * n_rows / 3);
+    let hoop = row_mean(n_rows / 2, &|p| p.xy().norm()) / radius - 1.0;
+    let between = row_mean(above, &|p| p.z) - row_mean(below, &|p| p.z);
+    let axial = between / (real(above - below) * height) - 1.0;
+    let unit = overpressure * radius / (model.sheet.youngs_modulus * model.sheet.thickness);
+    record.set("U13.cylinder_hoop", hoop / (unit * 5.0 / 6.0), "1");
+    record.set("U13.cylinder_axial", axial / (unit / 6.0), "1");
+}
+
+/// The tube, and the height of its rows [m].
+fn tube(scene: &Scene, n_around: usize, n_rows: usize) -> (MembraneModel, Real) {
+    let radius = scene.membrane.radius;
+    let turn = 2.0 * std::f64::consts::PI / real(n_around);
+    let edge = 2.0 * radius * (0.5 * turn).sin();
+    // Rows are turned by half an edge: the height that makes all edges equal.
+    let sagitta = radius * (1.0 - (0.5 * turn).cos());
+    let height = (0.75 * edge * edge - sagitta * sagitta).sqrt();
+    let mut positions = Vec::new();
+    for row in 0..=n_rows {
+        for column in 0..n_around {
+            let angle = turn * (real(column) + 0.5 * real(row % 2));
+            let z = height * real(row);
+            positions.push(Vec3::new(radius * angle.cos(), radius * angle.sin(), z));
+        }
+    }
+    let id = |row: usize, column: usize| {
+        u32::try_from(row * n_around + column % n_around).expect("a tube is small")
+    };
+    let mut triangles = Vec::new();
+    for row in 0..n_rows {
+        for k in 0..n_around {
+            let (a, b) = (id(row, k), id(row, k + 1));
+            let (c, d) = (id(row + 1, k), id(row + 1, k + 1));
+            if row % 2 == 0 {
+                triangles.extend([[a, b, c], [b, d, c]]);
+            } else {
+                triangles.extend([[a, b, d], [a, d, c]]);
+            }
+        }
+    }
+    let mesh = Mesh::new(positions, triangles).expect("a tube is a surface");
+    (MembraneModel::new(mesh, bag(scene)), height)
+}
+
+/// Force, torque and power of the air on a sphere with dents that is off the origin and moves.
+fn closed_surface(scene: &Scene, record: &mut Record) {
+    let radius = scene.membrane.radius;
+    let mesh = Mesh::icosphere(radius, scene.laplace.frequency).expect("a frequency above zero");
+    let slack = Sheet { youngs_modulus: 0.0, ..bag(scene) };
+    let model = MembraneModel::new(mesh, slack);
+    let mut random = Random::new(1, Stream::Position);
+    let mut draw = |size: Real| Vec3::from_fn(|_, _| random.between(-size, size));
+    let mut state = MembraneState::at_rest(&model.mesh);
+    for (position, velocity) in state.positions.iter_mut().zip(&mut state.velocities) {
+        *position += draw(0.02 * radius) + Vec3::new(0.3, -0.2, 0.5);
+        *velocity = draw(0.1);
+    }
+    let gauge = -90e3;
+    let mut scratch = MembraneScratch::new(&model);
+    forces(&model, &state, gauge, &mut scratch);
+    let loads = &scratch.forces;
+    let size: Real = loads.iter().map(|f| f.norm()).sum();
+    let force: Vec3 = loads.iter().sum();
+    let torque: Vec3 = state.positions.iter().zip(loads).map(|(r, f)| r.cross(f)).sum();
+    record.set("C5.force", force.norm() / size, "1");
+    record.set("C5.torque", torque.norm() / (size * radius), "1");
+    let power: Real = loads.iter().zip(&state.velocities).map(|(f, v)| f.dot(v)).sum();
+    let volume_at = |time: Real| {
+        let moved = state.positions.iter().zip(&state.velocities).map(|(r, v)| r + v * time);
+        pressure::volume(&model.mesh, &moved.collect::<Vec<_>>())
+    };
+    let rate = (volume_at(1e-5) - volume_at(-1e-5)) / 2e-5;
+    record.set("C5.power", power / (gauge * rate), "1");
+    let inwards = loads
+        .iter()
+        .zip(&state.positions)
+        .all(|(f, r)| f.dot(&(r - Vec3::new(0.3, -0.2, 0.5))) < 0.0);
+    record.set("C5.sign", if inwards { 1.0 } else { 0.0 }, "1");
+}
+
+const ROWS: &[Line] = &[
+    (
+        "U13.sphere",
+        "largest relative error of ΔR/R of a sphere under inner pressure",
+        "Laplace: p R (1 − ν)/(2 E d)",
+        Expected::at_most(0.01),
+        "1 %: edges of an icosphere differ by 15 %, and strains of up to 0.4 % are not small to 1e-3",
+    ),
+    (
+        "U13.cylinder_hoop",
+        "hoop strain of a closed cylinder over its theory",
+        "p R/(E d) (1 − ν/2)",
+        Expected::within(1.0, 0.02),
+        "2 %: strains of 0.9 % at the highest pressure enlarge the radius that carries it",
+    ),
+    (
+        "U13.cylinder_axial",
+        "axial strain of a closed cylinder over its theory",
+        "p R/(E d) (1/2 − ν)",
+        Expected::within(1.0, 0.05),
+        "5 %: it is the small difference of two strains five times as large",
+    ),
+    (
+        "C5.force",
+        "net force of the air on a closed surface, over the sum of all loads",
+        "closed surface, uniform pressure; Götz (2024) eq. 30",
+        Expected::at_most(1e-12),
+        "rounding of some thousand terms",
+    ),
+    (
+        "C5.torque",
+        "net torque of the air on a closed surface, over loads times radius",
+        "closed surface, uniform pressure; Götz (2024) eq. 31",
+        Expected::at_most(1e-10),
+        "rounding of some thousand terms, with an arm of 15 radii",
+    ),
+    (
+        "C5.power",
+        "power of the air's load over gauge pressure times rate of volume",
+        "virtual work",
+        Expected::within(1.0, 1e-6),
+        "central difference of a cubic",
+    ),
+    (
+        "C5.sign",
+        "1 if vacuum pushes every vertex inwards",
+        "gauge pressure is negative under vacuum",
+        Expected::within(1.0, 0.0),
+        "exact",
+    ),
+];
+
+fn plot(record: &Record) -> Plot {
+    let column = |name: &str| record.column(name).unwrap_or(&[]);
+    let over_pressure = |name: &str, kind, label: &str| Series {
+        label: label.to_owned(),
+        kind,
+        points: column("pressure").iter().zip(column(name)).map(|(&x, &y)| [x, y]).collect(),
+        deviations: Vec::new(),
+    };
+    Plot {
+        title: "A sphere under inner pressure".to_owned(),
+        source_says: "no figure; Götz (2024) eqs. 14 and 30 make a sheet under pressure".to_owned(),
+        x_label: "gauge pressure [Pa]".to_owned(),
+        y_label: "strain ΔR/R [-]".to_owned(),
+        log_x: false,
+        log_y: false,
+        series: vec![
+            over_pressure("strain", Kind::Points, "measured"),
+            over_pressure("strain_laplace", Kind::Analytic, "Laplace"),
+        ],
+    }
+}

@@ -1,0 +1,57 @@
+//! The experiment `laws`: every row holds, and a case that was saved goes on with the same bits.
+#![expect(clippy::print_stderr, reason = "what was measured is shown with the result")]
+
+use std::time::Instant;
+
+use super::super::{EXPERIMENTS, Plan, SceneText, Size, record::Record};
+
+/// The plan of the scene that comes with the program.
+fn plan() -> Box<dyn Plan> {
+    let laws = EXPERIMENTS.iter().find(|it| it.name() == "laws").unwrap();
+    let (source, text) = laws.scene();
+    laws.read(&SceneText { text, source, overrides: &[], size: Size::Quick }).unwrap()
+}
+
+fn run(plan: &dyn Plan, case: &str) -> Record {
+    let mut run = plan.start(case).unwrap();
+    while !run.advance().unwrap().is_done {}
+    run.record()
+}
+
+#[test]
+fn the_laws_are_those_of_the_books() {
+    let plan = plan();
+    let mut records = Vec::new();
+    for case in plan.cases() {
+        let start = Instant::now();
+        records.push(run(&*plan, &case));
+        eprintln!("{case}: {:.2} s", start.elapsed().as_secs_f64());
+    }
+    let findings = plan.evaluate(&records);
+    for row in &findings.rows {
+        let (measured, oracle, tolerance) = (row.measured, row.oracle, row.tolerance);
+        let verdict = if row.pass { "ok " } else { "RED" };
+        eprintln!("{verdict} {}: {measured:.6e}, {oracle:.6e} ± {tolerance:.1e}", row.id);
+    }
+    // Oracle and reason of each tolerance stand in the rows themselves.
+    let red: Vec<&str> =
+        findings.rows.iter().filter(|row| !row.pass).map(|row| row.id.as_str()).collect();
+    assert!(red.is_empty(), "{red:?}");
+    assert!(findings.rows.len() > 40 && findings.notes.is_empty(), "{:?}", findings.notes);
+}
+
+#[test]
+fn a_case_that_was_saved_goes_on_with_the_same_bits() {
+    let plan = plan();
+    let whole = run(&*plan, "inflation");
+    let mut first = plan.start("inflation").unwrap();
+    first.advance().unwrap();
+    first.advance().unwrap();
+    let saved = first.save();
+    let mut second = plan.start("inflation").unwrap();
+    second.resume(&saved).unwrap();
+    while !second.advance().unwrap().is_done {}
+    // Oracle: the run without a break, bit by bit.
+    assert_eq!(second.record(), whole);
+    assert!(plan.start("impact").unwrap().resume(&saved).is_err(), "a save of another case");
+}

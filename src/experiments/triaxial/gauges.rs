@@ -1,0 +1,154 @@
+//! What is read off the specimen.
+//!
+//! ```text
+//! p_plate = F/A,  A = V/h            σ_d = p_plate − p_c,   ε = ln(h_0/h)
+//! σ_zz = 1/V Σ_c f_z l_z,   σ_rr = 1/2V Σ_c (f_x l_x + f_y l_y)
+//! ```
+//!
+//! F is what grains put on a plate, V the volume inside membrane and plates, h their distance; f and l
+//! are force and branch of each contact, from the contact point to the centre on plates and membrane.
+
+use super::specimen::{BOTTOM, TOP};
+use crate::{
+    base::{Real, Vec3},
+    physics::{
+        System,
+        contact::sums,
+        measure::{self, real},
+        membrane::pressure,
+    },
+};
+
+/// Forces of the grains on the lower and the upper plate, outward along the axis [N].
+pub(super) fn plate_forces(system: &System) -> [Real; 2] {
+    let n_grains = system.state.grains.len();
+    let on = |wall: u32, sign: Real| {
+        let first = wall as usize * n_grains;
+        let forces = &system.scratch.wall_forces;
+        let pushed: Real = forces[first..first + n_grains].iter().map(|it| it.force.z).sum();
+        sign * pushed
+    };
+    [on(BOTTOM, 1.0), on(TOP, -1.0)]
+}
+
+/// Distance of the plates [m].
+pub(super) fn height(system: &System) -> Real {
+    let z = |wall: u32| system.state.walls[wall as usize].pose.translation.z;
+    z(TOP) - z(BOTTOM)
+}
+
+/// Volume inside membrane and plates [m³].
+pub(super) fn volume(system: &System) -> Real {
+    pressure::volume(&system.model.membrane.mesh, &system.state.membrane.positions)
+}
+
+/// Mean distance of the membrane from the axis in the middle half of the height and at the ends [m].
+pub(super) fn radii(system: &System) -> [Real; 2] {
+    let mesh = &system.model.membrane.mesh;
+    let top = mesh.positions.iter().map(|p| p.z).fold(0.0, Real::max);
+    let mean = |is_in: &dyn Fn(Real) -> bool| {
+        let (mut sum, mut n) = (0.0, 0);
+        for (reference, position) in mesh.positions.iter().zip(&system.state.membrane.positions) {
+            if is_in(reference.z.abs() / top) {
+                sum += position.xy().norm();
+                n += 1;
+            }
+        }
+        sum / real(n)
+    };
+    [mean(&|z| z <= 0.25), mean(&|z| z >= 0.75)]
+}
+
+/// What the contacts carry.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Carried {
+    /// Axial and mean lateral stress of the grains [Pa].
+    pub(super) stress: [Real; 2],
+    /// Elastic energy of contacts between grains and with plates and membrane [J].
+    pub(super) elastic_energy: Real,
+    /// Largest overlap of two grains over their mean diameter.
+    pub(super) overlap_over_diameter: Real,
+    /// Mean unbalanced force of a grain over the mean contact force.
+    pub(super) unbalanced: Real,
+    /// Contacts per grain.
+    pub(super) coordination: Real,
+}
+
+/// Looks at every contact of the last substep.
+pub(super) fn carried(system: &System) -> Carried {
+    let mut sum = Sum::default();
+    of_grains(system, &mut sum);
+    of_membrane(system, &mut sum);
+    let n_grains = system.state.grains.len();
+    for contact in system.scratch.wall_forces.iter().filter(|it| it.normal > 0.0) {
+        sum.add(&contact.force, &-contact.arm, contact.normal * contact.overlap, 1);
+    }
+    let volume = volume(system);
+    let unbalanced: Real = (0..n_grains)
+        .map(|i| sums::on_grain(&system.state.grains, &system.scratch, i).0.norm())
+        .sum();
+    let mean_force = sum.force / real(sum.n.max(1));
+    Carried {
+        stress: [sum.axial / volume, sum.lateral / (2.0 * volume)],
+        elastic_energy: 0.4 * sum.normal_overlap,
+        overlap_over_diameter: sum.overlap_over_diameter,
+        unbalanced: unbalanced / real(n_grains) / mean_force.max(Real::MIN_POSITIVE),
+        coordination: measure::packing(&system.state, &system.scratch).coordination_number,
+    }
+}
+
+#[derive(Default)]
+struct Sum {
+    axial: Real,
+    lateral: Real,
+    /// Σ F ξ [J]; of a Hertz contact 2/5 of it are stored.
+    normal_overlap: Real,
+    overlap_over_diameter: Real,
+    force: Real,
+    n: usize,
+}
+
+impl Sum {
+    /// Adds a contact's force and branch; `n` is 0 for parts of one.
+    fn add(&mut self, force: &Vec3, branch: &Vec3, normal_overlap: Real, n: usize) {
+        self.axial += force.z * branch.z;
+        self.lateral += force.x * branch.x + force.y * branch.y;
+        self.normal_overlap += normal_overlap;
+        self.force += force.norm();
+        self.n += n;
+    }
+}
+
+fn of_grains(system: &System, sum: &mut Sum) {
+    let grains = &system.state.grains;
+    for (pair, ids) in system.scratch.pair_forces.iter().zip(&system.state.pair_ids) {
+        if pair.overlap > 0.0 {
+            let [i, j] = ids.map(|id| id as usize);
+            let branch = grains.positions[i] - grains.positions[j];
+            sum.add(&pair.force, &branch, pair.signed_normal.abs() * pair.overlap, 1);
+            let diameter = grains.radii[i] + grains.radii[j];
+            sum.overlap_over_diameter = sum.overlap_over_diameter.max(pair.overlap / diameter);
+        }
+    }
+}
+
+fn of_membrane(system: &System, sum: &mut Sum) {
+    let (grains, sheet) = (&system.state.grains, &system.state.membrane);
+    let triangles = &system.model.membrane.mesh.triangles;
+    for (patches, centre) in system.scratch.patch_forces.iter().zip(&grains.positions) {
+        for patch in &patches.contacts[..patches.n] {
+            let corners = triangles[patch.triangle as usize].map(|v| sheet.positions[v as usize]);
+            let point: Vec3 = corners.iter().zip(patch.weights).map(|(r, w)| r * w).sum();
+            sum.add(&patch.force, &(centre - point), patch.normal * patch.overlap, 1);
+        }
+    }
+    let ids = &system.state.springs.spheres.ids;
+    for (contact, [grain, vertex]) in system.scratch.sphere_forces.iter().zip(ids) {
+        if contact.overlap > 0.0 {
+            let grain = *grain as usize;
+            let apart = grains.positions[grain] - sheet.positions[*vertex as usize];
+            let branch = apart.normalize() * (grains.radii[grain] - 0.5 * contact.overlap);
+            sum.add(&contact.force, &branch, contact.normal * contact.overlap, 1);
+        }
+    }
+}

@@ -1,0 +1,135 @@
+//! The triaxial test of Götz (2024), section 3.3.1: stress over strain of grains in a membrane under a
+//! confining pressure, with both membrane models, two sizes and two initial states; and how long both
+//! models take.
+
+mod course; // from grown grains to the last strain
+mod evaluate; // what the records show
+mod gauges; // what is read off a specimen
+mod logbook; // what is recorded
+mod run; // a case
+mod setup; // the scene
+mod specimen; // grains, membrane, plates
+mod timing; // both models side by side
+
+use super::{
+    Experiment, Plan, Run, SceneText, Size, StartError, findings::Findings, record::Record,
+};
+use crate::scene::{
+    SceneError,
+    text::{Layers, fill},
+};
+use setup::Setup;
+use specimen::{Choice, Kind};
+
+/// The experiment.
+pub struct Triaxial;
+
+impl Experiment for Triaxial {
+    fn name(&self) -> &'static str {
+        "triaxial"
+    }
+
+    fn about(&self) -> &'static str {
+        "stress over strain of confined grains, both membrane models (Götz 2024, section 3.3.1)"
+    }
+
+    fn scene(&self) -> (&'static str, &'static str) {
+        (
+            "launch_configs/experiments/triaxial.yaml",
+            include_str!("../../../launch_configs/experiments/triaxial.yaml"),
+        )
+    }
+
+    fn read(&self, scene: &SceneText<'_>) -> Result<Box<dyn Plan>, SceneError> {
+        let chosen = match scene.size {
+            Size::Quick => "quick",
+            Size::Full => "full",
+        };
+        let layers = Layers {
+            text: scene.text,
+            source: scene.source,
+            variants: (&["quick", "full"], chosen),
+            overrides: scene.overrides,
+            on_defaults: false,
+        };
+        Ok(Box::new(Triaxials { setup: fill(&layers, setup::blank())? }))
+    }
+}
+
+/// The cases of a scene.
+struct Triaxials {
+    setup: Setup,
+}
+
+/// A case.
+#[derive(Clone, Copy)]
+enum Case {
+    /// One specimen, and its speed over that of the others.
+    Sheared { choice: Choice, slowness: f64 },
+    /// Both membrane models side by side, of a size.
+    Timed { size: usize },
+}
+
+/// What is appended to the name of a specimen at half speed.
+const HALF_SPEED: &str = "_half_speed";
+
+impl Triaxials {
+    fn all(&self) -> Vec<(String, Case)> {
+        let mut cases = Vec::new();
+        let runs = &self.setup.runs;
+        let n_sizes = if runs.case2 { 2 } else { 1 };
+        for size in 0..n_sizes {
+            for kind in [Kind::Triangles, Kind::Spheres] {
+                for initial in 0..2 {
+                    let choice = Choice { size, kind, initial };
+                    cases.push((name(choice), Case::Sheared { choice, slowness: 1.0 }));
+                }
+            }
+        }
+        if runs.half_speed_strain > 0.0 {
+            let choice = Choice { size: 0, kind: Kind::Triangles, initial: 0 };
+            let half = Case::Sheared { choice, slowness: 0.5 };
+            cases.push((name(choice) + HALF_SPEED, half));
+        }
+        if runs.timing > 0.0 {
+            for size in 0..n_sizes {
+                cases.push((timing_name(size), Case::Timed { size }));
+            }
+        }
+        cases
+    }
+}
+
+/// Name of a specimen, `case1_triangles_A`.
+fn name(choice: Choice) -> String {
+    let initial = ["A", "B"][choice.initial];
+    format!("case{}_{}_{initial}", choice.size + 1, choice.kind.name())
+}
+
+/// Name of the comparison of run times.
+fn timing_name(size: usize) -> String {
+    format!("case{}_timing", size + 1)
+}
+
+impl Plan for Triaxials {
+    fn cases(&self) -> Vec<String> {
+        self.all().into_iter().map(|(name, _)| name).collect()
+    }
+
+    fn start(&self, case: &str) -> Result<Box<dyn Run>, StartError> {
+        let found = self.all().into_iter().find(|(name, _)| name == case);
+        let Some((name, chosen)) = found else {
+            return Err(StartError::NoSuchCase { name: case.to_owned(), known: self.cases() });
+        };
+        Ok(match chosen {
+            Case::Sheared { choice, slowness } => {
+                Box::new(run::Sheared::new(&self.setup, &name, choice, slowness)?)
+            }
+            Case::Timed { size } => Box::new(timing::Timed::new(&self.setup, &name, size)?),
+        })
+    }
+
+    fn evaluate(&self, records: &[Record]) -> Findings {
+        evaluate::findings(&self.setup, records)
+    }
+}

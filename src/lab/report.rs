@@ -1,0 +1,277 @@
+//! A page for people: what was run, measured against expected, pictures, and how to repeat it.
+//!
+//! The page is complete in itself: style and pictures are inside, nothing is fetched.
+
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+use super::{
+    outcome::{CaseFacts, Outcome, size_name},
+    plot, table,
+    words::{duration, number, with_unit},
+};
+use crate::experiments::findings::{Kind, Plot, Quantity, Row};
+
+const STYLE: &str = include_str!("report.css");
+
+/// The page as HTML.
+pub fn page(outcome: &Outcome) -> String {
+    let title = format!("{}, {}", outcome.experiment, size_name(outcome.size));
+    let style = format!("{STYLE}{}", dark_colours());
+    let page = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                meta name="color-scheme" content="light dark";
+                title { (title) " · jamgrip" }
+                style { (PreEscaped(style)) }
+            }
+            body {
+                header {
+                    p.kind { "jamgrip experiment" }
+                    h1 { (outcome.experiment) " " span.size { (size_name(outcome.size)) } }
+                    p.about { (outcome.about) }
+                    (badges(outcome))
+                }
+                main {
+                    (warnings(outcome))
+                    (rows(&outcome.rows))
+                    (plots(&outcome.plots))
+                    (quantities(&outcome.quantities))
+                    (notes(&outcome.notes))
+                    (cases(outcome))
+                    (repeat(outcome))
+                }
+            }
+        }
+    };
+    page.into_string()
+}
+
+fn badges(outcome: &Outcome) -> Markup {
+    let (n, n_red) = (outcome.rows.len(), outcome.n_red());
+    html! {
+        ul.badges {
+            @if n_red == 0 {
+                li.good { (n) " of " (n) " rows pass" }
+            } @else {
+                li.bad { (n_red) " of " (n) " rows red" }
+            }
+            @if outcome.left_validity.is_empty() {
+                li.good { "within the model's validity" }
+            } @else {
+                li.bad { "left the model's validity" }
+            }
+            li { (outcome.cases.len()) " cases" }
+            li { (duration(outcome.wall_s)) " of one processor" }
+        }
+    }
+}
+
+fn warnings(outcome: &Outcome) -> Markup {
+    let failed = outcome.cases.iter().filter_map(|case| Some((case, case.fault.as_ref()?)));
+    html! {
+        @if !outcome.is_complete() || !outcome.left_validity.is_empty() {
+            section.warning {
+                h2 { "Read this first" }
+                ul {
+                    @for (case, fault) in failed {
+                        li { "Case " b { (case.case) } " did not come to its end: " (fault) }
+                    }
+                    @for fault in &outcome.left_validity { li { "Left validity: " (fault) } }
+                }
+            }
+        }
+    }
+}
+
+fn rows(rows: &[Row]) -> Markup {
+    html! {
+        section {
+            h2 { "Measured against expected" }
+            @if rows.is_empty() { p { "No rows." } }
+            @for row in rows { (one_row(row)) }
+        }
+    }
+}
+
+fn one_row(row: &Row) -> Markup {
+    let (oracle, tolerance) = table::expected(row);
+    let (class, verdict) = if row.pass { ("good", "pass") } else { ("bad", "red") };
+    html! {
+        article.row.(class) id=(row.id) {
+            div.verdict { (verdict) }
+            div.what {
+                h3 { (row.quantity) }
+                p.id { (row.id) }
+            }
+            dl.numbers {
+                div { dt { "measured" } dd { (with_unit(row.measured, &row.unit)) } }
+                div {
+                    dt { "expected" }
+                    dd { (oracle) @if tolerance != table::BOUND { " " (tolerance) }
+                         @if row.unit != "1" { " " (row.unit) } }
+                }
+                div { dt { "apart" } dd { (table::apart(row)) } }
+            }
+            p.why { b { (row.oracle_source) ". " } (row.reason) }
+        }
+    }
+}
+
+fn plots(plots: &[Plot]) -> Markup {
+    html! {
+        @if !plots.is_empty() {
+            section {
+                h2 { "Plots" }
+                @for plot in plots {
+                    figure {
+                        h3 { (plot.title) }
+                        (legend(plot))
+                        (PreEscaped(plot::svg(plot)))
+                        figcaption { b { "The source: " } (plot.source_says) }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn legend(plot: &Plot) -> Markup {
+    html! {
+        ul.legend {
+            @for (series, colour) in plot.series.iter().zip(plot::colours(plot)) {
+                li { (swatch(series.kind, colour)) (series.label) }
+            }
+        }
+    }
+}
+
+/// A small drawing of how a series looks.
+fn swatch(kind: Kind, colour: &str) -> Markup {
+    html! {
+        svg viewBox="0 0 36 14" width="36" height="14" aria-hidden="true" {
+            @match kind {
+                Kind::Line => {
+                    line x1="1" y1="7" x2="35" y2="7" stroke=(colour) stroke-width="2.5";
+                }
+                Kind::Analytic => {
+                    line x1="1" y1="7" x2="35" y2="7" stroke=(colour) stroke-width="2.5"
+                        stroke-dasharray="8 5";
+                }
+                Kind::Points => { circle cx="18" cy="7" r="4.5" fill=(colour); }
+                Kind::Source => {
+                    circle cx="18" cy="7" r="5" fill="none" stroke=(colour) stroke-width="2";
+                }
+            }
+        }
+    }
+}
+
+fn quantities(quantities: &[Quantity]) -> Markup {
+    html! {
+        @if !quantities.is_empty() {
+            section {
+                h2 { "Quantities" }
+                div.wide { table {
+                    thead { tr {
+                        th { "name" } th.number { "value" } th.number { "deviation" }
+                        th.number { "n" } th { "unit" } th { "meaning" }
+                    } }
+                    tbody {
+                        @for it in quantities {
+                            tr {
+                                td.name { (it.name) }
+                                td.number { (number(it.value)) }
+                                td.number { @if let Some(d) = it.deviation { "± " (number(d)) } }
+                                td.number { (it.n) }
+                                td { @if it.unit != "1" { (it.unit) } }
+                                td { (it.meaning) }
+                            }
+                        }
+                    }
+                } }
+            }
+        }
+    }
+}
+
+fn notes(notes: &[String]) -> Markup {
+    html! {
+        @if !notes.is_empty() {
+            section { h2 { "Notes" } ul { @for note in notes { li { (note) } } } }
+        }
+    }
+}
+
+fn cases(outcome: &Outcome) -> Markup {
+    html! {
+        section {
+            h2 { "Cases and validity" }
+            p { "Each case runs on one thread. Largest values that were seen; the law of contact is "
+                "believed up to an overlap of a tenth of the diameter." }
+            div.wide { table {
+                thead { tr {
+                    th { "case" } th.number { "seed" } th.number { "time" }
+                    th.number { "substeps" } th.number { "overlap/diameter" }
+                    th.number { "unbalanced force" } th.number { "inertial number" }
+                    th.number { "leaked" } th { "digest" }
+                } }
+                tbody { @for case in &outcome.cases { (one_case(case)) } }
+            } }
+        }
+    }
+}
+
+fn one_case(case: &CaseFacts) -> Markup {
+    let validity = &case.validity;
+    html! {
+        tr.bad[case.fault.is_some() || !validity.faults().is_empty()] {
+            td.name { (case.case) }
+            td.number { (case.seed) }
+            td.number { (duration(case.wall_s.values().sum())) }
+            td.number { (case.n_substeps.values().sum::<u64>()) }
+            td.number { (number(validity.overlap_over_diameter_max)) }
+            td.number { (number(validity.unbalanced_force)) }
+            td.number { (number(validity.inertial_number_max)) }
+            td.number { (validity.n_leaked) }
+            td.digest { (case.digest) }
+        }
+    }
+}
+
+fn repeat(outcome: &Outcome) -> Markup {
+    let build = &outcome.build;
+    html! {
+        section {
+            h2 { "How to repeat it" }
+            pre { code { (table::command(outcome)) } }
+            p { "The same scene, seeds and program give the same digests on one machine, for any "
+                "number of threads. The joint digest of all cases is " code { (outcome.digest) }
+                "." }
+            dl.facts {
+                dt { "scene" } dd { (outcome.scene.source) ", digest " code { (outcome.scene.digest) } }
+                dt { "build" } dd { "jamgrip " (build.version) ", commit " (build.commit) ", "
+                                    (build.target) }
+                dt { "program" } dd { @for it in &build.programs { code { (it) } " " } }
+                dt { "machine" } dd { (outcome.machine.cpu) ", " (outcome.machine.n_processors)
+                                      " processors" }
+                @if !outcome.curves.is_empty() {
+                    dt { "curves" } dd { @for it in &outcome.curves {
+                        a href={ "curves/" (it) ".csv" } { (it) ".csv" } " "
+                    } }
+                }
+            }
+        }
+    }
+}
+
+/// Lighter colours for dark pages, in place of those that the pictures were drawn with.
+fn dark_colours() -> String {
+    let swap = |from: &str, to: &str| {
+        format!("svg [stroke=\"{from}\"]{{stroke:{to}}}svg [fill=\"{from}\"]{{fill:{to}}}\n")
+    };
+    let swaps: String = plot::dark().map(|(from, to)| swap(from, to)).collect();
+    format!("@media (prefers-color-scheme: dark) {{\n{swaps}}}\n")
+}

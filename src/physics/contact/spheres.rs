@@ -1,0 +1,90 @@
+//! Contacts between grains and spheres around the membrane's vertices: the classic mass-spring
+//! membrane, which the triangles are compared with.
+//!
+//! ```text
+//! ξ = R + r − |x − x_v|,   n = (x − x_v) / |x − x_v|,   R* = R r / (R + r),   m* = m m_v / (m + m_v)
+//! b = −(R − ξ/2) n,        v = ẋ + ω × b − ẋ_v,         force on the vertex −F,   torque b × F
+//! ```
+//!
+//! | symbol | meaning | unit |
+//! |---|---|---|
+//! | R, m, x, ω | radius, mass, centre and spin of the grain | m, kg, m, rad/s |
+//! | r, m_v, x_v | radius of the spheres, mass and position of the vertex | m, kg, m |
+//! | b | from the grain's centre to the contact point | m |
+//!
+//! Source: Götz (2024), section 3.3, "MFS Partikel", after de Bono, McDowell & Wanatowski (2012);
+//! springs, hinges and the air's load are those of the triangle membrane. A vertex has a position
+//! and no orientation, so its sphere does not turn: the couple −(r − ξ/2) n × F, which would turn
+//! it, is taken up where it is. The source does not say whether its spheres turn; a sphere that
+//! did would roll off under the grain and hand on hardly any friction. Spheres do not touch each
+//! other: the springs set how far apart they are.
+//!
+//! Valid as long as the gaps between the spheres are smaller than the grains. What slips through is
+//! found by `neighbours::crossings`.
+
+use super::law::{self, Touch};
+use crate::{
+    base::{Real, Vec3, parallel},
+    physics::{
+        Model,
+        membrane::SheetContact,
+        scratch::SphereForce,
+        state::{SphereSprings, State},
+    },
+};
+
+/// Forces of all vertex spheres on all grains; carries their springs on by one substep.
+pub fn forces(
+    model: &Model,
+    state: &State,
+    listed: &mut SphereSprings,
+    forces: &mut Vec<SphereForce>,
+) {
+    forces.resize(listed.ids.len(), SphereForce::default());
+    let SheetContact::Spheres { radius } = model.membrane.contact else { return };
+    let SphereSprings { ids, springs } = listed;
+    parallel::for_each_of_two(forces, springs, |k, force, spring| {
+        let [grain, vertex] = ids[k].map(|id| id as usize);
+        *force = SphereForce { vertex: ids[k][1], ..SphereForce::default() };
+        touch(model, state, &Pair { grain, vertex, radius }, force, spring);
+    });
+}
+
+/// A grain and a sphere that it may touch.
+struct Pair {
+    grain: usize,
+    vertex: usize,
+    radius: Real,
+}
+
+#[inline(always)]
+fn touch(model: &Model, state: &State, pair: &Pair, result: &mut SphereForce, spring: &mut Vec3) {
+    let &Pair { grain, vertex, radius } = pair;
+    let grains = &state.grains;
+    let apart = grains.positions[grain] - state.membrane.positions[vertex];
+    let reach = grains.radii[grain] + radius;
+    let distance_squared = apart.norm_squared();
+    if distance_squared >= reach * reach || distance_squared == 0.0 {
+        *spring = Vec3::zeros();
+        return;
+    }
+    let distance = distance_squared.sqrt();
+    let overlap = reach - distance;
+    let normal = apart * distance.recip();
+    let arm = normal * -(grains.radii[grain] - overlap / 2.0);
+    let velocity = grains.velocities[grain] + grains.spins[grain].cross(&arm)
+        - state.membrane.velocities[vertex];
+    let parallel = |a: Real, b: Real| a * b / (a + b);
+    let touch = Touch {
+        overlap,
+        normal,
+        velocity,
+        radius: parallel(grains.radii[grain], radius),
+        mass: parallel(grains.masses[grain], model.membrane.masses[vertex]),
+    };
+    let force = law::force(&model.membrane_law, &touch, model.substep, spring);
+    result.force = normal * force.normal + force.tangential;
+    result.torque = arm.cross(&force.tangential);
+    result.overlap = overlap;
+    result.normal = force.normal;
+}

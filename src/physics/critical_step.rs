@@ -1,0 +1,52 @@
+//! How long a substep may be.
+//!
+//! ```text
+//! critical step = min(0.4 T_R, t_membrane),   T_R = π R √(ρ/G) / (0.1631 ν + 0.8766)
+//! ```
+//!
+//! | symbol | meaning | unit |
+//! |---|---|---|
+//! | T_R | Rayleigh time of the smallest grain: a surface wave crosses it | s |
+//! | R, ρ, G, ν | its radius, density, shear modulus and Poisson's ratio | m, kg/m³, Pa, – |
+//! | t_membrane | limit of springs, hinges and of the contacts that press on a vertex | s |
+//!
+//! Source: Thornton & Randall (1988). 0.4 of T_R is where a packing at full vacuum starts to ring.
+
+use super::membrane::{MembraneModel, critical_step::critical_step as membrane_limit};
+use crate::{base::Real, scene::Material};
+
+/// Share of the Rayleigh time at which a packing under full vacuum starts to ring.
+pub const RAYLEIGH_SHARE: Real = 0.4;
+
+/// Rayleigh time of a grain of `radius` [m]; in s.
+pub fn rayleigh_time(radius: Real, material: &Material) -> Real {
+    let shear_modulus = material.youngs_modulus / (2.0 * (1.0 + material.poisson_ratio));
+    std::f64::consts::PI * radius * (material.density / shear_modulus).sqrt()
+        / (0.1631 * material.poisson_ratio + 0.8766)
+}
+
+/// The longest stable substep [s] for grains of `material`, the smallest of `radius_min` [m], and a
+/// sheet on whose vertices contacts of `stiffness` [N/m] press.
+pub fn critical_step(
+    radius_min: Real,
+    material: &Material,
+    membrane: &MembraneModel,
+    stiffness: Real,
+) -> Real {
+    let sheet = membrane_limit(membrane, stiffness);
+    sheet.min(RAYLEIGH_SHARE * rayleigh_time(radius_min, material))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Oracle: the validation tables' 2.6 µs for 2.3 mm at 46 GPa and 206 µs for 1.9 mm at 5 MPa,
+    /// both at 2000 kg/m³ and ν = 0.245; half a unit of their last digit.
+    #[test]
+    fn rayleigh_times_are_the_known_ones() {
+        let of = |youngs_modulus| Material { youngs_modulus, poisson_ratio: 0.245, density: 2e3 };
+        assert!((rayleigh_time(2.3e-3, &of(4.6e10)) - 2.6e-6).abs() < 0.05e-6);
+        assert!((rayleigh_time(1.9e-3, &of(5e6)) - 206e-6).abs() < 0.5e-6);
+    }
+}

@@ -1,0 +1,70 @@
+//! Vertex spheres of the membrane that a grain may touch, sorted, with the springs of those that go
+//! on.
+
+use super::{
+    cell_grid::{CellGrid, id},
+    verlet_list::carry_springs,
+};
+use crate::{
+    base::{Real, Vec3, parallel},
+    physics::{Model, State, scratch::Neighbours, state::SphereSprings},
+};
+
+/// Vertices whose grains one thread looks up at a time.
+const CHUNK: usize = 128;
+
+/// Lists all spheres of `radius` [m] closer to a grain than contact plus skin; springs of those
+/// listed before are kept.
+pub(super) fn build(
+    model: &Model,
+    radius: Real,
+    grid: &CellGrid,
+    state: &mut State,
+    lists: &mut Neighbours,
+) {
+    let n_vertices = state.membrane.positions.len();
+    let mut chunks = vec![Vec::new(); n_vertices.div_ceil(CHUNK)];
+    parallel::for_each(&mut chunks, |chunk, found| {
+        for v in chunk * CHUNK..n_vertices.min((chunk + 1) * CHUNK) {
+            grains_near(model, radius, grid, state, v, found);
+        }
+    });
+    let mut ids = chunks.concat();
+    ids.sort_unstable();
+    let mut starts = vec![0_u32; state.grains.len() + 1];
+    for [grain, _] in &ids {
+        starts[*grain as usize + 1] += 1;
+    }
+    for i in 0..state.grains.len() {
+        starts[i + 1] += starts[i];
+    }
+    lists.sphere_starts = starts;
+    let before = &state.springs.spheres;
+    let springs = carry_springs(&before.ids, &before.springs, &ids);
+    state.springs.spheres = SphereSprings { ids, springs };
+}
+
+/// No sphere for any grain.
+pub(super) fn clear(state: &mut State, lists: &mut Neighbours) {
+    state.springs.spheres = SphereSprings::default();
+    lists.sphere_starts = vec![0; state.grains.len() + 1];
+}
+
+fn grains_near(
+    model: &Model,
+    radius: Real,
+    grid: &CellGrid,
+    state: &State,
+    vertex: usize,
+    found: &mut Vec<[u32; 2]>,
+) {
+    let position = state.membrane.positions[vertex];
+    let reach = Vec3::repeat(model.radius_max + radius + model.skin);
+    grid.visit(&(position - reach), &(position + reach), |grain| {
+        let i = grain as usize;
+        let cut = state.grains.radii[i] + radius + model.skin;
+        if (state.grains.positions[i] - position).norm_squared() < cut * cut {
+            found.push([grain, id(vertex)]);
+        }
+    });
+}

@@ -1,0 +1,82 @@
+//! The hollow sphere, coarse: what presses on the object, and a run that is broken off and resumed.
+
+use jamgrip::{
+    base::parallel,
+    experiments::{Experiment, Plan, Record, Run, SceneText, Size, hollow_sphere::HollowSphere},
+};
+
+/// A shell of large grains between coarse membranes.
+const COARSE: &[&str] = &[
+    "grains.count=590",
+    "grains.radius_min=3.8 mm",
+    "grains.radius_max=4.2 mm",
+    "membrane.frequency=8",
+    "inner.frequency=3",
+    "inner.clearance=0.3 mm",
+    "protocol.n_levels=2",
+    "protocol.close_time=80 ms",
+    "protocol.rest_time=10 ms",
+    "protocol.level_time=20 ms",
+    "sweep.youngs_moduli=[25 MPa]",
+    "sweep.frictionless=[]",
+];
+
+fn plan() -> Box<dyn Plan> {
+    let (source, text) = HollowSphere.scene();
+    let overrides: Vec<String> = COARSE.iter().map(|it| (*it).to_owned()).collect();
+    HollowSphere
+        .read(&SceneText { text, source, overrides: &overrides, size: Size::Quick })
+        .unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Advances up to `n_slices`; true at the end.
+fn advance(run: &mut Box<dyn Run>, n_slices: usize) -> bool {
+    let pool = parallel::pool(1).unwrap();
+    (0..n_slices).any(|_| parallel::lead(&pool, || run.advance()).unwrap().is_done)
+}
+
+fn end(mut run: Box<dyn Run>) -> Record {
+    assert!(advance(&mut run, 1_000_000));
+    run.record()
+}
+
+#[test]
+fn a_vacuum_presses_on_the_object_and_a_break_changes_no_bit() {
+    let plan = plan();
+    assert_eq!(plan.cases(), ["25MPa_packing_1"]);
+    let whole = end(plan.start("25MPa_packing_1").unwrap());
+
+    // Broken off three times: while growing, while closing, while the vacuum rises.
+    let mut run = plan.start("25MPa_packing_1").unwrap();
+    for n_slices in [3, 40, 60] {
+        assert!(!advance(&mut run, n_slices), "the run is longer than its parts");
+        let bytes = run.save();
+        run = plan.start("25MPa_packing_1").unwrap();
+        run.resume(&bytes).unwrap();
+    }
+    let resumed = end(run);
+    assert_eq!(resumed.digest, whole.digest, "oracle: the run without breaks, bit for bit");
+    assert_eq!(resumed, whole);
+
+    // Oracle: balance of forces. The vacuum presses more on the outer sphere than on the inner one,
+    // so something is left for the object, but not more than all of it spread over the object.
+    let pressure = whole.column("object_pressure").unwrap();
+    let (first, last) = (pressure[0], pressure[2]);
+    let spread = 90e3 * (4.0_f64.powi(2) - 1.0);
+    assert!(first < 0.2 * last && 10e3 < last && last < spread, "{pressure:?}");
+    let solid = whole.column("solid_fraction").unwrap();
+    assert!(
+        solid[0] < solid[2] && 0.45 < solid[2] && solid[2] < 0.75,
+        "{solid:?}: a dense packing"
+    );
+    assert_eq!(whole.validity.n_leaked, 0);
+}
+
+#[test]
+fn a_saved_run_of_another_case_is_refused() {
+    let plan = plan();
+    let mut run = plan.start("25MPa_packing_1").unwrap();
+    assert!(run.resume(b"nonsense").is_err());
+    let fault = plan.start("9MPa").err().map(|it| it.to_string()).unwrap_or_default();
+    assert!(fault.contains("25MPa_packing_1"), "{fault}");
+}

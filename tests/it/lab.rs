@@ -1,0 +1,275 @@
+//! Experiments: cases side by side, one that fails, a stop and what goes on from it, folders that
+//! hold something else, and what is told in files.
+
+use std::{
+    fs,
+    path::Path,
+    process::{Command, Output},
+};
+
+use jamgrip::{
+    experiments::Size,
+    lab::{
+        self, Ending, Options, Task, comparison,
+        fault::LabError,
+        folder::Policy,
+        outcome::Outcome,
+        report,
+        study::Order,
+        table::{self, Look},
+    },
+    node::shutdown::Shutdown,
+};
+
+use crate::{oscillator::Oscillator, peers};
+
+fn run(
+    experiment: &Oscillator,
+    out: Option<&Path>,
+    n_threads: usize,
+    policy: Policy,
+) -> Result<Ending, LabError> {
+    run_changed(experiment, out, n_threads, policy, &[])
+}
+
+fn run_changed(
+    experiment: &Oscillator,
+    out: Option<&Path>,
+    n_threads: usize,
+    policy: Policy,
+    overrides: &[&str],
+) -> Result<Ending, LabError> {
+    let shutdown = experiment.stop.as_ref().map_or_else(Shutdown::default, |it| it.0.clone());
+    let overrides = overrides.iter().map(|it| (*it).to_owned()).collect();
+    let order = Order { experiment, size: Size::Quick, overrides, scene: None };
+    let tasks = [Task { order, out: out.map(Path::to_owned) }];
+    lab::run(&tasks, &Options { n_threads, is_quiet: true, policy, shutdown: &shutdown })
+}
+
+fn outcome(ending: Result<Ending, LabError>) -> Outcome {
+    match ending.unwrap() {
+        Ending::Finished(mut outcomes) => outcomes.remove(0),
+        Ending::Interrupted { .. } => panic!("nobody asked for an end"),
+    }
+}
+
+/// All but the times on the clock.
+fn timeless(mut outcome: Outcome) -> Outcome {
+    outcome.wall_s = 0.0;
+    outcome.cases.iter_mut().for_each(|case| case.wall_s.clear());
+    outcome
+}
+
+fn with(also: &[&str]) -> Oscillator {
+    Oscillator { also: also.iter().map(|it| (*it).to_owned()).collect(), stop: None }
+}
+
+/// Oracle: the run on one thread.
+#[test]
+fn cases_side_by_side_give_what_one_after_the_other_gives() {
+    let one = outcome(run(&with(&[]), None, 1, Policy::default()));
+    assert!(one.rows.len() == 3 && one.n_red() == 0, "{:?}", one.rows);
+    assert!(one.cases.iter().all(|case| case.wall_s.contains_key("swinging")));
+    for n_threads in [2, 7] {
+        let many = outcome(run(&with(&[]), None, n_threads, Policy::default()));
+        assert_eq!(timeless(many), timeless(one.clone()));
+    }
+}
+
+/// Oracle: the run without the failing cases; their faults are those that they were made for.
+#[test]
+fn a_case_that_fails_stops_no_other_and_is_a_red_row() {
+    let alone = outcome(run(&with(&[]), None, 2, Policy::default()));
+    let found = outcome(run(&with(&["growing", "panicking"]), None, 2, Policy::default()));
+    assert!(!found.is_complete());
+    assert_eq!(timeless(alone.clone()).cases, timeless(found.clone()).cases[..3]);
+    assert_eq!(found.rows[..3], alone.rows);
+    let fault = |i: usize| found.cases[i].fault.clone().unwrap();
+    assert!(fault(3).contains("height [m] of oscillator") && fault(3).contains("damp it"));
+    assert_eq!(fault(4), "the program failed: on purpose");
+    let red: Vec<&str> =
+        found.rows.iter().filter(|row| !row.pass).map(|row| row.id.as_str()).collect();
+    assert_eq!(red, ["oscillator.growing.ran_to_its_end", "oscillator.panicking.ran_to_its_end"]);
+    assert!(table::of_one(&found, Look::new(None)).contains("case growing cannot go on"));
+}
+
+/// Oracle: the run without a break, bit by bit: digests of all cases and every number found.
+#[test]
+fn a_run_that_was_stopped_goes_on_with_the_same_bits() {
+    let whole = tempfile::tempdir().unwrap();
+    let whole = outcome(run(&with(&[]), Some(&whole.path().join("a")), 2, Policy::default()));
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("results/oscillator_quick");
+    let stopping = Oscillator { stop: Some((Shutdown::default(), 17)), ..with(&[]) };
+    let ending = run(&stopping, Some(&out), 2, Policy::default()).unwrap();
+    let Ending::Interrupted { n_cases: 3, .. } = ending else { panic!("{ending:?}") };
+    assert!(out.join("states/damping_0.1.state").exists());
+    assert!(!out.join("result.json").exists());
+    let resumed = outcome(run(&with(&[]), Some(&out), 1, Policy::default()));
+    assert_eq!(timeless(resumed.clone()), timeless(whole));
+    assert_eq!(fs::read_dir(out.join("states")).unwrap().count(), 0);
+    // Once more: everything is read, nothing runs, and the times are those of then.
+    assert_eq!(outcome(run(&with(&[]), Some(&out), 2, Policy::default())), resumed);
+}
+
+/// Oracle: the run without a break.
+#[test]
+fn damaged_states_and_cases_begin_anew() {
+    let folder = tempfile::tempdir().unwrap();
+    let stopping = Oscillator { stop: Some((Shutdown::default(), 9)), ..with(&[]) };
+    run(&stopping, Some(folder.path()), 1, Policy::default()).unwrap();
+    let state = folder.path().join("states/damping_0.1.state");
+    let mut bytes = fs::read(&state).unwrap();
+    let middle = bytes.len() / 2;
+    bytes[middle] ^= 1;
+    fs::write(&state, bytes).unwrap();
+    // The longest case is begun first and was kept.
+    fs::write(folder.path().join("cases/damping_0.2.json"), "{").unwrap();
+    let found = outcome(run(&with(&[]), Some(folder.path()), 2, Policy::default()));
+    let whole = outcome(run(&with(&[]), None, 2, Policy::default()));
+    assert_eq!(timeless(found), timeless(whole));
+}
+
+/// Oracle: what differs is named, with a remedy; what was there stays until `--fresh`.
+#[test]
+fn a_folder_of_something_else_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path();
+    let first = outcome(run(&with(&[]), Some(out), 2, Policy::default()));
+    let changed = |policy| run_changed(&with(&[]), Some(out), 2, policy, &["omega=4"]);
+    let error = changed(Policy { allows_mixed_builds: true, ..Policy::default() }).unwrap_err();
+    let text = error.to_string();
+    assert!(text.contains("the scene is unchanged there, changed by omega=4 here"), "{text}");
+    assert!(text.contains("--fresh") && text.contains("--out"), "{text}");
+    assert_eq!(outcome(run(&with(&[]), Some(out), 2, Policy::default())), first);
+
+    let plan = out.join("plan.json");
+    let text = fs::read_to_string(&plan).unwrap();
+    fs::write(&plan, text.replace(&first.build.programs[0], "0123456789abcdef")).unwrap();
+    let text = run(&with(&[]), Some(out), 2, Policy::default()).unwrap_err().to_string();
+    assert!(text.contains("another build") && text.contains("--mixed-builds"), "{text}");
+    let mixed = Policy { allows_mixed_builds: true, ..Policy::default() };
+    outcome(run(&with(&[]), Some(out), 2, mixed));
+
+    fs::write(out.join("mine.txt"), "mine").unwrap();
+    let anew = outcome(changed(Policy { is_fresh: true, ..Policy::default() }));
+    assert_eq!(anew.scene.overrides, ["omega=4"]);
+    assert!(out.join("mine.txt").exists(), "files of others stay");
+
+    let foreign = tempfile::tempdir().unwrap();
+    fs::write(foreign.path().join("mine.txt"), "mine").unwrap();
+    let error = run(&with(&[]), Some(foreign.path()), 2, Policy::default()).unwrap_err();
+    assert!(matches!(error, LabError::Foreign { .. }), "{error}");
+}
+
+/// Oracle: the outcome in memory, and an HTML parser that knows nothing of ours.
+#[test]
+fn files_tell_what_was_found() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path();
+    let found = outcome(run(&with(&["growing"]), Some(out), 2, Policy::default()));
+    let text = fs::read_to_string(out.join("result.json")).unwrap();
+    assert_eq!(Outcome::from_text(&text).unwrap(), found);
+
+    let curve = fs::read_to_string(out.join("curves/height_damping_0.1.csv")).unwrap();
+    let lines: Vec<&str> = curve.lines().collect();
+    assert_eq!((lines[0], lines.len()), ("time [s],height [m]", 41));
+    let height: f64 = lines[40].split(',').nth(1).unwrap().parse().unwrap();
+    assert_eq!(height.to_bits(), found.quantities[1].value.to_bits(), "not a digit is lost");
+
+    let page = out.join("report.html");
+    let told = peers::run("read_page.py", &[page.to_str().unwrap()]);
+    for row in &found.rows {
+        assert!(told.contains(&format!("id {}\n", row.id)), "{} in {told}", row.id);
+    }
+    for plot in &found.plots {
+        assert!(told.contains(&plot.title) && told.contains(&plot.source_says), "{told}");
+    }
+    assert!(told.contains("pictures 1\n") && told.contains(&found.about), "{told}");
+    assert!(told.contains("Left validity: damping_0.2: overlap over diameter"), "{told}");
+    assert!(told.contains("jamgrip experiment oscillator --quick"), "{told}");
+}
+
+/// Oracle: the rows themselves.
+#[test]
+fn documents_and_tables_name_every_row() {
+    let found = outcome(run(&with(&["growing"]), None, 2, Policy::default()));
+    let document = comparison::markdown(std::slice::from_ref(&found));
+    let screen = table::of_all(std::slice::from_ref(&found), Look::new(Some(110)));
+    let first_column: String = screen.lines().filter_map(|it| it.split('┆').next()).collect();
+    let first_column = first_column.replace(['│', ' '], "");
+    for row in &found.rows {
+        assert!(document.contains(&format!("`{}`", row.id)), "{document}");
+        assert!(first_column.contains(&row.id), "{screen}");
+    }
+    assert!(document.contains("height at the end \\| of the run"), "cells do not break");
+    assert!(
+        screen.lines().all(|line| line.chars().count() <= 110 || line.contains("cannot go on"))
+    );
+    assert!(screen.contains("3 of 4 rows pass") && screen.contains("left validity"), "{screen}");
+    let rows: Vec<_> = found.rows_for_machines().collect();
+    assert_eq!(rows.len(), 4);
+    for key in ["id", "quantity", "unit", "oracle", "tolerance", "measured", "pass", "reason"] {
+        assert!(rows.iter().all(|row| !row[key].is_null()), "{key}");
+    }
+    assert_eq!(rows[3]["pass"], false);
+}
+
+/// Oracle: the kept results, told anew. After a change of either:
+/// `JAMGRIP_UPDATE=1 cargo test --release --test it validation`, then read the diff.
+#[test]
+fn the_validation_document_is_made_of_the_kept_results() {
+    let kept = comparison::read(Path::new("tests/golden/validation")).unwrap();
+    let told = comparison::markdown(&kept);
+    if std::env::var_os("JAMGRIP_UPDATE").is_some() {
+        fs::write("docs/validation.md", &told).unwrap();
+    }
+    assert_eq!(fs::read_to_string("docs/validation.md").unwrap(), told);
+    for outcome in &kept {
+        assert_eq!(report::page(outcome).matches("<figure>").count(), outcome.plots.len());
+    }
+}
+
+fn jamgrip(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_jamgrip")).args(arguments).output().unwrap()
+}
+
+/// Oracle: the list itself, and exit codes as `--help` tells them.
+#[test]
+fn experiments_are_named_and_unknown_ones_refused() {
+    let listed = jamgrip(&["experiment", "--list"]);
+    assert!(listed.status.success());
+    let listed = String::from_utf8(listed.stdout).unwrap();
+    for it in jamgrip::experiments::EXPERIMENTS {
+        assert!(listed.contains(it.name()) && listed.contains(it.about()), "{listed}");
+    }
+    for arguments in [&["experiment", "triaxal"][..], &["validate", "triaxal"]] {
+        let output = jamgrip(arguments);
+        assert_eq!(output.status.code(), Some(2));
+        let complaint = String::from_utf8(output.stderr).unwrap();
+        assert!(complaint.contains("no experiment `triaxal`"), "{complaint}");
+        assert!(output.stdout.is_empty());
+    }
+    let missing = jamgrip(&["report", "/nowhere"]);
+    assert_eq!(missing.status.code(), Some(1));
+}
+
+/// Oracle: the rules for names that become names of files, and for the sizes that can be read.
+#[test]
+fn every_experiment_can_be_read_in_both_sizes() {
+    for it in jamgrip::experiments::EXPERIMENTS {
+        let (source, text) = it.scene();
+        assert_eq!(fs::read_to_string(source).unwrap(), text, "the scene of {}", it.name());
+        for size in [Size::Quick, Size::Full] {
+            let scene = jamgrip::experiments::SceneText { text, source, overrides: &[], size };
+            let plan = it.read(&scene).unwrap_or_else(|error| panic!("{}: {error}", it.name()));
+            let mut cases = plan.cases();
+            let is_plain = |c: char| c.is_ascii_alphanumeric() || "._-".contains(c);
+            assert!(cases.iter().all(|case| case.chars().all(is_plain)), "{cases:?}");
+            let n = cases.len();
+            cases.sort();
+            cases.dedup();
+            assert!(0 < n && n == cases.len(), "cases of {}: {cases:?}", it.name());
+        }
+    }
+}
