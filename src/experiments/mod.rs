@@ -10,6 +10,7 @@ pub mod hollow_sphere; // how much vacuum reaches an object
 pub mod laws; // closed forms, equation by equation
 mod number; // numbers in text
 pub mod oracles; // closed forms to compare with
+pub mod packing; // where spheres jam
 pub mod record; // what a case leaves
 pub mod triaxial; // grains under confining pressure
 
@@ -24,7 +25,7 @@ pub use record::Record;
 
 /// All experiments, in the order of the sources.
 pub static EXPERIMENTS: &[&dyn Experiment] =
-    &[&laws::Laws, &triaxial::Triaxial, &hollow_sphere::HollowSphere];
+    &[&laws::Laws, &triaxial::Triaxial, &packing::Packing, &hollow_sphere::HollowSphere];
 
 /// How much of an experiment is run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

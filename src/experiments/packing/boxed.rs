@@ -14,9 +14,12 @@
 use serde::{Deserialize, Serialize};
 
 use super::{
-    super::{Progress, ResumeError, Run, StartError, record::{Column, Record}},
+    super::{
+        Progress, ResumeError, Run, StartError,
+        record::{Column, Record},
+    },
     Case,
-    sample::{self, LOOK_EVERY, SLICE, Unrest},
+    sample::{self, SLICE, Settling, Unrest},
     scene::Scene,
 };
 use crate::{
@@ -34,12 +37,16 @@ use crate::{
             grain_volume, packing, real, stress,
             structure::{self, Bins, Region},
         },
-        packing::{Growth, Grown, Laws, Recipe, Room, first_scale, grow, scatter, sphere_volume},
+        packing::{Grown, Growth, Laws, Recipe, Room, first_scale, grow, scatter, sphere_volume},
     },
 };
 
 /// Solid fraction of the final radii in the box.
 const FINAL_FRACTION: Real = 0.64;
+/// Growth of all diameters in ten relaxation times that counts as none where the way back is taken.
+const STUCK_SMOOTH: Real = 1e-3;
+/// Share of the first pressure below which grains do not hold each other.
+const LOOSE: Real = 0.1;
 /// Width of a bin of g(r), in mean diameters.
 const BIN: Real = 0.02;
 /// Bins of g(r): to four diameters.
@@ -63,9 +70,13 @@ const COLUMNS: [(&str, &str); 10] = [
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 enum Stage {
     Growing,
-    /// Sizes change until `scale_to`; then they rest.
-    Ramping { n_left: u64, step: Real },
-    Resting { n_done: u64 },
+    /// Sizes change by a step in every substep; then they rest.
+    Ramping {
+        time_left: Real,
+        step: Real,
+    },
+    /// Sizes stay, until nothing moves.
+    Resting(Settling),
     Done,
 }
 
@@ -95,7 +106,10 @@ impl Boxed {
     /// Scattered grains.
     pub(super) fn new(scene: &Scene, case: Case) -> Result<Self, StartError> {
         let is_mono = !matches!(case, Case::Poly);
-        let final_radii = sample::final_radii(scene, scene.grains.count, is_mono);
+        let is_smooth = friction(scene, case) == 0.0;
+        let grains = &scene.grains;
+        let count = if is_mono && is_smooth { grains.count_smooth } else { grains.count };
+        let final_radii = sample::final_radii(scene, count, is_mono);
         let solid: Real = final_radii.iter().map(|&r| sphere_volume(r)).sum();
         let volume = solid / FINAL_FRACTION;
         let period = Vec3::repeat(volume.cbrt());
@@ -134,27 +148,32 @@ impl Boxed {
         match self.place.stage {
             Stage::Growing => {
                 if self.growth.step(&mut self.system) != Grown::Growing {
-                    self.place.stage = Stage::Resting { n_done: 0 };
+                    self.place.stage = Stage::Resting(Settling::default());
                 }
                 self.place.growth = self.growth.progress();
                 self.place.scale = self.place.growth.scale;
                 self.count("growing");
             }
-            Stage::Ramping { n_left: 0, .. } => self.place.stage = Stage::Resting { n_done: 0 },
-            Stage::Ramping { n_left, step } => {
+            Stage::Ramping { time_left, step } => {
                 self.place.scale += step;
                 grow::resize(&mut self.system, &self.final_radii, self.place.scale);
                 self.system.step();
-                self.place.stage = Stage::Ramping { n_left: n_left - 1, step };
+                let time_left = time_left - self.system.model.substep;
+                self.place.stage = if time_left > 0.0 {
+                    Stage::Ramping { time_left, step }
+                } else {
+                    Stage::Resting(Settling::default())
+                };
                 self.count("ramping");
             }
-            Stage::Resting { n_done } => {
-                self.system.step();
-                self.place.stage = Stage::Resting { n_done: n_done + 1 };
+            Stage::Resting(mut settling) => {
+                let is_time = settling.step(&mut self.system);
+                self.place.stage = Stage::Resting(settling);
                 self.count("resting");
-                if (n_done + 1).is_multiple_of(LOOK_EVERY) {
-                    self.look(n_done + 1);
+                if is_time {
+                    self.look(settling);
                 }
+                return;
             }
             Stage::Done => return,
         }
@@ -166,15 +185,22 @@ impl Boxed {
     }
 
     /// Records a state at rest and goes on to the next.
-    fn look(&mut self, n_done: u64) {
-        let unrest = Unrest::of(&self.system);
-        let compression = &self.scene.compression;
-        let n_max = compression.rest_time_max / compression.substep;
-        if !unrest.is_rest() && real(usize::try_from(n_done).unwrap_or(usize::MAX)) < n_max {
+    fn look(&mut self, mut settling: Settling) {
+        let unrest = settling.unrest(&self.system);
+        self.place.stage = Stage::Resting(settling);
+        let compression = self.scene.compression.clone();
+        let is_smooth = friction(&self.scene, self.case) == 0.0;
+        let System { model, state, scratch, .. } = &self.system;
+        let pressure = stress::normal_pressure(state, scratch, self.volume);
+        if !is_smooth && pressure < LOOSE * compression.pressure_first {
+            // Growth ended in motion, and at rest the grains do not hold each other yet.
+            return self.ramp(compression.share * self.first_overlap());
+        }
+        let n_max = compression.rest_time_max / model.substep;
+        if !unrest.is_rest() && !sample::is_over(settling.n_done, n_max) {
             return;
         }
         let (pressure, overlap) = self.write(&unrest);
-        let is_smooth = friction(&self.scene, self.case) == 0.0;
         if let Some(before) = self.place.probed_from {
             let modulus = (pressure - before) / (3.0 * self.scene.moduli.probe);
             self.place.record.set("bulk_modulus", modulus, "Pa");
@@ -182,7 +208,7 @@ impl Boxed {
         } else if is_smooth && pressure > compression.pressure_low {
             self.ramp(-compression.share * overlap);
         } else if !is_smooth && pressure < last_pressure(&self.scene, self.case) {
-            self.ramp(compression.share * overlap);
+            self.ramp(compression.share * overlap.max(self.first_overlap()));
         } else if self.case == Case::Moduli {
             self.place.probed_from = Some(pressure);
             self.ramp(self.scene.moduli.probe);
@@ -191,12 +217,18 @@ impl Boxed {
         }
     }
 
+    /// Mean overlap over diameter at the first pressure, by Hertz and within a factor of two.
+    fn first_overlap(&self) -> Real {
+        let stiffness = self.system.model.grain_law.modulus;
+        (self.scene.compression.pressure_first / stiffness).powf(2.0 / 3.0)
+    }
+
     /// Makes all grains larger by the share `growth`, steadily.
     fn ramp(&mut self, growth: Real) {
         let compression = &self.scene.compression;
-        let n = grow::count(compression.ramp_time / compression.substep);
-        let step = self.place.scale * growth / real(usize::try_from(n).unwrap_or(usize::MAX));
-        self.place.stage = Stage::Ramping { n_left: n, step };
+        let n = (compression.ramp_time / compression.substep).ceil();
+        let step = self.place.scale * growth / n;
+        self.place.stage = Stage::Ramping { time_left: compression.ramp_time, step };
     }
 
     /// Adds a row; returns pressure [Pa] and mean overlap over diameter.
@@ -245,10 +277,13 @@ impl Boxed {
         let g = structure::pair_distribution(&state.grains.positions, &region, &bins);
         let cut = structure::cut_distribution(&state.grains, &region, &bins);
         let middles = (0..N_BINS).map(|k| bins.middle(k) / (2.0 * mean)).collect();
-        let column = |name: &str, values| Column { name: name.to_owned(), unit: "1".to_owned(), values };
+        let column =
+            |name: &str, values| Column { name: name.to_owned(), unit: "1".to_owned(), values };
         let table =
             vec![column("distance_over_diameter", middles), column("g", g), column("eq42", cut)];
-        let spread = (radii.iter().map(|r| (r / mean - 1.0).powi(2)).sum::<Real>() / real(radii.len())).sqrt();
+        let spread = (radii.iter().map(|r| (r / mean - 1.0).powi(2)).sum::<Real>()
+            / real(radii.len()))
+        .sqrt();
         let mut digest = Digest::new();
         state.digest(&mut digest);
         let record = &mut self.place.record;
@@ -293,20 +328,20 @@ fn last_pressure(scene: &Scene, case: Case) -> Real {
 /// Growth with the friction of the case.
 fn recipe(scene: &Scene, model: &Model, volume: Real, friction: Real) -> Recipe {
     let compression = &scene.compression;
-    let stop =
-        if friction == 0.0 { compression.pressure_high } else { compression.pressure_first };
+    let stop = if friction == 0.0 { compression.pressure_high } else { compression.pressure_first };
     let radius = scene.grains.radius_mean();
     let mass = scene.grains.material.density * sphere_volume(radius);
     // All grow at the rate of the lower pressure, so that the protocol is one for all.
     let slow = Recipe::new(model, volume, compression.pressure_first, mass, radius);
-    Recipe { laws: Laws::of(model), pressure_stop: stop, scale_last: 2.0, ..slow }
+    let stuck = if friction == 0.0 { STUCK_SMOOTH } else { slow.stuck };
+    Recipe { laws: Laws::of(model), pressure_stop: stop, stuck, scale_last: 2.0, ..slow }
 }
 
 impl Run for Boxed {
     fn advance(&mut self) -> Result<Progress, Diverged> {
         let stage = match self.place.stage {
             Stage::Growing => "growing",
-            Stage::Ramping { .. } | Stage::Resting { .. } | Stage::Done => "resting",
+            Stage::Ramping { .. } | Stage::Resting(_) | Stage::Done => "resting",
         };
         for _ in 0..SLICE {
             self.step();
@@ -329,7 +364,8 @@ impl Run for Boxed {
         if place.record.case != self.case.name() || state.grains.len() != self.final_radii.len() {
             return Err(damaged(format!("is of case {}", place.record.case)));
         }
-        let model = self.system.model.clone();
+        let mut model = self.system.model.clone();
+        model.radius_max = state.grains.radii.iter().copied().fold(model.radius_max, Real::max);
         let controls = self.system.controls.clone();
         let friction = friction(&self.scene, self.case);
         let recipe = recipe(&self.scene, &model, self.volume, friction);

@@ -11,13 +11,15 @@ mod confined; // grains in a closed membrane
 mod evaluate; // what the records show
 mod fit; // straight lines
 mod plots; // pictures
+
 mod sample; // grains, drag, rest
 mod scene; // keys
 
-use super::{
-    Experiment, Plan, Run, SceneText, StartError, findings::Findings, record::Record,
+use super::{Experiment, Plan, Run, SceneText, StartError, findings::Findings, record::Record};
+use crate::{
+    base::Real,
+    scene::{SceneError, text::fill},
 };
-use crate::{base::Real, scene::{SceneError, text::fill}};
 use scene::Scene;
 
 const SCENE_FILE: &str = "launch_configs/experiments/packing.yaml";
@@ -93,9 +95,7 @@ impl Plan for Packings {
         match found {
             Some(Case::Confined) => Ok(Box::new(confined::Confined::new(&self.scene)?)),
             Some(it) => Ok(Box::new(boxed::Boxed::new(&self.scene, it)?)),
-            None => {
-                Err(StartError::NoSuchCase { name: case.to_owned(), known: self.cases() })
-            }
+            None => Err(StartError::NoSuchCase { name: case.to_owned(), known: self.cases() }),
         }
     }
 

@@ -28,6 +28,8 @@ pub(super) struct Scene {
 #[derive(Clone, Debug)]
 pub(super) struct Grains {
     pub(super) count: usize,
+    /// Of smooth grains of one size.
+    pub(super) count_smooth: usize,
     /// [m]
     pub(super) radius_min: Real,
     /// [m]
@@ -113,6 +115,7 @@ pub(super) fn blank() -> Scene {
         seed: 0,
         grains: Grains {
             count: 0,
+            count_smooth: 0,
             radius_min: NAN,
             radius_max: NAN,
             material: Material { youngs_modulus: NAN, poisson_ratio: NAN, density: NAN },
@@ -184,6 +187,7 @@ impl Keys for Scene {
 
 fn grains(walk: &mut impl Walk, it: &mut Grains) {
     schema::whole_usize(walk, "count", (100, 200_000), &mut it.count);
+    schema::whole_usize(walk, "count_smooth", (100, 200_000), &mut it.count_smooth);
     let radius = Quantity { dimension: &LENGTH, range: Range::AboveUpTo(0.0, 0.1) };
     walk.quantity("radius_min", radius, &mut it.radius_min);
     walk.quantity("radius_max", radius, &mut it.radius_max);
