@@ -20,6 +20,7 @@ mod lifts; // whole runs: what is lifted, and what is not
 #[cfg(feature = "ros")]
 mod main_job; // the main job, commanded from other processes
 mod oscillator; // a small experiment whose results are known in closed form
+mod packings; // periodic boxes and dense packings
 mod peers; // independent programs in Python
 #[cfg(feature = "ros")]
 mod private_network; // where tests may speak DDS
