@@ -5,6 +5,8 @@
 //! The source leaves open how the bag is let go. Here the rest lengths start at the held shape and
 //! shrink steadily to their final value, so that the bag closes on the grains without a snap.
 
+use serde::{Deserialize, Serialize};
+
 use super::{
     Controls, Model, Scratch, State,
     boundary::body::BodyMotion,
@@ -36,10 +38,15 @@ const GROWTH_PRESSURE: Real = 900.0;
 const FALL_TIME: Real = 0.12;
 /// Time over which the springs are shortened [s].
 const SHRINK_TIME: Real = 0.15;
+/// Time over which softer grains become as hard as they are [s].
+const HARDEN_TIME: Real = 0.03;
 /// Longest time to come to rest [s].
 const REST_TIME_MAX: Real = 0.4;
 /// Root mean square speed of grains at rest [m/s].
 const REST_SPEED: Real = 2e-3;
+
+/// Substeps between two looks at progress and health.
+const LOOK_EVERY: usize = 100;
 
 /// How far the filling is.
 #[derive(Clone, Copy, Debug)]
@@ -59,118 +66,293 @@ pub fn fill(
     model: &Model,
     on_progress: &mut dyn FnMut(Progress),
 ) -> Result<State, Diverged> {
-    let controls = Controls {
-        gauge_setpoint: 0.0,
-        walls: vec![BodyMotion { pose: scene.flange.pose, twist: Twist::zero() }],
-        bodies: Vec::new(),
-    };
-    let mut held = model.clone();
-    held.bodies.clear();
-    held.membrane.holders.fill(CARRIER_ID);
-    let stretch = scene.membrane.fill_stretch;
-    held.held_positions = held_shape(&model.membrane.mesh, stretch);
-    let final_radii = final_radii(scene);
-    let scale = first_scale(scene, &final_radii);
-    let state = scatter(scene, &held, &final_radii, scale);
-    let scratch = Scratch::new(model);
-    let mut filling = Filling { model: held, controls, state, scratch, done: 0.0, on_progress };
-    filling.grow(scene, &final_radii, scale)?;
-    filling.run_for(FALL_TIME, "falling", |_, _| {})?;
-    filling.model.membrane.holders.clone_from(&model.membrane.holders);
-    filling.model.held_positions.clone_from(&model.held_positions);
-    let last = 1.0 - scene.membrane.rest_length_shrink;
-    filling.run_for(SHRINK_TIME, "closing", |model, share| {
-        model.membrane.scale_rest_lengths(stretch + (last - stretch) * share);
-    })?;
-    filling.rest()?;
-    Ok(filling.state)
+    let mut filling = Filling::new(scene, model, model);
+    while !filling.is_settled() {
+        filling.advance(LOOK_EVERY)?;
+        on_progress(filling.progress());
+    }
+    Ok(filling.into_state())
 }
 
-struct Filling<'a> {
+/// What is done to the bag, in this order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub enum Stage {
+    /// All radii grow by a common factor, without friction; the membrane is held stretched.
+    Growing,
+    /// The grains fall into the held bowl.
+    Falling,
+    /// The membrane is free, its springs are shortened.
+    Closing,
+    /// Grains that were filled in softer than they are become as hard as they are.
+    Hardening,
+    /// Everything comes to rest.
+    Resting,
+    /// Done.
+    Settled,
+}
+
+const STAGES: [Stage; 5] =
+    [Stage::Growing, Stage::Falling, Stage::Closing, Stage::Hardening, Stage::Resting];
+
+impl Stage {
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Growing => "growing",
+            Self::Falling => "falling",
+            Self::Closing => "closing",
+            Self::Hardening => "hardening",
+            Self::Resting => "coming to rest",
+            Self::Settled => "settled",
+        }
+    }
+
+    fn next(self) -> Self {
+        match self {
+            Self::Growing => Self::Falling,
+            Self::Falling => Self::Closing,
+            Self::Closing => Self::Hardening,
+            Self::Hardening => Self::Resting,
+            Self::Resting | Self::Settled => Self::Settled,
+        }
+    }
+}
+
+/// How far a filling is: with its state, all that is needed to go on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Place {
+    /// What is being done.
+    pub stage: Stage,
+    /// Substeps of the stage that are done.
+    pub k: usize,
+}
+
+/// A bag that is being filled, substep by substep.
+pub struct Filling {
+    /// The system while it is filled, and when it is.
+    soft: Model,
+    goal: Model,
+    /// That of the present stage.
     model: Model,
     controls: Controls,
     state: State,
     scratch: Scratch,
-    done: Real,
-    on_progress: &'a mut dyn FnMut(Progress),
+    place: Place,
+    recipe: Recipe,
 }
 
-/// Substeps between two looks at progress and health.
-const LOOK_EVERY: usize = 100;
+/// What the scene says about the filling.
+struct Recipe {
+    final_radii: Vec<Real>,
+    /// Share of the final radii at which the growth begins.
+    first: Real,
+    density: Real,
+    /// Rest lengths of the springs over those of the reference shape, before and after closing.
+    rest_lengths: [Real; 2],
+    held_shape: Vec<Vec3>,
+    /// Substeps of each stage, of the last one the most.
+    n_substeps: [usize; STAGES.len()],
+}
 
-impl Filling<'_> {
-    /// Growth of all radii by a common factor, without friction.
-    fn grow(&mut self, scene: &Scene, final_radii: &[Real], first: Real) -> Result<(), Diverged> {
-        let with_friction = self.model.clone();
-        let smooth = |law: &mut PairLaw| law.friction = 0.0;
-        smooth(&mut self.model.grain_law);
-        self.model.walls.iter_mut().for_each(|wall| smooth(&mut wall.law));
-        smooth(&mut self.model.membrane_law);
-        let radius = self.model.radius_mean;
-        let mass = sphere_volume(radius) * scene.grains.material.density;
-        let relaxation = (mass / (GROWTH_PRESSURE * 2.0 * radius)).sqrt();
-        let rate = GROWTH_PER_RELAXATION / relaxation;
-        let n_substeps = count((first.recip().ln() / rate) / self.model.substep);
+impl Recipe {
+    fn new(scene: &Scene, models: [&Model; 2]) -> Self {
+        let [soft, goal] = models;
         let density = scene.grains.material.density;
-        for k in 0..n_substeps {
-            let scale = first.powf(1.0 - real(k + 1) / real(n_substeps));
-            for (i, &radius) in final_radii.iter().enumerate() {
-                self.state.grains.radii[i] = scale * radius;
-                self.state.grains.masses[i] = sphere_volume(scale * radius) * density;
-            }
-            weigh_pairs(&self.state, &mut self.scratch.neighbours);
-            self.step(k, "growing")?;
+        let stretch = scene.membrane.fill_stretch;
+        let final_radii = final_radii(scene);
+        let first = first_scale(scene, &final_radii);
+        let mass = sphere_volume(goal.radius_mean) * density;
+        let relaxation = (mass / (GROWTH_PRESSURE * 2.0 * goal.radius_mean)).sqrt();
+        let rate = GROWTH_PER_RELAXATION / relaxation;
+        let growth = first.recip().ln() / rate;
+        let of_soft = |time: Real| count(time / soft.substep);
+        let is_softer = soft.grain_law.modulus < goal.grain_law.modulus;
+        Self {
+            first,
+            density,
+            rest_lengths: [stretch, 1.0 - scene.membrane.rest_length_shrink],
+            held_shape: held_shape(&goal.membrane.mesh, stretch),
+            n_substeps: [
+                of_soft(growth),
+                of_soft(FALL_TIME),
+                of_soft(SHRINK_TIME),
+                if is_softer { count(HARDEN_TIME / goal.substep) } else { 0 },
+                count(REST_TIME_MAX / goal.substep),
+            ],
+            final_radii,
         }
-        self.model.grain_law = with_friction.grain_law;
-        self.model.walls = with_friction.walls;
-        self.model.membrane_law = with_friction.membrane_law;
-        Ok(())
+    }
+}
+
+impl Filling {
+    /// Grains at random places in the held bowl, before they grow. `soft` and `goal` are the model
+    /// while it is filled and in the end: with softer grains the substep is longer.
+    pub fn new(scene: &Scene, soft: &Model, goal: &Model) -> Self {
+        let recipe = Recipe::new(scene, [soft, goal]);
+        let state = scatter(scene, &recipe);
+        Self::with([soft, goal], recipe, Place { stage: Stage::Growing, k: 0 }, state)
     }
 
-    /// Runs for `time` [s]; `change` is given the share of it that has passed.
-    fn run_for(
-        &mut self,
-        time: Real,
-        stage: &'static str,
-        change: impl Fn(&mut Model, Real),
-    ) -> Result<(), Diverged> {
-        let n_substeps = count(time / self.model.substep);
-        for k in 0..n_substeps {
-            change(&mut self.model, real(k + 1) / real(n_substeps));
-            self.step(k, stage)?;
-        }
-        Ok(())
+    /// Goes on with `(place, state)` of a filling of the same scene.
+    pub fn resume(
+        scene: &Scene,
+        soft: &Model,
+        goal: &Model,
+        (place, state): (Place, State),
+    ) -> Self {
+        Self::with([soft, goal], Recipe::new(scene, [soft, goal]), place, state)
     }
 
-    /// Runs until the grains are at rest.
-    fn rest(&mut self) -> Result<(), Diverged> {
-        let n_substeps = count(REST_TIME_MAX / self.model.substep);
-        for k in 0..n_substeps {
-            self.step(k, "coming to rest")?;
-            if k.is_multiple_of(LOOK_EVERY) && self.speed() < REST_SPEED {
+    fn with(models: [&Model; 2], recipe: Recipe, place: Place, state: State) -> Self {
+        let [soft, goal] = models.map(|it| Model { bodies: Vec::new(), ..it.clone() });
+        let controls =
+            Controls { gauge_setpoint: 0.0, walls: state.walls.clone(), bodies: Vec::new() };
+        let scratch = Scratch::new(&goal);
+        let model = goal.clone();
+        let mut filling = Self { soft, goal, model, controls, state, scratch, place, recipe };
+        filling.enter();
+        filling
+    }
+
+    /// Goes on by at most `n_substeps`.
+    ///
+    /// # Errors
+    /// If the system blows up or a grain leaks.
+    pub fn advance(&mut self, n_substeps: usize) -> Result<(), Diverged> {
+        for _ in 0..n_substeps {
+            if self.is_settled() {
                 break;
             }
+            self.step()?;
         }
         Ok(())
     }
 
-    /// Root mean square speed of the grains [m/s].
-    fn speed(&self) -> Real {
-        let velocities = &self.state.grains.velocities;
-        let sum: Real = velocities.iter().map(|v| v.norm_squared()).sum();
-        (sum / real(velocities.len().max(1))).sqrt()
+    /// How far it is.
+    pub fn place(&self) -> Place {
+        self.place
     }
 
-    fn step(&mut self, k: usize, stage: &'static str) -> Result<(), Diverged> {
+    /// The state so far.
+    pub fn state(&self) -> &State {
+        &self.state
+    }
+
+    /// True when everything has come to rest.
+    pub fn is_settled(&self) -> bool {
+        self.place.stage == Stage::Settled
+    }
+
+    /// The state at the end.
+    pub fn into_state(self) -> State {
+        self.state
+    }
+
+    /// Most substeps that the whole filling can take.
+    pub fn n_substeps_max(&self) -> usize {
+        self.recipe.n_substeps.iter().sum()
+    }
+
+    /// How far it is, in words and as a share.
+    pub fn progress(&self) -> Progress {
+        let stages = STAGES.iter().zip(&self.recipe.n_substeps);
+        let before: usize =
+            stages.filter(|(stage, _)| **stage < self.place.stage).map(|(_, n)| n).sum();
+        let share = real(before + self.place.k) / real(self.n_substeps_max());
+        Progress { stage: self.place.stage.name(), share }
+    }
+
+    /// Makes the model that of the present stage.
+    fn enter(&mut self) {
+        let stage = self.place.stage;
+        let is_soft = stage <= Stage::Closing;
+        self.model = if is_soft { self.soft.clone() } else { self.goal.clone() };
+        if stage <= Stage::Falling {
+            self.model.membrane.holders.fill(CARRIER_ID);
+            self.model.held_positions.clone_from(&self.recipe.held_shape);
+        }
+        if stage == Stage::Growing {
+            let smooth = |law: &mut PairLaw| law.friction = 0.0;
+            smooth(&mut self.model.grain_law);
+            self.model.walls.iter_mut().for_each(|wall| smooth(&mut wall.law));
+            smooth(&mut self.model.membrane_law);
+        }
+        if Stage::Closing < stage {
+            self.close(1.0);
+        }
+    }
+
+    /// Rest lengths when `share` of the closing is over.
+    fn close(&mut self, share: Real) {
+        let [first, last] = self.recipe.rest_lengths;
+        self.model.membrane.scale_rest_lengths(first + (last - first) * share);
+    }
+
+    /// Laws when `share` of the hardening is over: moduli rise by equal factors in equal times.
+    fn harden(&mut self, share: Real) {
+        let between = |soft: &PairLaw, hard: &PairLaw| {
+            let blend = |a: Real, b: Real| a * (b / a).powf(share);
+            PairLaw {
+                modulus: blend(soft.modulus, hard.modulus),
+                shear_modulus: blend(soft.shear_modulus, hard.shear_modulus),
+                ..*hard
+            }
+        };
+        let (soft, goal) = (&self.soft, &self.goal);
+        self.model.grain_law = between(&soft.grain_law, &goal.grain_law);
+        self.model.membrane_law = between(&soft.membrane_law, &goal.membrane_law);
+        for (k, wall) in self.model.walls.iter_mut().enumerate() {
+            wall.law = between(&soft.walls[k].law, &goal.walls[k].law);
+        }
+    }
+
+    /// Radii when `share` of the growing is over.
+    fn grow(&mut self, share: Real) {
+        let scale = self.recipe.first.powf(1.0 - share);
+        for (i, &radius) in self.recipe.final_radii.iter().enumerate() {
+            self.state.grains.radii[i] = scale * radius;
+            self.state.grains.masses[i] = sphere_volume(scale * radius) * self.recipe.density;
+        }
+        weigh_pairs(&self.state, &mut self.scratch.neighbours);
+    }
+
+    /// The stage after `stage`, without those that have nothing to do.
+    fn after(&self, stage: Stage) -> Stage {
+        let next = stage.next();
+        let is_idle = |it: Stage| self.recipe.n_substeps.get(it as usize) == Some(&0);
+        if is_idle(next) { next.next() } else { next }
+    }
+
+    fn step(&mut self) -> Result<(), Diverged> {
+        let Place { stage, k } = self.place;
+        let n_substeps = self.recipe.n_substeps[stage as usize];
+        let share = real(k + 1) / real(n_substeps);
+        match stage {
+            Stage::Growing => self.grow(share),
+            Stage::Closing => self.close(share),
+            Stage::Hardening => self.harden(share),
+            Stage::Falling | Stage::Resting | Stage::Settled => {}
+        }
         substep(&self.model, &self.controls, &mut self.state, &mut self.scratch);
-        self.done += self.model.substep;
+        let mut is_over = k + 1 == n_substeps;
         if k.is_multiple_of(LOOK_EVERY) {
             health::check(&self.model, &self.state, &self.scratch, 0)?;
-            let longest = 0.05 + FALL_TIME + SHRINK_TIME + REST_TIME_MAX;
-            (self.on_progress)(Progress { stage, share: (self.done / longest).min(1.0) });
+            is_over |= stage == Stage::Resting && speed(&self.state) < REST_SPEED;
+        }
+        self.place.k += 1;
+        if is_over {
+            self.place = Place { stage: self.after(stage), k: 0 };
+            self.enter();
         }
         Ok(())
     }
+}
+
+/// Root mean square speed of the grains [m/s].
+fn speed(state: &State) -> Real {
+    let velocities = &state.grains.velocities;
+    let sum: Real = velocities.iter().map(|v| v.norm_squared()).sum();
+    (sum / real(velocities.len().max(1))).sqrt()
 }
 
 /// The stretched shape in which the membrane is held, flange frame; the rim stays where it is.
@@ -193,11 +375,12 @@ fn first_scale(scene: &Scene, final_radii: &[Real]) -> Real {
 }
 
 /// Grains at random places in the held bowl, without contact, at rest.
-fn scatter(scene: &Scene, held: &Model, final_radii: &[Real], scale: Real) -> State {
+fn scatter(scene: &Scene, recipe: &Recipe) -> State {
+    let (final_radii, scale) = (&recipe.final_radii, recipe.first);
     let mut random = Random::new(scene.seed, Stream::Position);
     let pose = scene.flange.pose;
     // One final diameter away from wall and plate: the growing grains reach them later.
-    let margin = 2.0 * held.radius_max;
+    let margin = 2.0 * scene.grains.radius_max;
     let reach = scene.membrane.fill_stretch * scene.membrane.radius - margin;
     let mut local: Vec<Vec3> = Vec::with_capacity(final_radii.len());
     for (i, &radius) in final_radii.iter().enumerate() {
@@ -221,8 +404,10 @@ fn scatter(scene: &Scene, held: &Model, final_radii: &[Real], scale: Real) -> St
     let density = scene.grains.material.density;
     let radii: Vec<Real> = final_radii.iter().map(|r| scale * r).collect();
     let in_world = |p: &Vec3| pose.rotation * p + pose.translation.vector;
-    let mut membrane = MembraneState::at_rest(&held.membrane.mesh);
-    membrane.positions = held.held_positions.iter().map(in_world).collect();
+    let membrane = MembraneState {
+        positions: recipe.held_shape.iter().map(in_world).collect(),
+        velocities: vec![Vec3::zeros(); recipe.held_shape.len()],
+    };
     State {
         grains: Grains {
             positions: local.iter().map(in_world).collect(),

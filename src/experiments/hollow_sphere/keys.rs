@@ -2,6 +2,7 @@
 
 use crate::{
     base::Real,
+    physics::measure::real,
     scene::{
         Grains, Material, Membrane, blank,
         quantity::{LENGTH, PRESSURE, TIME},
@@ -68,6 +69,8 @@ pub(super) struct Sweep {
     pub(super) frictionless: Vec<Real>,
     /// [Pa]
     pub(super) unscaled: Vec<Real>,
+    /// [Pa]
+    pub(super) stiff_contacts: Vec<Real>,
 }
 
 impl Scene {
@@ -93,7 +96,12 @@ impl Scene {
                 safety: nan,
                 mass_scaled_above: nan,
             },
-            sweep: Sweep { youngs_moduli: vec![], frictionless: vec![], unscaled: vec![] },
+            sweep: Sweep {
+                youngs_moduli: vec![],
+                frictionless: vec![],
+                unscaled: vec![],
+                stiff_contacts: vec![],
+            },
         }
     }
 }
@@ -120,6 +128,7 @@ impl Keys for Scene {
             walk.quantities("youngs_moduli", modulus, &mut self.sweep.youngs_moduli);
             walk.quantities("frictionless", modulus, &mut self.sweep.frictionless);
             walk.quantities("unscaled", modulus, &mut self.sweep.unscaled);
+            walk.quantities("stiff_contacts", modulus, &mut self.sweep.stiff_contacts);
         });
     }
 
@@ -139,6 +148,11 @@ impl Keys for Scene {
 }
 
 impl Protocol {
+    /// From the closing to the last level [s].
+    pub(super) fn total_time(&self) -> Real {
+        self.close_time + self.rest_time + real(self.n_levels) * self.level_time
+    }
+
     fn walk(&mut self, walk: &mut impl Walk) {
         let time = Quantity::above_zero(&TIME);
         walk.quantity("close_time", time, &mut self.close_time);

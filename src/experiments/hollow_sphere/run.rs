@@ -78,7 +78,6 @@ impl Shell {
         };
         record.set("youngs_modulus", case.modulus, "Pa");
         record.set("mass_factor", case.mass_factor, "1");
-        record.set("is_frictionless", f64::from(u8::from(case.is_frictionless)), "1");
         record.set("substep", system.model.substep, "s");
         let now = Progressed {
             stage: Stage::Growing,
@@ -221,7 +220,7 @@ impl Shell {
 
     fn share(&self) -> Real {
         let it = &self.scene.protocol;
-        let all = it.close_time + it.rest_time + real(it.n_levels) * it.level_time;
+        let all = it.total_time();
         let before = match self.now.stage {
             Stage::Growing => return GROWTH_SHARE * self.now.growth.scale.powi(3),
             Stage::Closing => 0.0,
