@@ -80,7 +80,7 @@ impl Law for Crossing {
 /// With friction, at one speed on the same ways: the largest change of force in a substep, and in half
 /// of it. What is continuous changes half as much.
 fn slide(scene: &Scene, record: &mut Record) {
-    let substep = 1e-5;
+    let substep = 4e-5;
     let mut largest = [0.0; 2];
     for way in 0..scene.crossing.n_ways {
         for (dt, largest) in [substep, 0.5 * substep].into_iter().zip(&mut largest) {
@@ -189,6 +189,7 @@ impl Path {
 
     /// Slides all the way in substeps of `dt` [s]; the largest change of force over the mean force.
     fn slide(&mut self, speed: Real, dt: Real) -> Real {
+        self.put(self.place(0.0));
         self.bench.system.model.substep = dt;
         let n_steps = n_steps(self.length / (speed * dt));
         let (mut largest, mut sum, mut last) = (0.0, 0.0, None::<Vec3>);
