@@ -1,8 +1,6 @@
 //! The experiment `laws`: every row holds, and a case that was saved goes on with the same bits.
 #![expect(clippy::print_stderr, reason = "what was measured is shown with the result")]
 
-use std::time::Instant;
-
 use super::super::{EXPERIMENTS, Plan, SceneText, Size, record::Record};
 
 /// The plan of the scene that comes with the program.
@@ -23,9 +21,7 @@ fn the_laws_are_those_of_the_books() {
     let plan = plan();
     let mut records = Vec::new();
     for case in plan.cases() {
-        let start = Instant::now();
         records.push(run(&*plan, &case));
-        eprintln!("{case}: {:.2} s", start.elapsed().as_secs_f64());
     }
     let findings = plan.evaluate(&records);
     for row in &findings.rows {
