@@ -45,10 +45,12 @@ pub(crate) enum Action {
     /// Runs all quick experiments and prints one table of verdicts
     #[command(after_help = VALIDATE_HELP)]
     Validate(Validate),
-    /// Prints kept results beside their sources, as Markdown
+    /// Writes kept results beside what their sources show, as Markdown with figures
     Report {
-        /// Folder of result files
-        folder: PathBuf,
+        /// Folder of result files, for example tests/golden/validation
+        from: PathBuf,
+        /// Folder for validation.md and figures/*.svg, for example docs
+        to: PathBuf,
     },
 }
 
@@ -57,7 +59,7 @@ Writes result.json, report.html and curves/*.csv. Ctrl-C saves all running cases
 goes on from there, with the same bits. Cases that run also save themselves once a minute.\n\n\
 Examples:\n  \
 jamgrip experiment triaxial --full --threads 2\n  \
-jamgrip experiment slide --set object.friction=0.3 --out results/slippery\n\n\
+jamgrip experiment laws --set steps_per_contact=1000 --out results/laws_fine\n\n\
 Exit codes: 0 all rows pass, 1 something could not run, 2 the command line or the scene is wrong, \
 3 a row is red, 130 interrupted.";
 

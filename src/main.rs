@@ -36,7 +36,7 @@ fn main() -> ExitCode {
         Action::Check(args) => check(&args),
         Action::Experiment(args) => trials::experiment(&args),
         Action::Validate(args) => trials::validate(&args),
-        Action::Report { folder } => trials::report(&folder),
+        Action::Report { from, to } => trials::report(&from, &to),
     };
     outcome.unwrap_or_else(|error| {
         // If standard error is gone there is nobody to tell.

@@ -84,9 +84,8 @@ pub(crate) fn validate(args: &Validate) -> Result<ExitCode, Box<dyn Error>> {
     Ok(verdict(&outcomes))
 }
 
-pub(crate) fn report(folder: &Path) -> Result<ExitCode, Box<dyn Error>> {
-    let text = comparison::markdown(&comparison::read(folder)?);
-    io::stdout().lock().write_all(text.as_bytes())?;
+pub(crate) fn report(from: &Path, to: &Path) -> Result<ExitCode, Box<dyn Error>> {
+    comparison::write(&comparison::read(from)?, to)?;
     Ok(ExitCode::SUCCESS)
 }
 

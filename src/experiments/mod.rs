@@ -6,12 +6,14 @@
 //! which a measured value stands beside its oracle. Tests, reports and benches run the same cases.
 
 pub mod findings; // what was found
-pub mod gripper; // the granular gripper
+pub mod gripper; // the force that holds an object
 pub mod hollow_sphere; // how much vacuum reaches an object
 pub mod laws; // closed forms, equation by equation
 mod number; // numbers in text
 pub mod oracles; // closed forms to compare with
+pub mod packing; // dense packings and what they bear
 pub mod record; // what a case leaves
+pub mod slide; // a ball drawn over a membrane
 pub mod triaxial; // grains under confining pressure
 
 use serde::{Deserialize, Serialize};
@@ -24,8 +26,14 @@ use findings::Findings;
 pub use record::Record;
 
 /// All experiments, in the order of the sources.
-pub static EXPERIMENTS: &[&dyn Experiment] =
-    &[&laws::Laws, &triaxial::Triaxial, &gripper::Gripper, &hollow_sphere::HollowSphere];
+pub static EXPERIMENTS: &[&dyn Experiment] = &[
+    &laws::Laws,
+    &slide::Slide,
+    &triaxial::Triaxial,
+    &packing::Packing,
+    &gripper::Gripper,
+    &hollow_sphere::HollowSphere,
+];
 
 /// How much of an experiment is run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

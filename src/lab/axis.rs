@@ -4,6 +4,8 @@ use std::ops::Range;
 
 use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
 
+use super::words::number;
+
 /// Room beyond the outermost points, as a share of the axis.
 const MARGIN: f64 = 0.04;
 /// Numbers written on an axis, about.
@@ -126,9 +128,24 @@ impl Ranged for Axis {
 
 impl ValueFormatter<f64> for Axis {
     fn format_ext(&self, value: &f64) -> String {
-        let is_zero = !self.is_log && value.abs() < 1e-9 * (self.high - self.low);
-        if is_zero { "0".to_owned() } else { superscript(&super::words::number(*value)) }
+        let text = if self.is_log && !(1e-2..1e4).contains(value) {
+            superscript(&format!("{value:.0e}"))
+        } else if value.abs() < 1e-9 * (self.high - self.low) {
+            "0".to_owned()
+        } else if 1e3 <= value.abs() && self.high.abs().max(self.low.abs()) < 1e6 {
+            grouped(*value)
+        } else {
+            superscript(&number(*value))
+        };
+        text.replace('-', "−")
     }
+}
+
+/// `80000` as `80 000`.
+fn grouped(value: f64) -> String {
+    let digits = format!("{:.0}", value.abs());
+    let (thousands, rest) = digits.split_at(digits.len() - 3);
+    format!("{}{thousands}\u{202f}{rest}", if value < 0.0 { "-" } else { "" })
 }
 
 /// `2.5e-4` as `2.5·10⁻⁴`, `1e6` as `10⁶`.
@@ -157,7 +174,8 @@ mod tests {
     #[test]
     fn ticks_are_round_and_few() {
         assert_eq!(labels(&[0.0, 1.0], false), ["0", "0.2", "0.4", "0.6", "0.8", "1"]);
-        assert_eq!(labels(&[-3.0, 4.0], false), ["-2", "0", "2", "4"]);
+        assert_eq!(labels(&[-3.0, 4.0], false), ["−2", "0", "2", "4"]);
+        assert_eq!(labels(&[0.0, 1e5], false)[4..], ["80\u{202f}000", "100\u{202f}000"]);
         assert_eq!(labels(&[5e6, 1e10], true), ["10⁷", "10⁸", "10⁹", "10¹⁰"]);
         assert_eq!(labels(&[3e4, 4e5], true), ["5·10⁴", "10⁵", "2·10⁵"]);
         assert_eq!(labels(&[1e-12, 1.0], true).len(), 5);

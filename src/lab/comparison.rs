@@ -5,18 +5,18 @@ use std::{fmt::Write, fs, path::Path};
 use super::{
     fault::LabError,
     outcome::{Outcome, size_name},
-    table,
-    words::{duration, number, with_unit},
+    plot, table,
+    words::{self, duration, number, with_unit},
 };
 use crate::experiments::{EXPERIMENTS, Size, findings::Row};
 
 const HEAD: &str = "\
 # Validation
 
-What the experiments of jamgrip found, beside what their sources show. This file is made by
-`jamgrip report tests/golden/validation` from the result files in that folder; nothing in it is typed
-by hand, and a test fails when the two differ. A row that is red stays red: its reason says what the
-most likely cause is and what was tried. Tolerances are never widened to make a row green.
+What the experiments of jamgrip found, beside what their sources show. This file and its figures are
+made by `jamgrip report tests/golden/validation docs` from the result files in that folder; nothing in
+it is typed by hand, and a test fails when the two differ. A row that is red stays red: its reason says
+what the most likely cause is and what was tried. Tolerances are never widened to make a row green.
 ";
 
 /// Reads all result files of a folder, in the order of the experiments, quick before full.
@@ -43,8 +43,37 @@ pub fn read(folder: &Path) -> Result<Vec<Outcome>, LabError> {
     Ok(outcomes)
 }
 
-/// The document.
-pub fn markdown(outcomes: &[Outcome]) -> String {
+/// All files of the document, with their texts: the document itself first, then its figures.
+pub fn tell(outcomes: &[Outcome]) -> Vec<(String, String)> {
+    let mut files = vec![("validation.md".to_owned(), markdown(outcomes))];
+    for outcome in outcomes {
+        let figures = outcome.plots.iter().enumerate();
+        files.extend(figures.map(|(i, plot)| (figure(outcome, i), plot::picture(plot))));
+    }
+    files
+}
+
+/// Writes the document and its figures into `folder`.
+///
+/// # Errors
+/// If a file cannot be written.
+pub fn write(outcomes: &[Outcome], folder: &Path) -> Result<(), LabError> {
+    let unwritable = |path: &Path, reason| LabError::Unwritable { path: path.to_owned(), reason };
+    let figures = folder.join("figures");
+    fs::create_dir_all(&figures).map_err(|reason| unwritable(&figures, reason))?;
+    for (name, text) in tell(outcomes) {
+        let path = folder.join(name);
+        fs::write(&path, text).map_err(|reason| unwritable(&path, reason))?;
+    }
+    Ok(())
+}
+
+/// The file of an outcome's figure.
+fn figure(outcome: &Outcome, i: usize) -> String {
+    format!("figures/{}_{}.svg", outcome.name(), i + 1)
+}
+
+fn markdown(outcomes: &[Outcome]) -> String {
     let mut text = HEAD.to_owned();
     text += "\n| experiment | size | rows | red | validity | time on one thread |\n";
     text += "|---|---|---|---|---|---|\n";
@@ -106,13 +135,11 @@ fn section(text: &mut String, it: &Outcome) {
             );
         }
     }
-    list(
-        text,
-        "Plots, in the report of a run:",
-        it.plots
-            .iter()
-            .map(|plot| format!("{}. The source: {}", flat(&plot.title), flat(&plot.source_says))),
-    );
+    for (i, plot) in it.plots.iter().enumerate() {
+        let (title, source) = (flat(&plot.title), flat(&plot.source_says));
+        line(text, &format!("\n![{title}]({})\n", figure(it, i)));
+        line(text, &format!("*{title}.* The source: {source}"));
+    }
     list(text, "Left the validity of the model:", it.left_validity.iter().map(|fault| flat(fault)));
     let failed = it
         .cases
@@ -157,7 +184,7 @@ fn line(text: &mut String, line: &str) {
 
 /// On one line, with nothing that would be taken for a tag.
 fn flat(text: &str) -> String {
-    text.split_whitespace().collect::<Vec<_>>().join(" ").replace('<', "&lt;")
+    words::flat(text).replace('<', "&lt;")
 }
 
 /// In a cell of a table.

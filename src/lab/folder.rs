@@ -176,7 +176,7 @@ impl Folder {
 
     /// Keeps a case that has come to its end; its saved state goes.
     pub(super) fn keep(&self, case: &str, kept: &KeptCase) -> Result<(), LabError> {
-        let text = serde_json::to_string_pretty(kept).expect("all keys are texts");
+        let text = serde_json::to_string(kept).expect("all keys are texts");
         self.write_text(&format!("{CASES}/{case}.json"), &(text + "\n"))?;
         self.forget(case);
         Ok(())

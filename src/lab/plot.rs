@@ -8,9 +8,12 @@ use plotters::{
     chart::{ChartBuilder, ChartContext},
     coord::{Shift, cartesian::Cartesian2d},
     drawing::{DrawingArea, DrawingAreaErrorKind, IntoDrawingArea},
-    element::{Circle, PathElement},
+    element::{Circle, PathElement, Text},
     series::DashedLineSeries,
-    style::{Color, RGBColor, TextStyle},
+    style::{
+        Color, RGBColor, TextStyle, WHITE,
+        text_anchor::{HPos, Pos, VPos},
+    },
 };
 
 use super::axis::Axis;
@@ -42,6 +45,14 @@ const GRID: RGBColor = RGBColor(0xe3, 0xe6, 0xea);
 const LINE: u32 = 4;
 /// Radius of a point.
 const POINT: u32 = 7;
+/// Height of a line of the legend.
+const LEGEND_LINE: u32 = 48;
+/// Where the legend begins, from the left.
+const LEGEND_LEFT: u32 = 40;
+/// Room for the drawing before a label.
+const LEGEND_SWATCH: u32 = 76;
+/// Width of a letter, about.
+const LETTER: u32 = 17;
 /// Points of a line beyond which the picture would only grow, not get better.
 const N_POINTS_MAX: usize = 500;
 
@@ -49,15 +60,77 @@ type Fault<'a> =
     DrawingAreaErrorKind<<SVGBackend<'a> as plotters::prelude::DrawingBackend>::ErrorType>;
 type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<Axis, Axis>>;
 
-/// The picture as an `<svg>` element.
+/// The picture as an `<svg>` element of a page that has the legend and the colours of paper.
 pub fn svg(plot: &Plot) -> String {
     let mut text = String::new();
     {
         let area = SVGBackend::with_string(&mut text, SIZE).into_drawing_area();
         draw(plot, &area).expect("memory is the only limit");
+        area.present().expect("memory is the only limit");
     }
     // As wide as the page allows, not as wide as its own picture elements.
     text.replacen(&format!("width=\"{}\" height=\"{}\" ", SIZE.0, SIZE.1), "", 1)
+}
+
+/// The picture as a file of its own: on white, with its legend above.
+pub fn picture(plot: &Plot) -> String {
+    let places = legend_places(plot);
+    let n_lines = places.last().map_or(0, |place| place.1 + 1);
+    let height = 20 + LEGEND_LINE * n_lines;
+    let mut text = String::new();
+    {
+        let size = (SIZE.0, SIZE.1 + height);
+        let area = SVGBackend::with_string(&mut text, size).into_drawing_area();
+        area.fill(&WHITE).expect("memory is the only limit");
+        let (legend, rest) = area.split_vertically(height);
+        draw_legend(plot, &places, &legend).expect("memory is the only limit");
+        draw(plot, &rest).expect("memory is the only limit");
+        area.present().expect("memory is the only limit");
+    }
+    text
+}
+
+/// Where the labels of the series begin: from the left, and in which line.
+fn legend_places(plot: &Plot) -> Vec<(u32, u32)> {
+    let (mut x, mut line) = (LEGEND_LEFT, 0);
+    let mut places = Vec::new();
+    for series in &plot.series {
+        let n = u32::try_from(series.label.chars().count()).unwrap_or(0);
+        let width = LEGEND_SWATCH + LETTER * n + 50;
+        if SIZE.0 < x + width && LEGEND_LEFT < x {
+            (x, line) = (LEGEND_LEFT, line + 1);
+        }
+        places.push((x, line));
+        x += width;
+    }
+    places
+}
+
+fn draw_legend<'b>(
+    plot: &Plot,
+    places: &[(u32, u32)],
+    area: &DrawingArea<SVGBackend<'b>, Shift>,
+) -> Result<(), Fault<'b>> {
+    let pixel = |it: u32| i32::try_from(it).unwrap_or(i32::MAX);
+    let label = TextStyle::from(("sans-serif", 37)).color(&INK);
+    let label = label.pos(Pos::new(HPos::Left, VPos::Center));
+    for ((series, colour), (x, line)) in plot.series.iter().zip(colours(plot)).zip(places) {
+        let (colour, x, y) = (rgb(colour), pixel(*x), pixel(20 + LEGEND_LINE * line + 30));
+        let (end, middle) = (x + 60, (x + 30, y));
+        let stroke = colour.stroke_width(LINE);
+        match series.kind {
+            Kind::Line => area.draw(&PathElement::new([(x, y), (end, y)], stroke))?,
+            Kind::Analytic => {
+                for from in [x, x + 24, x + 48] {
+                    area.draw(&PathElement::new([(from, y), (from + 14, y)], stroke))?;
+                }
+            }
+            Kind::Points => area.draw(&Circle::new(middle, POINT + 1, colour.filled()))?,
+            Kind::Source => area.draw(&Circle::new(middle, POINT + 2, colour.stroke_width(3)))?,
+        }
+        area.draw(&Text::new(series.label.as_str(), (x + pixel(LEGEND_SWATCH), y), label.clone()))?;
+    }
+    Ok(())
 }
 
 /// The colours of a plot's series. References and source points that are as many as the measured
@@ -152,7 +225,7 @@ fn draw<'b>(plot: &Plot, area: &DrawingArea<SVGBackend<'b>, Shift>) -> Result<()
     for (series, colour) in plot.series.iter().zip(colours(plot)) {
         draw_series(&mut chart, series.kind, rgb(colour), &visible(series, &x, &y), y.lowest())?;
     }
-    area.present()
+    Ok(())
 }
 
 /// A point and the deviation of its height.
@@ -250,10 +323,10 @@ mod tests {
                 text.matches(what).count() - svg(&self::plot(vec![], log)).matches(what).count()
             };
             assert_eq!(count(Kind::Points, "<circle"), 2);
-            assert_eq!(count(Kind::Source, "fill=\"none\" stroke=\"#0072B2\""), 2);
-            assert!(10 < count(Kind::Analytic, "<polyline"));
+            assert_eq!(count(Kind::Source, "fill=\"none\" stroke=\"#333A44\""), 2);
+            assert!(10 < count(Kind::Analytic, "stroke=\"#333A44\""));
             // Two bars and one line.
-            assert_eq!(count(Kind::Line, "<polyline"), 3);
+            assert_eq!(count(Kind::Line, "stroke=\"#0072B2\""), 3);
         }
         drop(svg(&plot(vec![], true)));
         drop(svg(&plot(vec![series(Kind::Line, vec![[-1.0, 0.0]])], true)));

@@ -36,8 +36,9 @@ pub fn page(outcome: &Outcome) -> String {
                 }
                 main {
                     (warnings(outcome))
-                    (rows(&outcome.rows))
+                    (rows("Red rows", outcome.rows.iter().filter(|row| !row.pass).collect()))
                     (plots(&outcome.plots))
+                    (rows("Rows that pass", outcome.rows.iter().filter(|row| row.pass).collect()))
                     (quantities(&outcome.quantities))
                     (notes(&outcome.notes))
                     (cases(outcome))
@@ -86,12 +87,10 @@ fn warnings(outcome: &Outcome) -> Markup {
     }
 }
 
-fn rows(rows: &[Row]) -> Markup {
+fn rows(title: &str, rows: Vec<&Row>) -> Markup {
     html! {
-        section {
-            h2 { "Measured against expected" }
-            @if rows.is_empty() { p { "No rows." } }
-            @for row in rows { (one_row(row)) }
+        @if !rows.is_empty() {
+            section { h2 { (title) } @for row in rows { (one_row(row)) } }
         }
     }
 }

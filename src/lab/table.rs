@@ -41,7 +41,13 @@ pub fn of_all(outcomes: &[Outcome], look: Look) -> String {
     let n_red: usize = outcomes.iter().map(Outcome::n_red).sum();
     let wall_s: f64 = outcomes.iter().map(|outcome| outcome.wall_s).sum();
     let wall = words::duration(wall_s);
-    text + &format!("\n{} of {n_rows} rows pass; {wall} of one processor\n", n_rows - n_red)
+    for row in outcomes.iter().flat_map(|outcome| &outcome.rows).filter(|row| !row.pass) {
+        let (oracle, tolerance) = expected(row);
+        let tolerance = if tolerance == BOUND { String::new() } else { format!(" {tolerance}") };
+        let (id, quantity, measured) = (&row.id, quantity(row), number(row.measured));
+        text += &format!("RED {id}: {quantity} is {measured}, not {oracle}{tolerance}\n");
+    }
+    text + &format!("{} of {n_rows} rows pass; {wall} of one processor\n", n_rows - n_red)
 }
 
 /// One outcome: quantities, rows, and what else must be known.
@@ -58,15 +64,11 @@ pub fn of_one(outcome: &Outcome, look: Look) -> String {
     text + &format!("digest {}\n", outcome.digest)
 }
 
-/// What left validity or did not come to its end.
+/// What left validity.
 fn faults(outcome: &Outcome) -> String {
     let left = outcome.left_validity.iter();
     let left = left.map(|it| format!("{} left validity: {it}\n", outcome.name()));
-    let ended = outcome.cases.iter().filter_map(|case| {
-        let fault = case.fault.as_ref()?;
-        Some(format!("{} case {} cannot go on: {fault}\n", outcome.name(), case.case))
-    });
-    left.chain(ended).collect()
+    left.collect()
 }
 
 /// Stands for a tolerance where the relation is a bound.
@@ -89,21 +91,24 @@ pub fn apart(row: &Row) -> String {
         return "no number".to_owned();
     }
     let sign = if distance < 0.0 { "−" } else { "+" };
+    if distance == 0.0 {
+        return "0".to_owned();
+    }
     if row.oracle == 0.0 {
         return format!("{sign}{}", words::with_unit(distance.abs(), &row.unit));
     }
     let percent = 1e2 * (distance / row.oracle).abs();
-    if percent < 1e3 {
-        let decimals = if percent < 0.1 {
-            3
-        } else if percent < 10.0 {
-            1
-        } else {
-            0
-        };
-        return format!("{sign}{percent:.decimals$} %");
+    match percent {
+        it if it < 0.1 => format!("{sign}{} %", number(rounded(it))),
+        it if it < 10.0 => format!("{sign}{it:.1} %"),
+        it if it < 1e3 => format!("{sign}{it:.0} %"),
+        _ => format!("{} times", number(row.measured / row.oracle)),
     }
-    format!("{} times", number(row.measured / row.oracle))
+}
+
+/// To one digit.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.0e}").parse().unwrap_or(value)
 }
 
 /// The command that runs it again.
@@ -127,6 +132,7 @@ pub fn quantity(row: &Row) -> String {
 
 fn rows_table<'a>(rows: impl Iterator<Item = &'a Row>, look: Look) -> String {
     let mut table = blank(look);
+    table.load_style(comfy_table::presets::UTF8_FULL);
     table.set_header(["id, quantity", "oracle", "measured", "verdict", "reason"]);
     // What is left goes to the reason.
     let widths = [look.width / 4, 17, 11, 9];
@@ -149,7 +155,7 @@ fn rows_table<'a>(rows: impl Iterator<Item = &'a Row>, look: Look) -> String {
 
 /// Where the oracle comes from, and why the tolerance is what it is.
 fn reason(row: &Row) -> String {
-    format!("{}. {}", row.oracle_source.trim_end_matches('.'), row.reason)
+    words::flat(&format!("{}. {}", row.oracle_source.trim_end_matches('.'), row.reason))
 }
 
 fn quantities_table(outcome: &Outcome, look: Look) -> String {
@@ -193,6 +199,23 @@ fn broken(name: &str, width: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::experiments::findings::{Expected, Told};
+
+    /// Oracle: written by hand.
+    #[test]
+    fn distances_are_told_in_percent_or_units() {
+        let told = Told { id: "", quantity: "", unit: "N", oracle: "", reason: "" };
+        let apart = |oracle, measured| {
+            super::apart(&Row::new(&told, Expected::within(oracle, 1.0), measured))
+        };
+        assert_eq!(apart(2.0, 2.0), "0");
+        assert_eq!(apart(0.0, -0.25), "−0.25 N");
+        assert_eq!(apart(1.0, 1.000_000_12), "+1e-5 %");
+        assert_eq!(apart(200.0, 197.0), "−1.5 %");
+        assert_eq!(apart(-2.0, -3.0), "−50 %");
+        assert_eq!(apart(2.0, 100.0), "50 times");
+        assert_eq!(apart(2.0, f64::NAN), "no number");
+    }
 
     /// Oracle: written by hand.
     #[test]

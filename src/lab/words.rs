@@ -23,6 +23,11 @@ pub fn with_unit(value: f64, unit: &str) -> String {
     if unit == "1" { number(value) } else { format!("{} {unit}", number(value)) }
 }
 
+/// A text on one line, with single spaces.
+pub fn flat(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
 fn trimmed(text: &str) -> String {
     if text.contains('.') {
         return text.trim_end_matches('0').trim_end_matches('.').to_owned();

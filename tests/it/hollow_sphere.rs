@@ -17,7 +17,7 @@ const COARSE: &[&str] = &[
     "protocol.close_time=80 ms",
     "protocol.rest_time=10 ms",
     "protocol.level_time=20 ms",
-    "sweep.youngs_moduli=[25 MPa]",
+    "sweep.youngs_moduli=[5 MPa]",
     "sweep.frictionless=[]",
 ];
 
@@ -43,15 +43,15 @@ fn end(mut run: Box<dyn Run>) -> Record {
 #[test]
 fn a_vacuum_presses_on_the_object_and_a_break_changes_no_bit() {
     let plan = plan();
-    assert_eq!(plan.cases(), ["25MPa_packing_1"]);
-    let whole = end(plan.start("25MPa_packing_1").unwrap());
+    assert_eq!(plan.cases(), ["5MPa_packing_1"]);
+    let whole = end(plan.start("5MPa_packing_1").unwrap());
 
     // Broken off three times: while growing, while closing, while the vacuum rises.
-    let mut run = plan.start("25MPa_packing_1").unwrap();
+    let mut run = plan.start("5MPa_packing_1").unwrap();
     for n_slices in [3, 40, 60] {
         assert!(!advance(&mut run, n_slices), "the run is longer than its parts");
         let bytes = run.save();
-        run = plan.start("25MPa_packing_1").unwrap();
+        run = plan.start("5MPa_packing_1").unwrap();
         run.resume(&bytes).unwrap();
     }
     let resumed = end(run);
@@ -63,7 +63,7 @@ fn a_vacuum_presses_on_the_object_and_a_break_changes_no_bit() {
     let pressure = whole.column("object_pressure").unwrap();
     let (first, last) = (pressure[0], pressure[2]);
     let spread = 90e3 * (4.0_f64.powi(2) - 1.0);
-    assert!(first < 0.2 * last && 10e3 < last && last < spread, "{pressure:?}");
+    assert!(first < 0.2 * last && 2e3 < last && last < spread, "{pressure:?}");
     let solid = whole.column("solid_fraction").unwrap();
     assert!(
         solid[0] < solid[2] && 0.45 < solid[2] && solid[2] < 0.75,
@@ -75,8 +75,8 @@ fn a_vacuum_presses_on_the_object_and_a_break_changes_no_bit() {
 #[test]
 fn a_saved_run_of_another_case_is_refused() {
     let plan = plan();
-    let mut run = plan.start("25MPa_packing_1").unwrap();
+    let mut run = plan.start("5MPa_packing_1").unwrap();
     assert!(run.resume(b"nonsense").is_err());
     let fault = plan.start("9MPa").err().map(|it| it.to_string()).unwrap_or_default();
-    assert!(fault.contains("25MPa_packing_1"), "{fault}");
+    assert!(fault.contains("5MPa_packing_1"), "{fault}");
 }

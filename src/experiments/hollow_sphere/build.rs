@@ -1,6 +1,9 @@
 //! The hollow sphere as a system: object, two membranes, grains between them.
 
-use super::{cases::Case, keys::Scene};
+use super::{
+    cases::{Case, Kind},
+    keys::Scene,
+};
 use crate::{
     base::{
         Pose, Real, Vec3,
@@ -95,22 +98,23 @@ fn model(scene: &Scene, case: &Case, mut membrane: MembraneModel, n_outer: usize
         density: scene.grains.material.density * case.mass_factor,
         ..scene.grains.material
     };
-    let friction = |mu: Real| if case.is_frictionless { 0.0 } else { mu };
+    let friction = |mu: Real| if case.kind == Kind::Frictionless { 0.0 } else { mu };
     let among_grains = Surface {
         friction: friction(scene.grains.friction),
         dissipation_time: scene.grains.dissipation_time,
         tangential_damping: scene.grains.tangential_damping,
+    };
+    let touched = match case.kind {
+        Kind::StiffContacts => Material { youngs_modulus: case.modulus, ..scene.membrane.material },
+        _ => scene.membrane.material,
     };
     let on_sheet = |friction| Surface {
         friction,
         dissipation_time: scene.membrane.dissipation_time,
         tangential_damping: scene.membrane.tangential_damping,
     };
-    let sheet_law = PairLaw::between(
-        &material,
-        &scene.membrane.material,
-        on_sheet(friction(scene.membrane.friction)),
-    );
+    let sheet_law =
+        PairLaw::between(&material, &touched, on_sheet(friction(scene.membrane.friction)));
     let object_law = PairLaw::between(
         &scene.membrane.material,
         &scene.object.material,

@@ -2,12 +2,12 @@
 //! theory.
 
 use super::{
-    cases::{self, Case},
+    cases::{self, Case, Kind},
     keys::Scene,
 };
 use crate::experiments::{
-    findings::{Curve, Expected, Findings, Kind, Plot, Quantity, Row, Series, Told},
-    oracles::shell::shell_object_pressure,
+    findings::{self, Curve, Expected, Findings, Plot, Quantity, Row, Series, Told},
+    oracles::shell::{ObjectPressure, shell_object_pressure},
     record::{Column, Record},
 };
 
@@ -24,9 +24,11 @@ pub(super) fn findings(scene: &Scene, records: &[Record]) -> Findings {
     for group in &groups {
         findings.quantities.push(group.quantity());
     }
-    let scaled = |it: &&Group<'_>| !it.case.is_frictionless && !it.is_unscaled();
-    let sweep: Vec<&Group<'_>> = groups.iter().filter(scaled).collect();
-    let smooth: Vec<&Group<'_>> = groups.iter().filter(|it| it.case.is_frictionless).collect();
+    let of = |kind| groups.iter().filter(move |it: &&Group<'_>| it.case.kind == kind);
+    let sweep: Vec<&Group<'_>> = of(Kind::Plain).collect();
+    let smooth: Vec<&Group<'_>> = of(Kind::Frictionless).collect();
+    let stiff: Vec<&Group<'_>> = of(Kind::StiffContacts).collect();
+    let unscaled: Vec<&Group<'_>> = of(Kind::Unscaled).collect();
     let continuum = shell_object_pressure(
         scene.grains.material.poisson_ratio,
         scene.membrane.radius / scene.object.radius,
@@ -34,11 +36,18 @@ pub(super) fn findings(scene: &Scene, records: &[Record]) -> Findings {
     let vacuum = scene.protocol.vacuum;
     rows_of_sweep(&sweep, &mut findings);
     rows_of_levels(scene, &sweep, &mut findings);
-    rows_of_smooth(scene, &sweep, &smooth, &mut findings);
-    row_of_scaling(&groups, &sweep, &mut findings);
-    findings.plots.push(over_modulus(&sweep, &smooth, continuum, vacuum));
+    rows_of_smooth(scene, &smooth, &mut findings);
+    row_of_scaling(&unscaled, &sweep, &mut findings);
+    findings.plots.push(over_modulus([&sweep, &smooth, &stiff], continuum, vacuum));
     findings.plots.push(over_vacuum(&sweep, &smooth));
     findings.curves.push(table(&groups));
+    findings.notes.push(
+        "In the source's law a grain sinks into the sheet with the sheet's own soft modulus, by \
+         some tenths of a millimetre under the full vacuum. Hard grains do not come that much closer \
+         together, so the inner membrane lifts off the object between them. `sweep.stiff_contacts` \
+         repeats a case with contacts as hard as the grains."
+            .to_owned(),
+    );
     findings.notes.push(format!(
         "Continuum theory (Götz 2024, eq. 33) has {:.1} kPa as derived from Lamé's equations and {:.1} \
          kPa as printed; it knows only Poisson's ratio, and which of the two figure 14 shows cannot \
@@ -79,16 +88,8 @@ impl Group<'_> {
         (mean, if values.len() > 1 { (square / (n - 1.0)).sqrt() } else { 0.0 })
     }
 
-    /// True for hard grains with their true mass.
-    fn is_unscaled(&self) -> bool {
-        self.case.name.starts_with("unscaled")
-    }
-
     fn label(&self) -> String {
-        let modulus = cases::in_words(self.case.modulus);
-        let kind = if self.case.is_frictionless { " without friction" } else { "" };
-        let mass = if self.is_unscaled() { " with true mass" } else { "" };
-        format!("{modulus}{kind}{mass}")
+        cases::in_words(self.case.modulus) + self.case.kind.in_words()
     }
 
     fn quantity(&self) -> Quantity {
@@ -159,12 +160,13 @@ fn rows_of_levels(scene: &Scene, sweep: &[&Group<'_>], findings: &mut Findings) 
             lowest,
         ));
     }
-    if let Some(worst) = all().map(|it| disproportion(it)).reduce(f64::max) {
+    let softest = sweep.first().into_iter().flat_map(|it| it.records.iter());
+    if let Some(worst) = softest.map(|it| disproportion(it)).reduce(f64::max) {
         findings.rows.push(Row::new(
             &Told {
                 id: "C10.proportional",
-                quantity: "largest distance of p_obj(p_vac) from the straight line through zero and \
-                           its end, over its end",
+                quantity: "softest grains: largest distance of p_obj(p_vac) from the straight line \
+                           between its ends, over its end",
                 unit: "1",
                 oracle: "linear theory: no other pressure is in the problem",
                 reason: "overlaps of up to a tenth of a diameter and the membranes' own tension bend \
@@ -213,14 +215,8 @@ fn disproportion(record: &Record) -> f64 {
     vacuum.iter().zip(pressure).map(off).fold(0.0, f64::max)
 }
 
-fn rows_of_smooth(
-    scene: &Scene,
-    sweep: &[&Group<'_>],
-    smooth: &[&Group<'_>],
-    findings: &mut Findings,
-) {
+fn rows_of_smooth(scene: &Scene, smooth: &[&Group<'_>], findings: &mut Findings) {
     for group in smooth {
-        let (pressure, _) = group.pressure();
         findings.rows.push(Row::new(
             &Told {
                 id: "C10.frictionless_flows",
@@ -232,48 +228,35 @@ fn rows_of_smooth(
                          not zero, and grows with the overlaps",
             },
             Expected::at_most(0.1),
-            pressure / scene.protocol.vacuum,
+            group.pressure().0 / scene.protocol.vacuum,
         ));
-        if let Some(rough) = sweep.iter().find(|it| it.case.modulus == group.case.modulus) {
-            findings.rows.push(Row::new(
-                &Told {
-                    id: "C10.friction_carries",
-                    quantity: "pressure on the object without over with friction, same grains",
-                    unit: "1",
-                    oracle: "friction raises the shear modulus of a packing",
-                    reason: "a bound",
-                },
-                Expected::at_most(1.0),
-                pressure / rough.pressure().0,
-            ));
-        }
     }
 }
 
-fn row_of_scaling(groups: &[Group<'_>], sweep: &[&Group<'_>], findings: &mut Findings) {
-    for group in groups.iter().filter(|it| it.is_unscaled()) {
+fn row_of_scaling(unscaled: &[&Group<'_>], sweep: &[&Group<'_>], findings: &mut Findings) {
+    for group in unscaled {
         let Some(scaled) = sweep.iter().find(|it| it.case.modulus == group.case.modulus) else {
             continue;
         };
         findings.rows.push(Row::new(
             &Told {
                 id: "C10.mass_scaling",
-                quantity: "pressure on the object with heavier over that with true masses",
+                quantity: "change of the pressure on the object by heavier grains, over the vacuum",
                 unit: "1",
                 oracle: "quasi-static results know no mass",
-                reason: "a tenth, as for all accelerations here; packings scatter by a few percent",
+                reason: "two hundredths of the vacuum: the same packing closed at another pace \
+                         rearranges a little differently",
             },
-            Expected::within(1.0, 0.1),
-            scaled.records[0].column("object_pressure").map_or(f64::NAN, |it| it[it.len() - 1])
-                / group.pressure().0,
+            Expected::within(0.0, 0.02),
+            (last(scaled.records[0], "object_pressure") - group.pressure().0)
+                / last(scaled.records[0], "vacuum"),
         ));
     }
 }
 
 fn over_modulus(
-    sweep: &[&Group<'_>],
-    smooth: &[&Group<'_>],
-    continuum: crate::experiments::oracles::shell::ObjectPressure,
+    [sweep, smooth, stiff]: [&[&Group<'_>]; 3],
+    continuum: ObjectPressure,
     vacuum: f64,
 ) -> Plot {
     let measured = |groups: &[&Group<'_>], label: &str, kind| Series {
@@ -288,7 +271,7 @@ fn over_modulus(
     ];
     let level = |label: &str, share: f64| Series {
         label: label.to_owned(),
-        kind: Kind::Analytic,
+        kind: findings::Kind::Analytic,
         points: ends.iter().map(|&x| [x, share * vacuum / 1e3]).collect(),
         deviations: Vec::new(),
     };
@@ -302,8 +285,9 @@ fn over_modulus(
         log_x: true,
         log_y: false,
         series: vec![
-            measured(sweep, "measured", Kind::Points),
-            measured(smooth, "measured, without friction", Kind::Points),
+            measured(sweep, "measured", findings::Kind::Points),
+            measured(smooth, "measured, without friction", findings::Kind::Points),
+            measured(stiff, "measured, contacts with the sheet as hard", findings::Kind::Points),
             level("continuum, derived", continuum.corrected),
             level("continuum, as printed (eq. 33)", continuum.printed),
         ],
@@ -317,7 +301,7 @@ fn over_vacuum(sweep: &[&Group<'_>], smooth: &[&Group<'_>]) -> Plot {
         let pressure = record.column("object_pressure").unwrap_or_default();
         Series {
             label: group.label(),
-            kind: Kind::Line,
+            kind: findings::Kind::Line,
             points: vacuum.iter().zip(pressure).map(|(p, q)| [p / 1e3, q / 1e3]).collect(),
             deviations: Vec::new(),
         }
@@ -347,7 +331,7 @@ fn table(groups: &[Group<'_>]) -> Curve {
         let (pressure, deviation) = group.pressure();
         let row = [
             group.case.modulus,
-            f64::from(u8::from(group.case.is_frictionless)),
+            f64::from(u8::from(group.case.kind == Kind::Frictionless)),
             group.case.mass_factor,
             pressure,
             deviation,

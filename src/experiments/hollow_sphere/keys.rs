@@ -68,6 +68,8 @@ pub(super) struct Sweep {
     pub(super) frictionless: Vec<Real>,
     /// [Pa]
     pub(super) unscaled: Vec<Real>,
+    /// [Pa]
+    pub(super) stiff_contacts: Vec<Real>,
 }
 
 impl Scene {
@@ -93,7 +95,12 @@ impl Scene {
                 safety: nan,
                 mass_scaled_above: nan,
             },
-            sweep: Sweep { youngs_moduli: vec![], frictionless: vec![], unscaled: vec![] },
+            sweep: Sweep {
+                youngs_moduli: vec![],
+                frictionless: vec![],
+                unscaled: vec![],
+                stiff_contacts: vec![],
+            },
         }
     }
 }
@@ -120,6 +127,7 @@ impl Keys for Scene {
             walk.quantities("youngs_moduli", modulus, &mut self.sweep.youngs_moduli);
             walk.quantities("frictionless", modulus, &mut self.sweep.frictionless);
             walk.quantities("unscaled", modulus, &mut self.sweep.unscaled);
+            walk.quantities("stiff_contacts", modulus, &mut self.sweep.stiff_contacts);
         });
     }
 

@@ -78,7 +78,6 @@ impl Shell {
         };
         record.set("youngs_modulus", case.modulus, "Pa");
         record.set("mass_factor", case.mass_factor, "1");
-        record.set("is_frictionless", f64::from(u8::from(case.is_frictionless)), "1");
         record.set("substep", system.model.substep, "s");
         let now = Progressed {
             stage: Stage::Growing,

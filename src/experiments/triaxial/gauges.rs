@@ -2,11 +2,13 @@
 //!
 //! ```text
 //! p_plate = F/A,  A = V/h            σ_d = p_plate − p_c,   ε = ln(h_0/h)
-//! σ_zz = 1/V Σ_c f_z l_z,   σ_rr = 1/2V Σ_c (f_x l_x + f_y l_y)
+//! σ_zz = 1/V_m Σ_c f_z l_z,   σ_rr = 1/2V_m Σ_c (f_x l_x + f_y l_y)
 //! ```
 //!
-//! F is what grains put on a plate, V the volume inside membrane and plates, h their distance; f and l
-//! are force and branch of each contact, from the contact point to the centre on plates and membrane.
+//! F is what grains put on a plate, V the volume inside membrane and plates, h their distance. Stresses
+//! are those in the middle half of the height, away from the end rings, on which the membrane hangs:
+//! V_m is its volume; f and l are force and branch of each contact, of l the part that lies in it. On
+//! the membrane l goes from the contact point to the centre.
 
 use super::specimen::{BOTTOM, TOP};
 use crate::{
@@ -59,10 +61,36 @@ pub(super) fn radii(system: &System) -> [Real; 2] {
     [mean(&|z| z <= 0.25), mean(&|z| z >= 0.75)]
 }
 
+/// What the hoop tension of the membrane adds to the confining pressure in the middle half [Pa]; below
+/// zero where the grains have drawn together.
+pub(super) fn hoop_pressure(system: &System) -> Real {
+    let mesh = &system.model.membrane.mesh;
+    let first = mesh.positions.iter().map(|p| p.xy().norm()).fold(0.0, Real::max);
+    let height = 2.0 * mesh.positions.iter().map(|p| p.z).fold(0.0, Real::max);
+    let [middle, _] = radii(system);
+    let (hoop, axial) = (middle / first - 1.0, self::height(system) / height - 1.0);
+    let sheet = &system.model.membrane.sheet;
+    // A hexagonal net of springs has Poisson's ratio 1/3.
+    let tension = sheet.youngs_modulus * sheet.thickness * (hoop + axial / 3.0) / (1.0 - 1.0 / 9.0);
+    tension / middle
+}
+
+/// Kinetic energy of the grains [J]. The membrane's is left out: here and there a vertex of some
+/// milligrams swings for ever between two patches, without anything else moving.
+pub(super) fn grain_energy(system: &System) -> Real {
+    let grains = &system.state.grains;
+    let twice = |i: usize| {
+        let gyration = 0.4 * grains.radii[i] * grains.radii[i];
+        let (v, w) = (grains.velocities[i].norm_squared(), grains.spins[i].norm_squared());
+        grains.masses[i] * (v + gyration * w)
+    };
+    0.5 * (0..grains.len()).map(twice).sum::<Real>()
+}
+
 /// What the contacts carry.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Carried {
-    /// Axial and mean lateral stress of the grains [Pa].
+    /// Axial and mean lateral stress of the grains in the middle half of the height [Pa].
     pub(super) stress: [Real; 2],
     /// Elastic energy of contacts between grains and with plates and membrane [J].
     pub(super) elastic_energy: Real,
@@ -76,14 +104,21 @@ pub(super) struct Carried {
 
 /// Looks at every contact of the last substep.
 pub(super) fn carried(system: &System) -> Carried {
-    let mut sum = Sum::default();
+    let z = |wall: u32| system.state.walls[wall as usize].pose.translation.z;
+    let mut sum = Sum {
+        centre: 0.5 * (z(BOTTOM) + z(TOP)),
+        reach: 0.25 * (z(TOP) - z(BOTTOM)),
+        ..Sum::default()
+    };
     of_grains(system, &mut sum);
     of_membrane(system, &mut sum);
-    let n_grains = system.state.grains.len();
     for contact in system.scratch.wall_forces.iter().filter(|it| it.normal > 0.0) {
-        sum.add(&contact.force, &-contact.arm, contact.normal * contact.overlap, 1);
+        sum.n += 1;
+        sum.force += contact.force.norm();
+        sum.normal_overlap += contact.normal * contact.overlap;
     }
-    let volume = volume(system);
+    let n_grains = system.state.grains.len();
+    let volume = middle_section(system) * 2.0 * sum.reach;
     let unbalanced: Real = (0..n_grains)
         .map(|i| sums::on_grain(&system.state.grains, &system.scratch, i).0.norm())
         .sum();
@@ -97,8 +132,27 @@ pub(super) fn carried(system: &System) -> Carried {
     }
 }
 
+/// Mean cross-section inside the membrane in the middle half of the height [m²].
+fn middle_section(system: &System) -> Real {
+    let mesh = &system.model.membrane.mesh;
+    let top = mesh.positions.iter().map(|p| p.z).fold(0.0, Real::max);
+    let (mut squares, mut n) = (0.0, 0);
+    for (reference, position) in mesh.positions.iter().zip(&system.state.membrane.positions) {
+        if reference.z.abs() <= 0.5 * top {
+            squares += position.xy().norm_squared();
+            n += 1;
+        }
+    }
+    // A ring of vertices is a polygon, smaller than its circle.
+    let turn = 2.0 * std::f64::consts::PI / real(mesh.rims[0].len());
+    std::f64::consts::PI * (turn.sin() / turn) * squares / real(n)
+}
+
 #[derive(Default)]
 struct Sum {
+    /// Height of the specimen's middle, and what above and below it belongs to its middle half [m].
+    centre: Real,
+    reach: Real,
     axial: Real,
     lateral: Real,
     /// Σ F ξ [J]; of a Hertz contact 2/5 of it are stored.
@@ -109,13 +163,25 @@ struct Sum {
 }
 
 impl Sum {
-    /// Adds a contact's force and branch; `n` is 0 for parts of one.
-    fn add(&mut self, force: &Vec3, branch: &Vec3, normal_overlap: Real, n: usize) {
-        self.axial += force.z * branch.z;
-        self.lateral += force.x * branch.x + force.y * branch.y;
+    /// Adds a contact: its force on what is at `end` [m], its branch up to there, and F ξ.
+    fn add(&mut self, force: &Vec3, end: &Vec3, branch: &Vec3, normal_overlap: Real) {
+        let share = self.share(end.z - branch.z, end.z);
+        self.axial += share * force.z * branch.z;
+        self.lateral += share * (force.x * branch.x + force.y * branch.y);
         self.normal_overlap += normal_overlap;
         self.force += force.norm();
-        self.n += n;
+        self.n += 1;
+    }
+
+    /// Share of a line from one height to another that is in the middle half.
+    fn share(&self, from: Real, to: Real) -> Real {
+        let (low, high) = (from.min(to) - self.centre, from.max(to) - self.centre);
+        let inside = high.min(self.reach) - low.max(-self.reach);
+        // Lines within a nanometre of the horizontal are in or out.
+        if high - low < 1e-9 {
+            return if low.abs() < self.reach { 1.0 } else { 0.0 };
+        }
+        (inside / (high - low)).clamp(0.0, 1.0)
     }
 }
 
@@ -125,7 +191,12 @@ fn of_grains(system: &System, sum: &mut Sum) {
         if pair.overlap > 0.0 {
             let [i, j] = ids.map(|id| id as usize);
             let branch = grains.positions[i] - grains.positions[j];
-            sum.add(&pair.force, &branch, pair.signed_normal.abs() * pair.overlap, 1);
+            sum.add(
+                &pair.force,
+                &grains.positions[i],
+                &branch,
+                pair.signed_normal.abs() * pair.overlap,
+            );
             let diameter = grains.radii[i] + grains.radii[j];
             sum.overlap_over_diameter = sum.overlap_over_diameter.max(pair.overlap / diameter);
         }
@@ -139,16 +210,17 @@ fn of_membrane(system: &System, sum: &mut Sum) {
         for patch in &patches.contacts[..patches.n] {
             let corners = triangles[patch.triangle as usize].map(|v| sheet.positions[v as usize]);
             let point: Vec3 = corners.iter().zip(patch.weights).map(|(r, w)| r * w).sum();
-            sum.add(&patch.force, &(centre - point), patch.normal * patch.overlap, 1);
+            sum.add(&patch.force, centre, &(centre - point), patch.normal * patch.overlap);
         }
     }
     let ids = &system.state.springs.spheres.ids;
     for (contact, [grain, vertex]) in system.scratch.sphere_forces.iter().zip(ids) {
         if contact.overlap > 0.0 {
             let grain = *grain as usize;
-            let apart = grains.positions[grain] - sheet.positions[*vertex as usize];
+            let centre = &grains.positions[grain];
+            let apart = centre - sheet.positions[*vertex as usize];
             let branch = apart.normalize() * (grains.radii[grain] - 0.5 * contact.overlap);
-            sum.add(&contact.force, &branch, contact.normal * contact.overlap, 1);
+            sum.add(&contact.force, centre, &branch, contact.normal * contact.overlap);
         }
     }
 }

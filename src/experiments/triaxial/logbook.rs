@@ -16,7 +16,7 @@ use crate::{
 };
 
 /// Columns with their units.
-const COLUMNS: [(&str, &str); 13] = [
+const COLUMNS: [(&str, &str); 14] = [
     ("strain", "1"),
     ("stress_difference", "Pa"),
     ("stress_difference_initial_area", "Pa"),
@@ -24,6 +24,7 @@ const COLUMNS: [(&str, &str); 13] = [
     ("plate_pressure_top", "Pa"),
     ("axial_stress", "Pa"),
     ("lateral_stress", "Pa"),
+    ("hoop_pressure", "Pa"),
     ("volumetric_strain", "1"),
     ("solid_fraction", "1"),
     ("coordination_number", "1"),
@@ -135,6 +136,7 @@ impl Logbook {
             top / area,
             axial,
             lateral,
+            gauges::hoop_pressure(system),
             volume / self.volume_0 - 1.0,
             measure::grain_volume(&system.state) / volume,
             carried.coordination,

@@ -6,6 +6,7 @@ mod course; // from grown grains to the last strain
 mod evaluate; // what the records show
 mod gauges; // what is read off a specimen
 mod logbook; // what is recorded
+mod plots; // curves and pictures
 mod run; // a case
 mod setup; // the scene
 mod specimen; // grains, membrane, plates
@@ -64,14 +65,14 @@ struct Triaxials {
 /// A case.
 #[derive(Clone, Copy)]
 enum Case {
-    /// One specimen, and its speed over that of the others.
-    Sheared { choice: Choice, slowness: f64 },
+    /// One specimen; as a check, with nothing sped up.
+    Sheared { choice: Choice, is_check: bool },
     /// Both membrane models side by side, of a size.
     Timed { size: usize },
 }
 
-/// What is appended to the name of a specimen at half speed.
-const HALF_SPEED: &str = "_half_speed";
+/// What is appended to the name of a specimen that checks the speed-ups.
+const CHECK: &str = "_check";
 
 impl Triaxials {
     fn all(&self) -> Vec<(String, Case)> {
@@ -82,14 +83,14 @@ impl Triaxials {
             for kind in [Kind::Triangles, Kind::Spheres] {
                 for initial in 0..2 {
                     let choice = Choice { size, kind, initial };
-                    cases.push((name(choice), Case::Sheared { choice, slowness: 1.0 }));
+                    cases.push((name(choice), Case::Sheared { choice, is_check: false }));
                 }
             }
         }
-        if runs.half_speed_strain > 0.0 {
+        if runs.check_strain > 0.0 {
             let choice = Choice { size: 0, kind: Kind::Triangles, initial: 0 };
-            let half = Case::Sheared { choice, slowness: 0.5 };
-            cases.push((name(choice) + HALF_SPEED, half));
+            let check = Case::Sheared { choice, is_check: true };
+            cases.push((name(choice) + CHECK, check));
         }
         if runs.timing > 0.0 {
             for size in 0..n_sizes {
@@ -122,8 +123,8 @@ impl Plan for Triaxials {
             return Err(StartError::NoSuchCase { name: case.to_owned(), known: self.cases() });
         };
         Ok(match chosen {
-            Case::Sheared { choice, slowness } => {
-                Box::new(run::Sheared::new(&self.setup, &name, choice, slowness)?)
+            Case::Sheared { choice, is_check } => {
+                Box::new(run::Sheared::new(&self.setup, &name, choice, is_check)?)
             }
             Case::Timed { size } => Box::new(timing::Timed::new(&self.setup, &name, size)?),
         })

@@ -33,7 +33,16 @@ pub(super) struct Setup {
     pub(super) shear: Shear,
     /// Which cases are run besides the first size.
     pub(super) runs: Runs,
-    /// Share of the critical step.
+    /// The substep.
+    pub(super) time: Time,
+}
+
+/// How the substep is derived.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Time {
+    /// Share of the Rayleigh time of the smallest grain at which the packing is taken to ring.
+    pub(super) rayleigh_share: Real,
+    /// Share of the critical step that is taken.
     pub(super) safety: Real,
 }
 
@@ -46,20 +55,24 @@ pub(super) struct Membrane {
     pub(super) spring_damping: Real,
     pub(super) bending_stiffness: Real,
     pub(super) bending_damping: Real,
+    /// The same for the fine mesh of the model with spheres.
+    pub(super) bending_damping_spheres: Real,
+    /// True if hinges take the areas of the straight membrane.
+    pub(super) bends_by_first_areas: bool,
     pub(super) dissipation_time: Real,
     pub(super) tangential_damping: Real,
 }
 
 impl Membrane {
-    /// What the mesh is made of.
-    pub(super) fn sheet(&self) -> Sheet {
+    /// What a mesh is made of whose hinges have a damping [N s].
+    pub(super) fn sheet(&self, bending_damping: Real) -> Sheet {
         Sheet {
             thickness: self.thickness,
             youngs_modulus: self.material.youngs_modulus,
             density: self.material.density,
             spring_damping: self.spring_damping,
             bending_stiffness: self.bending_stiffness,
-            bending_damping: self.bending_damping,
+            bending_damping,
         }
     }
 }
@@ -139,8 +152,10 @@ pub(super) struct Shear {
 pub(super) struct Runs {
     /// The larger size too.
     pub(super) case2: bool,
-    /// A wall-model specimen at half the speed, up to this strain.
-    pub(super) half_speed_strain: Real,
+    /// Strain to which a specimen is sheared with all that `quick` speeds up at half or less.
+    pub(super) check_strain: Real,
+    /// The share of the Rayleigh time in that check.
+    pub(super) check_rayleigh_share: Real,
     /// Simulated time of the comparison of run times; 0 for none.
     pub(super) timing: Real,
 }
@@ -165,6 +180,8 @@ pub(super) fn blank() -> Setup {
             spring_damping: NAN,
             bending_stiffness: NAN,
             bending_damping: NAN,
+            bending_damping_spheres: NAN,
+            bends_by_first_areas: false,
             dissipation_time: NAN,
             tangential_damping: NAN,
         },
@@ -188,8 +205,8 @@ pub(super) fn blank() -> Setup {
             rest_time_max: NAN,
         },
         shear: Shear { speed: NAN, speed_factor: NAN, start_time: NAN, strain: NAN, n_points: 0 },
-        runs: Runs { case2: false, half_speed_strain: NAN, timing: NAN },
-        safety: NAN,
+        runs: Runs { case2: false, check_strain: NAN, check_rayleigh_share: NAN, timing: NAN },
+        time: Time { rayleigh_share: NAN, safety: NAN },
     }
 }
 
@@ -215,12 +232,15 @@ impl Keys for Setup {
         walk.section("shear", |walk| shear(walk, &mut self.shear));
         walk.section("runs", |walk| {
             walk.flag("case2", &mut self.runs.case2);
-            let strain = Range::Between(0.0, 0.5);
-            walk.number("half_speed_strain", strain, &mut self.runs.half_speed_strain);
+            let Runs { check_strain, check_rayleigh_share, .. } = &mut self.runs;
+            walk.number("check_strain", Range::Between(0.0, 0.5), check_strain);
+            walk.number("check_rayleigh_share", Range::AboveUpTo(0.0, 1.0), check_rayleigh_share);
             walk.quantity("timing", Quantity::at_least_zero(&TIME), &mut self.runs.timing);
         });
         walk.section("time", |walk| {
-            walk.number("safety", Range::AboveUpTo(0.0, 1.0), &mut self.safety);
+            let share = Range::AboveUpTo(0.0, 1.0);
+            walk.number("rayleigh_share", share, &mut self.time.rayleigh_share);
+            walk.number("safety", share, &mut self.time.safety);
         });
     }
 
@@ -265,6 +285,8 @@ fn membrane(walk: &mut impl Walk, it: &mut Membrane) {
     walk.quantity("bending_stiffness", stiffness, &mut it.bending_stiffness);
     let damping = Quantity::at_least_zero(&IMPULSE);
     walk.quantity("bending_damping", damping, &mut it.bending_damping);
+    walk.quantity("bending_damping_spheres", damping, &mut it.bending_damping_spheres);
+    walk.flag("bends_by_first_areas", &mut it.bends_by_first_areas);
     walk.quantity("dissipation_time", Quantity::at_least_zero(&TIME), &mut it.dissipation_time);
     walk.number("tangential_damping", Range::AtLeast(0.0), &mut it.tangential_damping);
 }

@@ -18,10 +18,13 @@ use crate::{
             body::BodyMotion,
             wall::{WallModel, WallShape},
         },
-        contact::law::{PairLaw, Surface},
-        critical_step::{RAYLEIGH_SHARE, critical_step, rayleigh_time},
+        contact::{
+            law::{PairLaw, Surface},
+            stiffness_at_vertex,
+        },
+        critical_step::{RAYLEIGH_SHARE, rayleigh_time},
         membrane::{
-            FREE, MembraneModel, SheetContact,
+            self, FREE, MembraneModel, SheetContact,
             mesh::{Mesh, MeshFault},
         },
         model::ChamberModel,
@@ -168,7 +171,14 @@ fn model(setup: &Setup, choice: Choice) -> Result<Model, MeshFault> {
     let size = &setup.cases[choice.size];
     let net = net(setup, choice);
     let mesh = Mesh::tube(size.radius, size.height, net.n_around, net.n_rows)?;
-    let mut membrane = MembraneModel::new(mesh, setup.membrane.sheet());
+    let damping = match choice.kind {
+        Kind::Triangles => setup.membrane.bending_damping,
+        Kind::Spheres => setup.membrane.bending_damping_spheres,
+    };
+    let mut membrane = MembraneModel::new(mesh, setup.membrane.sheet(damping));
+    if setup.membrane.bends_by_first_areas {
+        membrane.bend_by_first_areas();
+    }
     if choice.kind == Kind::Spheres {
         membrane.contact = SheetContact::Spheres { radius: size.sphere_radius };
     }
@@ -239,18 +249,18 @@ fn set_laws(setup: &Setup, model: &mut Model, softness: Real) {
 }
 
 /// Substeps while grains grow in the held membrane, and from then on [s].
+///
+/// A packing rings where ω dt nears 2, and ω² ~ √(ξ/R): at 0.4 of the Rayleigh time for overlaps of a
+/// tenth of a diameter, far later for those of stiff grains.
 fn substeps(setup: &Setup, model: &Model) -> (Real, Real) {
     let grains = &setup.grains;
     let soft = Material { youngs_modulus: setup.growth.youngs_modulus, ..grains.material };
     let growing = RAYLEIGH_SHARE * rayleigh_time(grains.radius_min, &soft);
+    let stiff = setup.time.rayleigh_share * rayleigh_time(grains.radius_min, &grains.material);
+    let (membrane, law) = (&model.membrane, &model.membrane_law);
     let pressure = setup.confining.pressure;
-    let membrane = &model.membrane;
-    let on_vertex = crate::physics::contact::stiffness_at_vertex(
-        membrane,
-        &model.membrane_law,
-        grains.radius_max,
-        pressure,
-    );
-    let stiff = critical_step(grains.radius_min, &grains.material, membrane, on_vertex);
-    (setup.safety * growing, setup.safety * stiff)
+    let on_vertex = stiffness_at_vertex(membrane, law, grains.radius_max, pressure);
+    let sheet = membrane::critical_step::critical_step(membrane, on_vertex);
+    let safety = setup.time.safety;
+    (safety * growing, safety * stiff.min(sheet))
 }

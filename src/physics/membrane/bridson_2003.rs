@@ -16,7 +16,8 @@
 //!
 //! Source: Bridson, Marino, Fedkiw (2003), in the form of Götz (2024) eqs. 17–25. With this sign of
 //! θ the u_i are −∂θ/∂r_i, so θ̇ above is minus the true rate; the true rate would feed energy in.
-//! Current areas are taken: with initial areas the torques of a stretched hinge do not cancel.
+//! Current areas are taken: with initial areas the torques of a stretched hinge do not cancel. They can
+//! be had where a scene asks for them (`Fold::with_areas`).
 //! A regular lattice has the plate stiffness D = k_el/4 and the bending Poisson's ratio −1/3.
 //!
 //! No angle is computed: sin θ = −|e| n1·(r2 − r3)/(|n1||n2|) and cos θ give sin θ/2 by one square
@@ -61,6 +62,17 @@ impl Fold {
             half_sine: half_sine(sine, cosine),
             slenderness: length * length * both / (f1.inverse_norm + f2.inverse_norm),
         }
+    }
+
+    /// The same hinge with the areas that its triangles once had: `first` are twice those [m²], `facets`
+    /// and `length` [m] the present triangles and edge. Triangles that are squeezed flat then keep a
+    /// finite stiffness, at the price of a torque on itself where the two are stretched differently.
+    #[inline(always)]
+    pub fn with_areas(mut self, first: [Real; 2], facets: [&Facet; 2], length: Real) -> Self {
+        self.u1 /= facets[0].inverse_norm * first[0];
+        self.u2 /= facets[1].inverse_norm * first[1];
+        self.slenderness = length * length / (first[0] + first[1]);
+        self
     }
 
     /// Σ u_i · x_i for vectors x at the four vertices.

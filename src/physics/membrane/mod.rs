@@ -74,6 +74,8 @@ pub struct MembraneModel {
     pub contact: SheetContact,
     /// Springs and hinges, numbered like the edges.
     links: Vec<Link>,
+    /// Twice the reference areas at each hinge [m²] if these are to be taken; else empty.
+    first_areas: Vec<[Real; 2]>,
 }
 
 /// An edge with all that its forces need, in one place in memory.
@@ -164,7 +166,22 @@ impl MembraneModel {
         }
         let holder = |&is_on_rim: &bool| if is_on_rim { CARRIER_ID } else { FREE };
         let holders = mesh.is_on_rim.iter().map(holder).collect();
-        Self { masses, holders, contact: SheetContact::Triangles, links, sheet, mesh }
+        Self {
+            masses,
+            holders,
+            contact: SheetContact::Triangles,
+            links,
+            first_areas: Vec::new(),
+            sheet,
+            mesh,
+        }
+    }
+
+    /// From now on hinges take the areas of the reference shape, as Götz (2024), section 3.3.1, does.
+    pub fn bend_by_first_areas(&mut self) {
+        let mesh = &self.mesh;
+        let twice = |t: u32| area_normal(&mesh.positions, &mesh.triangles[t as usize]).norm();
+        self.first_areas = mesh.hinges.iter().map(|hinge| hinge.triangles.map(twice)).collect();
     }
 
     /// Makes every spring's rest length `scale` times its length in the reference shape.
@@ -276,7 +293,10 @@ fn pull_and_fold(
         let mut forces = [Vec3::zeros(); 4];
         if l < n_hinges {
             let sides = link.triangles.map(|t| &facets[t as usize]);
-            let fold = Fold::new(r, sides, &edge, [length, inverse]);
+            let mut fold = Fold::new(r, sides, &edge, [length, inverse]);
+            if let Some(&first) = model.first_areas.get(l) {
+                fold = fold.with_areas(first, sides, length);
+            }
             let opened = fold.half_sine - link.rest_half_sine;
             let speed = fold.project(v);
             forces =
