@@ -14,6 +14,10 @@ use crate::{
     physics::measure::real,
 };
 
+/// Why a check from the settled bag on may fail.
+const HISTORY: &str = "with vary_relaxed false the two insertions push the grains aside in different \
+                       ways; a tenth less speed moves the holding force as much as half the speed \
+                       does, so this is scatter and not a rate: compare means over fillings";
 /// Below this, two holding forces of the same filling are not told apart.
 const SAME: Real = 0.1;
 
@@ -370,7 +374,7 @@ fn checks(view: &View<'_>, judge: &mut Judge<'_>) {
         cases::others(&sweep.spring_dampings, view.scene.gripper.membrane.spring_damping)
     {
         let change = Change::SpringDamping(ratio_of_springs);
-        judge.row(
+        judge.row_or(
             &Told {
                 id: &format!("C9.{}", change.name()),
                 quantity: "holding force with this damping ratio of the membrane's springs over the protocol's",
@@ -380,11 +384,12 @@ fn checks(view: &View<'_>, judge: &mut Judge<'_>) {
             },
             Expected::within(1.0, SAME),
             ratio(change).map(|(changed, own)| changed / own),
+            HISTORY,
         );
     }
     for factor in cases::others(&sweep.slowdowns, 1.0) {
         let change = Change::Slowdown(factor);
-        judge.row(
+        judge.row_or(
             &Told {
                 id: &format!("C9.{}", change.name()),
                 quantity: "holding force with both ways slower by this factor over the protocol's",
@@ -394,6 +399,7 @@ fn checks(view: &View<'_>, judge: &mut Judge<'_>) {
             },
             Expected::within(1.0, SAME),
             ratio(change).map(|(changed, own)| changed / own),
+            HISTORY,
         );
     }
 }
