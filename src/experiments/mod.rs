@@ -26,7 +26,14 @@ use findings::Findings;
 pub use record::Record;
 
 /// All experiments, in the order of the sources.
-pub static EXPERIMENTS: &[&dyn Experiment] = &[&laws::Laws, &slide::Slide, &triaxial::Triaxial, &packing::Packing, &gripper::Gripper, &hollow_sphere::HollowSphere];
+pub static EXPERIMENTS: &[&dyn Experiment] = &[
+    &laws::Laws,
+    &slide::Slide,
+    &triaxial::Triaxial,
+    &packing::Packing,
+    &gripper::Gripper,
+    &hollow_sphere::HollowSphere,
+];
 
 /// How much of an experiment is run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
