@@ -2,7 +2,7 @@
 
 use jamgrip::{
     base::{
-        Real, Vec3,
+        Mat3, Real, Vec3,
         digest::Digest,
         parallel,
         random::{Random, Stream},
@@ -14,7 +14,10 @@ use jamgrip::{
             grains::closest_image,
             law::{PairLaw, Surface},
         },
-        measure::stress,
+        measure::{
+            coordination::{NEEDED_SMOOTH, coordination},
+            rest, stress,
+        },
         packing::{Grown, Growth, Recipe, Room, scatter, sphere_volume},
         state::Grains,
     },
@@ -105,6 +108,38 @@ fn a_periodic_box_has_the_same_bits_for_any_number_of_threads_and_any_origin_of_
     let (other, n_builds_now) = run(1, 2.0);
     assert_ne!(n_builds_now, n_builds, "the lists were built at other times");
     assert_eq!(other, expected, "contacts were missed between two builds");
+}
+
+/// Oracle: a simple cubic lattice of smooth grains, squeezed by ξ: each of its three contacts per grain
+/// carries F = 4/3 E* √R* ξ^(3/2) over the area a² of a cell and stores 8/15 E* √R* ξ^(5/2). To rounding,
+/// but for the first substep's motion, in which balanced grains do not move.
+#[test]
+fn a_squeezed_lattice_has_the_stress_and_the_energy_of_its_contacts() {
+    let surface = Surface { friction: 0.0, dissipation_time: 0.0, tangential_damping: 0.0 };
+    let law = PairLaw::between(&GRAIN, &GRAIN, surface);
+    let mut model = Model::of_grains(law, 1e-6, RADIUS, RADIUS);
+    let overlap = 1e-5;
+    let cell = 2.0 * RADIUS - overlap;
+    model.period = Some(Vec3::repeat(4.0 * cell));
+    let at = |k: usize| {
+        Vec3::from([k % 4, k / 4 % 4, k / 16].map(|n| cell * f64::from(u32::try_from(n).unwrap())))
+    };
+    let grains = Grains::at_rest((0..64).map(at).collect(), vec![RADIUS; 64], vec![1e-4; 64]);
+    let mut system = System::at_rest(model, Vec::new(), grains);
+    system.step();
+    let System { model, state, scratch, .. } = &system;
+    let volume = (4.0 * cell).powi(3);
+    let force = 4.0 / 3.0 * law.modulus * (RADIUS / 2.0).sqrt() * overlap.powf(1.5);
+    let sigma = stress::contact_stress(model, state, scratch, volume);
+    let expected = Mat3::identity() * (force / (cell * cell));
+    assert!((sigma - expected).norm() < 1e-9 * expected.norm(), "{sigma} {expected}");
+    let pressure = stress::normal_pressure(state, scratch, volume);
+    assert!((pressure / expected[(0, 0)] - 1.0).abs() < 1e-9, "{pressure}");
+    let energy = rest::elastic_energy(model, state, scratch);
+    assert!((energy / (64.0 * 3.0 * 0.4 * force * overlap) - 1.0).abs() < 1e-9, "{energy}");
+    assert!(rest::unbalanced_force(model, state, scratch) < 1e-9);
+    let found = coordination(state, scratch, NEEDED_SMOOTH);
+    assert!((found.mean - 6.0).abs() < 1e-15 && found.rattler_share.abs() < 1e-15, "{found:?}");
 }
 
 fn plan(overrides: &[&str]) -> Box<dyn Plan> {

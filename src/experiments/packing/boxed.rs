@@ -34,7 +34,7 @@ use crate::{
         health::Diverged,
         measure::{
             coordination::{NEEDED_ROUGH, NEEDED_SMOOTH, coordination},
-            grain_volume, packing, real, stress,
+            grain_volume, packing, real, rest, stress,
             structure::{self, Bins, Region},
         },
         packing::{Grown, Growth, Laws, Recipe, Room, first_scale, grow, scatter, sphere_volume},
@@ -45,6 +45,8 @@ use crate::{
 const FINAL_FRACTION: Real = 0.64;
 /// Growth of all diameters in ten relaxation times that counts as none where the way back is taken.
 const STUCK_SMOOTH: Real = 1e-3;
+/// Share of the last pressure at which it counts as reached.
+const REACHED: Real = 0.97;
 /// Share of the first pressure below which grains do not hold each other.
 const LOOSE: Real = 0.1;
 /// Width of a bin of g(r), in mean diameters.
@@ -147,12 +149,13 @@ impl Boxed {
     fn step(&mut self) {
         match self.place.stage {
             Stage::Growing => {
-                if self.growth.step(&mut self.system) != Grown::Growing {
-                    self.place.stage = Stage::Resting(Settling::default());
-                }
+                let grown = self.growth.step(&mut self.system);
                 self.place.growth = self.growth.progress();
                 self.place.scale = self.place.growth.scale;
                 self.count("growing");
+                if grown != Grown::Growing {
+                    self.begin();
+                }
             }
             Stage::Ramping { time_left, step } => {
                 self.place.scale += step;
@@ -180,6 +183,16 @@ impl Boxed {
         sample::drag(&mut self.system, self.scene.compression.drag_time);
     }
 
+    /// Grown grains rest. Without friction they are let go a little first: under the full pressure
+    /// they would creep for long.
+    fn begin(&mut self) {
+        self.place.stage = Stage::Resting(Settling::default());
+        if friction(&self.scene, self.case) == 0.0 {
+            let overlap = grow::mean_overlap(&self.system);
+            self.ramp(-self.scene.compression.share * overlap, self.place.growth.pressure);
+        }
+    }
+
     fn count(&mut self, stage: &str) {
         *self.place.record.n_substeps.entry(stage.to_owned()).or_default() += 1;
     }
@@ -194,24 +207,27 @@ impl Boxed {
         let pressure = stress::normal_pressure(state, scratch, self.volume);
         if !is_smooth && pressure < LOOSE * compression.pressure_first {
             // Growth ended in motion, and at rest the grains do not hold each other yet.
-            return self.ramp(compression.share * self.first_overlap());
+            return self.ramp(compression.share * self.first_overlap(), Real::INFINITY);
         }
         let n_max = compression.rest_time_max / model.substep;
         if !unrest.is_rest() && !sample::is_over(settling.n_done, n_max) {
             return;
         }
         let (pressure, overlap) = self.write(&unrest);
+        let last = last_pressure(&self.scene, self.case);
         if let Some(before) = self.place.probed_from {
             let modulus = (pressure - before) / (3.0 * self.scene.moduli.probe);
             self.place.record.set("bulk_modulus", modulus, "Pa");
             self.finish();
         } else if is_smooth && pressure > compression.pressure_low {
-            self.ramp(-compression.share * overlap);
-        } else if !is_smooth && pressure < last_pressure(&self.scene, self.case) {
-            self.ramp(compression.share * overlap.max(self.first_overlap()));
+            self.ramp(-compression.share * overlap, pressure);
+        } else if !is_smooth && pressure < REACHED * last {
+            // By Hertz the last pressure needs this share of the overlap more.
+            let share = compression.share.min((last / pressure).powf(2.0 / 3.0) - 1.0);
+            self.ramp(share * overlap.max(self.first_overlap()), pressure);
         } else if self.case == Case::Moduli {
             self.place.probed_from = Some(pressure);
-            self.ramp(self.scene.moduli.probe);
+            self.ramp(self.scene.moduli.probe, pressure);
         } else {
             self.finish();
         }
@@ -223,9 +239,14 @@ impl Boxed {
         (self.scene.compression.pressure_first / stiffness).powf(2.0 / 3.0)
     }
 
-    /// Makes all grains larger by the share `growth`, steadily.
-    fn ramp(&mut self, growth: Real) {
-        let compression = &self.scene.compression;
+    /// Makes all grains, which are now under `pressure` [Pa], larger by the share `growth`, steadily.
+    fn ramp(&mut self, growth: Real, pressure: Real) {
+        let (compression, grains) = (&self.scene.compression, &self.scene.grains);
+        let rate = growth / compression.ramp_time;
+        let diameter = 2.0 * grains.radius_mean();
+        let number = rest::inertial_number(rate, diameter, grains.material.density, pressure);
+        let seen = &mut self.place.record.validity.inertial_number_max;
+        *seen = seen.max(number);
         let n = (compression.ramp_time / compression.substep).ceil();
         let step = self.place.scale * growth / n;
         self.place.stage = Stage::Ramping { time_left: compression.ramp_time, step };

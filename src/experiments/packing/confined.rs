@@ -145,7 +145,8 @@ impl Confined {
         let System { model, state, scratch, .. } = &self.system;
         let n_max = 2.0 * compression.rest_time_max / model.substep;
         let is_drawn = state.gauge <= -self.scene.confined.pressure;
-        if !(is_drawn && unrest.is_rest()) && !sample::is_over(settling.n_done, n_max) {
+        let is_at_rest = is_drawn && unrest.is_rest();
+        if !is_at_rest && !sample::is_over(settling.n_done, n_max) {
             return;
         }
         let volume = enclosed_volume(model, state);

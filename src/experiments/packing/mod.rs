@@ -18,6 +18,7 @@ mod scene; // keys
 use super::{Experiment, Plan, Run, SceneText, StartError, findings::Findings, record::Record};
 use crate::{
     base::Real,
+    physics::measure::real,
     scene::{SceneError, text::fill},
 };
 use scene::Scene;
@@ -97,6 +98,20 @@ impl Plan for Packings {
             Some(it) => Ok(Box::new(boxed::Boxed::new(&self.scene, it)?)),
             None => Err(StartError::NoSuchCase { name: case.to_owned(), known: self.cases() }),
         }
+    }
+
+    fn expected_s(&self, case: &str) -> Option<f64> {
+        let case = self.all().into_iter().find(|it| it.name() == case)?;
+        let grains = &self.scene.grains;
+        // Seconds for a thousand grains, measured on one thread of a shared core.
+        let (count, per_thousand) = match case {
+            Case::Mono { friction: 0.0 } => (grains.count_smooth, 12.0),
+            Case::Mono { .. } => (grains.count, 8.0),
+            Case::Poly => (grains.count, 12.0),
+            Case::Moduli => (grains.count, 16.0),
+            Case::Confined => (self.scene.confined.count, 15.0),
+        };
+        Some(per_thousand * real(count) / 1000.0)
     }
 
     fn evaluate(&self, records: &[Record]) -> Findings {

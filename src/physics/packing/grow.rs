@@ -406,7 +406,7 @@ mod tests {
         let jammed = growth.progress();
         let solid = grain_volume(&system.state) / EDGE.powi(3);
         assert_eq!(jammed.grown, Grown::Jammed);
-        assert!((0.5236..0.63).contains(&solid), "{solid}");
+        assert!((std::f64::consts::FRAC_PI_6..0.63).contains(&solid), "{solid}");
         assert!((jammed.pressure / 500.0 - 1.0).abs() < 0.2, "{}", jammed.pressure);
         let (state, progress) = again.expect("it takes longer than 5000 substeps");
         let mut other = System::new(system.model.clone(), system.controls.clone(), state);
