@@ -38,10 +38,6 @@ const EXCHANGE_MAX: Real = 1e-4;
 /// Effective radius R* of a sample of the sheet on the table: that of the source's object [m].
 const TABLE_CONTACT_RADIUS: Real = 0.01;
 
-/// Share of the Rayleigh time that a bag at full vacuum bears: grains of 100 MPa ring at 0.37 of it
-/// and come to rest at 0.28.
-const VACUUM_SHARE: Real = 0.3;
-
 /// Why a scene cannot be compiled.
 #[derive(Debug, thiserror::Error)]
 pub enum CompileError {
@@ -299,13 +295,7 @@ fn critical_step(
         .iter()
         .map(|body| contact::stiffness(&body.law, body.contact_radius, pressure * area))
         .fold(0.0, Real::max);
-    let step = critical_step::critical_step(
-        grains.radius_min,
-        &grains.material,
-        membrane,
-        of_grain + of_body,
-    );
-    step.min(VACUUM_SHARE * critical_step::rayleigh_time(grains.radius_min, &grains.material))
+    critical_step::critical_step(grains.radius_min, &grains.material, membrane, of_grain + of_body)
 }
 
 /// A whole positive real as a count, at least 1.

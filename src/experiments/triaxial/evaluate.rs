@@ -65,7 +65,13 @@ fn notes(setup: &Setup) -> Vec<String> {
     let mut notes = vec![
         "Plates bear what grains put on them; the pull of the membrane's end rings is left out. The \
          rings stay at the first radius while the grains sink about a millimetre into the soft \
-         membrane, so the cross-section V/h is smaller than the plates' circle."
+         membrane, so the cross-section V/h is smaller than the plates' circle, and the air on the \
+         slanted sheet beside the rings presses some of the outer grains on the plates: before shearing \
+         the plates bear p_c while the axial stress in the middle is some 7 % less."
+            .to_owned(),
+        "Hinges take the initial areas of their triangles, as the source says. With current areas the \
+         model with spheres blows up at 4 % strain: beside the plates its fine triangles are squeezed \
+         flat, and their hinges get stiffer without limit."
             .to_owned(),
     ];
     if setup.shear.speed_factor > 1.0 {

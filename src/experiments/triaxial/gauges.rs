@@ -62,17 +62,27 @@ pub(super) fn radii(system: &System) -> [Real; 2] {
 }
 
 /// What the hoop tension of the membrane adds to the confining pressure in the middle half [Pa]; below
-/// zero where the grains have drawn together.
+/// zero where the grains have drawn together. The sheet lies in dimples, so it is the edges that tell
+/// its strain: those around have ε_θ, those across 1/4 ε_θ + 3/4 ε_z.
 pub(super) fn hoop_pressure(system: &System) -> Real {
     let mesh = &system.model.membrane.mesh;
-    let first = mesh.positions.iter().map(|p| p.xy().norm()).fold(0.0, Real::max);
-    let height = 2.0 * mesh.positions.iter().map(|p| p.z).fold(0.0, Real::max);
-    let [middle, _] = radii(system);
-    let (hoop, axial) = (middle / first - 1.0, self::height(system) / height - 1.0);
+    let top = mesh.positions.iter().map(|p| p.z).fold(0.0, Real::max);
+    let (mut sums, mut n) = ([0.0; 2], [0; 2]);
+    for ends in &mesh.edges {
+        let length = |all: &[Vec3]| (all[ends[0] as usize] - all[ends[1] as usize]).norm();
+        let [low, high] = ends.map(|v| mesh.positions[v as usize].z);
+        if low.abs().max(high.abs()) <= 0.5 * top {
+            let kind = usize::from((high - low).abs() > 1e-6 * top);
+            sums[kind] += length(&system.state.membrane.positions) / length(&mesh.positions) - 1.0;
+            n[kind] += 1;
+        }
+    }
+    let [around, across] = [0, 1].map(|kind| sums[kind] / real(n[kind].max(1)));
+    let axial = (4.0 * across - around) / 3.0;
     let sheet = &system.model.membrane.sheet;
     // A hexagonal net of springs has Poisson's ratio 1/3.
-    let tension = sheet.youngs_modulus * sheet.thickness * (hoop + axial / 3.0) / (1.0 - 1.0 / 9.0);
-    tension / middle
+    let stiffness = sheet.youngs_modulus * sheet.thickness / (1.0 - 1.0 / 9.0);
+    stiffness * (around + axial / 3.0) / radii(system)[0]
 }
 
 /// Kinetic energy of the grains [J]. The membrane's is left out: here and there a vertex of some
