@@ -43,8 +43,8 @@ use crate::{
 
 /// Solid fraction of the final radii in the box.
 const FINAL_FRACTION: Real = 0.64;
-/// Growth of all diameters in ten relaxation times that counts as none where the way back is taken.
-const STUCK_SMOOTH: Real = 1e-3;
+/// Growth of all diameters in ten relaxation times that counts as none: small steps with rests follow.
+const STUCK: Real = 1e-3;
 /// Share of the last pressure at which it counts as reached.
 const REACHED: Real = 0.97;
 /// Share of the first pressure below which grains do not hold each other.
@@ -354,8 +354,7 @@ fn recipe(scene: &Scene, model: &Model, volume: Real, friction: Real) -> Recipe 
     let mass = scene.grains.material.density * sphere_volume(radius);
     // All grow at the rate of the lower pressure, so that the protocol is one for all.
     let slow = Recipe::new(model, volume, compression.pressure_first, mass, radius);
-    let stuck = if friction == 0.0 { STUCK_SMOOTH } else { slow.stuck };
-    Recipe { laws: Laws::of(model), pressure_stop: stop, stuck, scale_last: 2.0, ..slow }
+    Recipe { laws: Laws::of(model), pressure_stop: stop, stuck: STUCK, scale_last: 2.0, ..slow }
 }
 
 impl Run for Boxed {
