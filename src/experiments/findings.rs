@@ -167,13 +167,14 @@ impl Expected {
         Self { oracle: bound, relation: Relation::AtMost, tolerance: 0.0 }
     }
 
-    /// True if `measured` is as expected; never for NaN.
+    /// True if `measured` is as expected; never for what is no finite number.
     pub fn holds(&self, measured: f64) -> bool {
-        match self.relation {
+        let is_related = match self.relation {
             Relation::Within => (measured - self.oracle).abs() <= self.tolerance,
             Relation::AtLeast => measured >= self.oracle,
             Relation::AtMost => measured <= self.oracle,
-        }
+        };
+        measured.is_finite() && is_related
     }
 }
 
@@ -224,7 +225,8 @@ mod tests {
         for expected in
             [Expected::within(0.0, 1.0), Expected::at_least(0.0), Expected::at_most(0.0)]
         {
-            assert!(!expected.holds(f64::NAN));
+            assert!(!expected.holds(f64::NAN) && !expected.holds(f64::INFINITY));
+            assert!(!expected.holds(f64::NEG_INFINITY));
         }
     }
 }

@@ -11,6 +11,7 @@ pub mod hollow_sphere; // how much vacuum reaches an object
 pub mod laws; // closed forms, equation by equation
 mod number; // numbers in text
 pub mod oracles; // closed forms to compare with
+pub mod packing; // dense packings and what they bear
 pub mod record; // what a case leaves
 pub mod slide; // a ball drawn over a membrane
 pub mod triaxial; // grains under confining pressure
@@ -29,6 +30,7 @@ pub static EXPERIMENTS: &[&dyn Experiment] = &[
     &laws::Laws,
     &slide::Slide,
     &triaxial::Triaxial,
+    &packing::Packing,
     &gripper::Gripper,
     &hollow_sphere::HollowSphere,
 ];

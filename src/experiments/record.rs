@@ -45,6 +45,9 @@ pub struct Record {
     pub seed: u64,
     /// Columns of equal length, the first is what the others are plotted over.
     pub columns: Vec<Column>,
+    /// Further tables by name, each with columns of equal length.
+    #[serde(default)]
+    pub tables: BTreeMap<String, Vec<Column>>,
     /// Single numbers by name.
     pub scalars: BTreeMap<String, Scalar>,
     /// How far the run kept within the validity of the model.
@@ -61,6 +64,12 @@ impl Record {
     /// The column of this name.
     pub fn column(&self, name: &str) -> Option<&[f64]> {
         self.columns.iter().find(|it| it.name == name).map(|it| it.values.as_slice())
+    }
+
+    /// The column `name` of the further table `table`.
+    pub fn table_column(&self, table: &str, name: &str) -> Option<&[f64]> {
+        let columns = self.tables.get(table)?;
+        columns.iter().find(|it| it.name == name).map(|it| it.values.as_slice())
     }
 
     /// The number of this name.

@@ -9,7 +9,10 @@ use super::{
     plot, table,
     words::{duration, number, with_unit},
 };
-use crate::experiments::findings::{Kind, Plot, Quantity, Row};
+use crate::experiments::{
+    findings::{Kind, Plot, Quantity, Row},
+    record::{INERTIAL_LIMIT, OVERLAP_LIMIT, UNBALANCED_LIMIT},
+};
 
 const STYLE: &str = include_str!("report.css");
 
@@ -208,14 +211,15 @@ fn cases(outcome: &Outcome) -> Markup {
     html! {
         section {
             h2 { "Cases and validity" }
-            p { "Each case runs on one thread. Largest values that were seen; the law of contact is "
-                "believed up to an overlap of a tenth of the diameter." }
+            p { "Each case runs on one thread. Largest values that were seen, red beyond their limits: "
+                "overlap over diameter " (number(OVERLAP_LIMIT)) ", unbalanced force over contact "
+                "force at rest " (number(UNBALANCED_LIMIT)) ", inertial number where it claims to "
+                "be quasi-static " (number(INERTIAL_LIMIT)) "." }
             div.wide { table {
                 thead { tr {
                     th { "case" } th.number { "seed" } th.number { "time" }
-                    th.number { "substeps" } th.number { "overlap/diameter" }
-                    th.number { "unbalanced force" } th.number { "inertial number" }
-                    th.number { "leaked" } th { "digest" }
+                    th.number { "substeps" } th.number { "overlap" } th.number { "unbalanced" }
+                    th.number { "inertial" } th.number { "leaked" } th { "digest" }
                 } }
                 tbody { @for case in &outcome.cases { (one_case(case)) } }
             } }
@@ -225,16 +229,21 @@ fn cases(outcome: &Outcome) -> Markup {
 
 fn one_case(case: &CaseFacts) -> Markup {
     let validity = &case.validity;
+    let limited = [
+        (validity.overlap_over_diameter_max, OVERLAP_LIMIT),
+        (validity.unbalanced_force, UNBALANCED_LIMIT),
+        (validity.inertial_number_max, INERTIAL_LIMIT),
+    ];
     html! {
-        tr.bad[case.fault.is_some() || !validity.faults().is_empty()] {
-            td.name { (case.case) }
+        tr {
+            td.name.bad[case.fault.is_some()] { (case.case) }
             td.number { (case.seed) }
             td.number { (duration(case.wall_s.values().sum())) }
             td.number { (case.n_substeps.values().sum::<u64>()) }
-            td.number { (number(validity.overlap_over_diameter_max)) }
-            td.number { (number(validity.unbalanced_force)) }
-            td.number { (number(validity.inertial_number_max)) }
-            td.number { (validity.n_leaked) }
+            @for (value, limit) in limited {
+                td.number.bad[value > limit || value.is_nan()] { (number(value)) }
+            }
+            td.number.bad[0 < validity.n_leaked] { (validity.n_leaked) }
             td.digest { (case.digest) }
         }
     }

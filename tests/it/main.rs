@@ -13,13 +13,14 @@ mod fanout; // sinks behind their queues: order, drops, failure, closing
 mod generated_types; // msgs/*.msg and the Rust types agree
 mod grains; // one, two and three grains
 mod gripper; // the gripper experiment, coarse
-mod lab; // experiments: side by side, stopped and resumed, told in files
 mod hollow_sphere; // an object in an evacuated shell of grains
+mod lab; // experiments: side by side, stopped and resumed, told in files
 mod leaks; // what comes through the membranes
 mod lifts; // whole runs: what is lifted, and what is not
 #[cfg(feature = "ros")]
 mod main_job; // the main job, commanded from other processes
 mod oscillator; // a small experiment whose results are known in closed form
+mod packings; // periodic boxes and dense packings
 mod peers; // independent programs in Python
 #[cfg(feature = "ros")]
 mod private_network; // where tests may speak DDS

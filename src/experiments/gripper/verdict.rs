@@ -14,6 +14,10 @@ use crate::{
     physics::measure::real,
 };
 
+/// Why a check from the settled bag on may fail.
+const HISTORY: &str = "with vary_relaxed false the two insertions push the grains aside in different \
+                       ways; a tenth less speed moves the holding force as much as half the speed \
+                       does, so this is scatter and not a rate: compare means over fillings";
 /// Below this, two holding forces of the same filling are not told apart.
 const SAME: Real = 0.1;
 
@@ -295,9 +299,9 @@ fn over_pressure(view: &View<'_>, judge: &mut Judge<'_>) {
         },
         Expected::within(1.0, 0.2),
         weak.zip(full).map(|(weak, full)| weak[1] / weak[0] / (full[1] / full[0])),
-        "at this penetration the stretched membrane pushes the object out with tens of newtons; \
-         friction has to balance that push before anything is held, so that the force begins at a \
-         threshold of the vacuum and rises faster than in proportion",
+        "the stretched membrane pushes the object out, and a weaker vacuum leaves more of that push: \
+         it has to be unloaded over a longer way before anything is pulled, and by then the contact \
+         angle has come down to near the threshold (columns force and contact_angle of the record)",
     );
 }
 
@@ -370,7 +374,7 @@ fn checks(view: &View<'_>, judge: &mut Judge<'_>) {
         cases::others(&sweep.spring_dampings, view.scene.gripper.membrane.spring_damping)
     {
         let change = Change::SpringDamping(ratio_of_springs);
-        judge.row(
+        judge.row_or(
             &Told {
                 id: &format!("C9.{}", change.name()),
                 quantity: "holding force with this damping ratio of the membrane's springs over the protocol's",
@@ -380,11 +384,12 @@ fn checks(view: &View<'_>, judge: &mut Judge<'_>) {
             },
             Expected::within(1.0, SAME),
             ratio(change).map(|(changed, own)| changed / own),
+            HISTORY,
         );
     }
     for factor in cases::others(&sweep.slowdowns, 1.0) {
         let change = Change::Slowdown(factor);
-        judge.row(
+        judge.row_or(
             &Told {
                 id: &format!("C9.{}", change.name()),
                 quantity: "holding force with both ways slower by this factor over the protocol's",
@@ -394,6 +399,7 @@ fn checks(view: &View<'_>, judge: &mut Judge<'_>) {
             },
             Expected::within(1.0, SAME),
             ratio(change).map(|(changed, own)| changed / own),
+            HISTORY,
         );
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::{
     base::Real,
+    physics::measure::real,
     scene::{
         Grains, Material, Membrane, blank,
         quantity::{LENGTH, PRESSURE, TIME},
@@ -147,6 +148,11 @@ impl Keys for Scene {
 }
 
 impl Protocol {
+    /// From the closing to the last level [s].
+    pub(super) fn total_time(&self) -> Real {
+        self.close_time + self.rest_time + real(self.n_levels) * self.level_time
+    }
+
     fn walk(&mut self, walk: &mut impl Walk) {
         let time = Quantity::above_zero(&TIME);
         walk.quantity("close_time", time, &mut self.close_time);

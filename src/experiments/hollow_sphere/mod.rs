@@ -53,6 +53,15 @@ impl Plan for Shells {
         }
     }
 
+    fn expected_s(&self, case: &str) -> Option<f64> {
+        // Substeps go with the levels, and harder grains take more of them.
+        cases::of(&self.scene).iter().find(|it| it.name == case).map(|case| {
+            let stiffness = (case.modulus / case.mass_factor / 1e8).sqrt().max(0.6);
+            let time = self.scene.protocol.total_time();
+            110.0 * stiffness * time
+        })
+    }
+
     fn evaluate(&self, records: &[Record]) -> Findings {
         found::findings(&self.scene, records)
     }

@@ -220,7 +220,7 @@ impl Shell {
 
     fn share(&self) -> Real {
         let it = &self.scene.protocol;
-        let all = it.close_time + it.rest_time + real(it.n_levels) * it.level_time;
+        let all = it.total_time();
         let before = match self.now.stage {
             Stage::Growing => return GROWTH_SHARE * self.now.growth.scale.powi(3),
             Stage::Closing => 0.0,

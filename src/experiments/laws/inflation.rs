@@ -66,7 +66,7 @@ fn bag(scene: &Scene) -> Sheet {
 fn settle(model: &MembraneModel, state: &mut MembraneState, pressure: Real, pull: &[Vec3]) {
     let dt = 0.5 * critical_step(model, 0.0);
     let mut scratch = MembraneScratch::new(model);
-    for _ in 0..60 {
+    for _ in 0..40 {
         for _ in 0..50 {
             forces(model, state, pressure, &mut scratch);
             for v in 0..state.positions.len() {

@@ -19,17 +19,14 @@ mod stretching; // the sheet in its plane
 mod tests;
 
 use super::{
-    Experiment, Plan, Progress, ResumeError, Run, SceneText, Size, StartError,
+    Experiment, Plan, Progress, ResumeError, Run, SceneText, StartError,
     findings::{Expected, Findings, Row, Told},
     record::{Column, Record},
 };
 use crate::{
     base::digest::Digest,
     physics::health::Diverged,
-    scene::{
-        SceneError,
-        text::{Layers, fill},
-    },
+    scene::{SceneError, text::fill},
 };
 use scene::Scene;
 
@@ -82,20 +79,7 @@ impl Experiment for Laws {
     }
 
     fn read(&self, scene: &SceneText<'_>) -> Result<Box<dyn Plan>, SceneError> {
-        let layers = Layers {
-            text: scene.text,
-            source: scene.source,
-            variants: (
-                &["quick", "full"],
-                match scene.size {
-                    Size::Quick => "quick",
-                    Size::Full => "full",
-                },
-            ),
-            overrides: scene.overrides,
-            on_defaults: false,
-        };
-        Ok(Box::new(Book { scene: fill(&layers, scene::blank())? }))
+        Ok(Box::new(Book { scene: fill(&scene.layers(false), scene::blank())? }))
     }
 }
 

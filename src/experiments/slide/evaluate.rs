@@ -308,13 +308,13 @@ fn framed(scene: &Scene, seen: &[Seen<'_>], rows: &mut Vec<Row>) {
             quantity: "mean friction force over triangles held at the edge only, over μ N",
             unit: "1",
             oracle: "Coulomb: ups and downs of facets cancel over whole periods",
-            reason: "2 %: facets tilted by 2.5°, and the way through the bowl of the sheet is not \
-                     quite symmetric",
+            reason: "2 %: the way through the bowl of the sheet is not quite symmetric, and facets \
+                     that tilt by some degrees make it longer",
         },
         Expected::within(1.0, 0.02),
         mean / friction,
     ));
-    let told = "a sheet that gives way bends at its vertices into facets, of 1.33 mm under a ball of \
+    let told = "A sheet that gives way bends at its vertices into facets, of 1.33 mm under a ball of \
                 2 mm; the ball climbs the front half of each and goes down the rear half, \
                 F_R = W tan(φ ± tilt). The source does not say how its membrane was held";
     let reason = match named(seen, "small_triangles_framed") {
@@ -344,7 +344,7 @@ fn framed(scene: &Scene, seen: &[Seen<'_>], rows: &mut Vec<Row>) {
             quantity: "the same over that of spheres",
             unit: "1",
             oracle: "Götz (2024), section 3.3.2: triangles are smoother",
-            reason: "a bound: the source gives no number",
+            reason: "A bound: the source gives no number",
         },
         Expected::at_most(1.0),
         it.ripple() / spheres.ripple(),

@@ -342,13 +342,7 @@ fn model(scene: &Scene, case: &Case, patch: Patch) -> Model {
 
 fn state(scene: &Scene, model: &Model, start: Vec3) -> State {
     State {
-        grains: Grains {
-            positions: vec![start],
-            velocities: vec![Vec3::zeros()],
-            spins: vec![Vec3::zeros()],
-            radii: vec![scene.ball.radius],
-            masses: vec![mass(scene)],
-        },
+        grains: Grains::at_rest(vec![start], vec![scene.ball.radius], vec![mass(scene)]),
         membrane: MembraneState::at_rest(&model.membrane.mesh),
         springs: Springs::none(1, model.walls.len(), 0),
         pair_ids: Vec::new(),

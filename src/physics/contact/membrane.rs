@@ -6,24 +6,17 @@
 //! the rule of priorities (face before edge before vertex) of Götz (2024), section 3.2.3, stated
 //! by depth, so that force, direction and point are continuous when a grain moves over an edge.
 //!
-//! In the valley between two triangles both faces can hold a local minimum. If their normals are
-//! nearly the same, that is one patch of a smooth sheet and must not count twice; if they are far
-//! apart, the grain lies in a fold and is held from both sides. In between, and while a minimum
-//! wanders into a face over its edge, the forces are shared out without a jump:
-//!
-//! ```text
-//! F_i = c_i F(ξ_i),   c_i = q_i / (q_i + Σ_(j≠i) s_ij q_j),   q_i = ξ_i g_i
-//! ```
-//!
-//! s_ij falls from 1 to nearly 0 as the angle between the normals grows from 10° to 45°, and g_i
-//! grows with the distance of the contact point from the edge of its triangle. A contact that is
-//! alone has c = 1. A jump here would be a force of the order of 1 N on a vertex of 5 mg.
+//! In the valley between two triangles both faces can hold a local minimum; how they share out the
+//! force stands in `sharing`.
 //!
 //! The friction spring belongs to the patch, not to the triangle: it is handed on by direction.
 
 use arrayvec::ArrayVec;
 
-use super::law::{self, Touch};
+use super::{
+    law::{self, Touch},
+    sharing::{self, Minimum, N_TOUCHED, Passes},
+};
 use crate::{
     base::{Real, Vec3, parallel},
     physics::{
@@ -34,23 +27,12 @@ use crate::{
     },
 };
 
-/// Cosine of the angle between normals up to which two contacts are one patch (10°).
-const ONE_PATCH: Real = 0.985;
-/// Cosine of the angle beyond which they are two (45°).
-const TWO_PATCHES: Real = 0.707;
-/// What two patches far apart still know of each other: makes a new one grow in smoothly.
-const APART: Real = 0.05;
-/// Share g of a contact on an edge or a vertex.
-const ON_EDGE: Real = 0.03;
-/// Barycentric distance from the edge at which a contact on a face has its full share.
-const ON_FACE: Real = 0.15;
 /// Cosine of the angle to its former normal within which a patch is recognised (45°).
 const SAME_HISTORY: Real = 0.7;
 /// Squared distances that differ by less than this share are equal.
 const EQUAL: Real = 1e-9;
-/// Triangles one grain may touch at once, the deepest; a grain much larger than the mesh would
-/// need more.
-const N_TOUCHED: usize = 24;
+/// Edges of a triangle by their short numbers.
+const NUMBER: [u8; 3] = [0, 1, 2];
 
 /// A triangle within reach of a grain.
 #[derive(Clone, Copy)]
@@ -91,11 +73,16 @@ fn on_grain(
     result: &mut PatchForces,
 ) {
     let touched = touching(model, state, i, candidates);
-    let mut minima = ArrayVec::<Minimum<'_>, N_PATCHES>::new();
-    for contact in &touched {
+    let mut minima = ArrayVec::<Minimum, N_PATCHES>::new();
+    for (place, contact) in touched.iter().enumerate() {
         if !minima.is_full() && is_local_minimum(model, contact, &touched) {
-            minima.push(Minimum::new(contact, state.grains.radii[i]));
+            minima.push(contact.minimum(place, state.grains.radii[i]));
         }
+    }
+    let mut shares = [1.0; N_PATCHES];
+    if minima.len() > 1 {
+        let mut passes = passes(model, state, i, &touched);
+        shares = sharing::shares(&minima, &mut passes, state.grains.radii[i]);
     }
     let (before, n_before) = (patches.slots, patches.n);
     patches.n = minima.len();
@@ -103,11 +90,11 @@ fn on_grain(
     result.torque = Vec3::zeros();
     result.is_outside = false;
     for (slot, minimum) in minima.iter().enumerate() {
-        let share = share(slot, &minima);
+        let (contact, share) = (&touched[minimum.place], shares[slot]);
         let spring = spring_of(&before[..n_before], &minimum.normal);
         let mut patch = Patch { spring, normal: minimum.normal };
-        let (force, torque) = of_patch(model, state, i, minimum, &mut patch);
-        result.is_outside |= minimum.contact.is_outside(model, state, &touched);
+        let (force, torque) = of_patch(model, state, i, (contact, minimum.overlap), &mut patch);
+        result.is_outside |= contact.is_outside(model, state, &touched);
         result.contacts[slot] =
             PatchForce { force: force.force * share, normal: force.normal * share, ..force };
         result.torque += torque * share;
@@ -115,48 +102,31 @@ fn on_grain(
     }
 }
 
-/// Share c of the force that contact `slot` takes.
-fn share(slot: usize, minima: &[Minimum<'_>]) -> Real {
-    if minima.len() == 1 {
-        return 1.0;
-    }
-    let own = &minima[slot];
-    let mut all = own.weight;
-    for (other, minimum) in minima.iter().enumerate() {
-        if other != slot {
-            let cosine = own.normal.dot(&minimum.normal);
-            let likeness = (cosine - TWO_PATCHES) * (1.0 / (ONE_PATCH - TWO_PATCHES));
-            let likeness = likeness.clamp(0.0, 1.0);
-            let smooth = likeness * likeness * (3.0 - 2.0 * likeness);
-            all += (APART + (1.0 - APART) * smooth) * minimum.weight;
+/// The edges between the triangles that grain `i` overlaps.
+fn passes(model: &Model, state: &State, i: usize, touched: &[Touched]) -> Passes {
+    let mesh = &model.membrane.mesh;
+    let centre = &state.grains.positions[i];
+    let ids: ArrayVec<u32, N_TOUCHED> = touched.iter().map(|it| it.triangle).collect();
+    let mut passes = Passes::new();
+    for (place, contact) in touched.iter().enumerate() {
+        let triangle = contact.triangle as usize;
+        for (k, neighbour) in mesh.neighbours_of_triangle[triangle].into_iter().enumerate() {
+            let later = ids[place + 1..].iter().position(|&it| it == neighbour);
+            let Some(later) = later else { continue };
+            let height_squared = if contact.feature == Feature::Edge(NUMBER[k]) {
+                contact.distance_squared
+            } else {
+                let [from, to] = [k, (k + 1) % 3].map(|corner| {
+                    &state.membrane.positions[mesh.triangles[triangle][corner] as usize]
+                });
+                let (side, arm) = (to - from, centre - from);
+                let share = (arm.dot(&side) / side.norm_squared()).clamp(0.0, 1.0);
+                (arm - side * share).norm_squared()
+            };
+            passes.add([place, place + 1 + later], height_squared);
         }
     }
-    own.weight / all
-}
-
-/// A local minimum of the grain's distance to the sheet.
-struct Minimum<'a> {
-    contact: &'a Touched,
-    /// From membrane to grain.
-    normal: Vec3,
-    overlap: Real,
-    /// The q of the formula.
-    weight: Real,
-}
-
-impl<'a> Minimum<'a> {
-    fn new(contact: &'a Touched, radius: Real) -> Self {
-        let distance = contact.distance_squared.sqrt();
-        let overlap = radius - distance;
-        let from_edge = contact.weights.iter().copied().fold(1.0, Real::min);
-        let on_face = (from_edge * (1.0 / ON_FACE)).min(1.0);
-        Self {
-            contact,
-            normal: contact.from_membrane * distance.recip(),
-            overlap,
-            weight: overlap * (ON_EDGE + (1.0 - ON_EDGE) * on_face),
-        }
-    }
+    passes
 }
 
 /// Triangles that grain `i` overlaps, deepest first.
@@ -200,26 +170,24 @@ fn touching(
 /// True if no triangle that shares the contact's edge or vertex has a closer point, or holds the
 /// same point with higher priority.
 fn is_local_minimum(model: &Model, contact: &Touched, touched: &[Touched]) -> bool {
-    let triangles = &model.membrane.mesh.triangles;
-    if contact.feature == Feature::Face {
-        return true;
-    }
-    let shared = contact.shared_vertices(model);
-    let beats = |other: &Touched| {
-        let theirs = triangles[other.triangle as usize];
-        if other.triangle == contact.triangle
-            || !shared.iter().flatten().all(|vertex| theirs.contains(vertex))
-        {
-            return false;
+    let mesh = &model.membrane.mesh;
+    let triangle = contact.triangle as usize;
+    match contact.feature {
+        Feature::Face => true,
+        Feature::Edge(k) => {
+            let neighbour = mesh.neighbours_of_triangle[triangle][usize::from(k)];
+            let other = touched.iter().find(|it| it.triangle == neighbour);
+            !other.is_some_and(|other| other.beats(contact))
         }
-        let difference = other.distance_squared - contact.distance_squared;
-        let tolerance = EQUAL * contact.distance_squared;
-        let (mine, yours) = (contact.feature.priority(), other.feature.priority());
-        difference < -tolerance
-            || (difference <= tolerance
-                && (yours > mine || (yours == mine && other.triangle < contact.triangle)))
-    };
-    !touched.iter().any(beats)
+        Feature::Vertex(k) => {
+            let vertex = mesh.triangles[triangle][usize::from(k)];
+            !touched.iter().any(|other| {
+                mesh.triangles[other.triangle as usize].contains(&vertex)
+                    && other.triangle != contact.triangle
+                    && other.beats(contact)
+            })
+        }
+    }
 }
 
 /// The spring of the patch that had nearly this normal, if there was one.
@@ -238,10 +206,9 @@ fn of_patch(
     model: &Model,
     state: &State,
     i: usize,
-    minimum: &Minimum<'_>,
+    (contact, overlap): (&Touched, Real),
     patch: &mut Patch,
 ) -> (PatchForce, Vec3) {
-    let &Minimum { contact, overlap, .. } = minimum;
     let grains = &state.grains;
     let vertices = model.membrane.mesh.triangles[contact.triangle as usize].map(|v| v as usize);
     let mut sheet_velocity = Vec3::zeros();
@@ -267,6 +234,28 @@ fn of_patch(
 }
 
 impl Touched {
+    /// True if this contact of a neighbour is closer than `other`, or holds the same point with
+    /// higher priority.
+    fn beats(&self, other: &Self) -> bool {
+        let difference = self.distance_squared - other.distance_squared;
+        let tolerance = EQUAL * other.distance_squared;
+        let (mine, yours) = (self.feature.priority(), other.feature.priority());
+        difference < -tolerance
+            || (difference <= tolerance
+                && (mine > yours || (mine == yours && self.triangle < other.triangle)))
+    }
+
+    /// As a local minimum of a grain of `radius` [m].
+    fn minimum(&self, place: usize, radius: Real) -> Minimum {
+        let distance = self.distance_squared.sqrt();
+        Minimum {
+            place,
+            normal: self.from_membrane * distance.recip(),
+            overlap: radius - distance,
+            distance_squared: self.distance_squared,
+        }
+    }
+
     /// True if the grain's centre is on the outer side of the triangles that share the feature it
     /// touches. All of them must agree, since around a saddle's vertex some always see the centre
     /// on their outer side.
@@ -276,14 +265,17 @@ impl Touched {
                 .map(|vertex| state.membrane.positions[vertex as usize]);
             (b - a).cross(&(c - a)).dot(&self.from_membrane) > 0.0
         };
+        // Most contacts are inside: one look at their own triangle is enough.
+        if !sees_outside(self.triangle) {
+            return false;
+        }
         let shared = self.shared_vertices(model);
         touched
             .iter()
             .filter(|other| {
                 let theirs = model.membrane.mesh.triangles[other.triangle as usize];
-                other.triangle == self.triangle
-                    || (self.feature != Feature::Face
-                        && shared.iter().flatten().all(|vertex| theirs.contains(vertex)))
+                self.feature != Feature::Face
+                    && shared.iter().flatten().all(|vertex| theirs.contains(vertex))
             })
             .all(|other| sees_outside(other.triangle))
     }

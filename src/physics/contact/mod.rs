@@ -6,6 +6,7 @@ pub mod bodies;
 pub mod grains;
 pub mod law;
 pub mod membrane;
+mod sharing; // one force among several places
 pub mod spheres;
 pub mod walls;
 pub mod sums;

@@ -2,7 +2,7 @@
 //!
 //! Quick up to a solid fraction of 0.3; beyond 0.38 no place is left (Widom 1966).
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 
 use crate::{
     base::{Real, Vec3, random::Random},
@@ -136,7 +136,7 @@ struct Cells {
     /// Number of cells along each edge of a periodic box.
     n_periodic: Option<[i64; 3]>,
     period: Option<Vec3>,
-    taken: HashMap<[i64; 3], Vec<usize>>,
+    taken: BTreeMap<[i64; 3], Vec<usize>>,
 }
 
 impl Cells {
@@ -147,7 +147,7 @@ impl Cells {
             (Some(period), Some(n)) => Vec3::from_fn(|k, _| period[k] / real(count(n[k]))),
             _ => Vec3::repeat(diameter),
         };
-        Self { width, n_periodic, period, taken: HashMap::new() }
+        Self { width, n_periodic, period, taken: BTreeMap::new() }
     }
 
     fn key(&self, place: &Vec3) -> [i64; 3] {

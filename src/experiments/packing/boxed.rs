@@ -1,0 +1,402 @@
+//! Grains in a periodic box: they grow until they jam, change their size step by step, and rest.
+//!
+//! ```text
+//! grow to p_first      then, while p < p_last:    all diameters + c ⟨ξ/d⟩, rest, look
+//! without friction:    grow to p_high, and while p > p_low:   all diameters − c ⟨ξ/d⟩, rest, look
+//! moduli:              at the end once more larger by ε:      K = Δp / (3 ε)
+//! ```
+//!
+//! To enlarge all grains by a share is to compress the box by that share, since the law has no length
+//! of its own: K = dp/d(ln φ). Friction stays on all the time, so that packings with friction jam
+//! where grains first hold each other. Without friction the way back is taken: it is reversible, and
+//! p(φ) follows Hertz.
+
+use serde::{Deserialize, Serialize};
+
+use super::{
+    super::{
+        Progress, ResumeError, Run, StartError,
+        record::{Column, Record},
+    },
+    Case,
+    sample::{self, SLICE, Settling, Unrest},
+    scene::Scene,
+};
+use crate::{
+    base::{
+        Real, Vec3,
+        digest::Digest,
+        random::{Random, Stream},
+    },
+    cosim::saved_state,
+    physics::{
+        Model, System,
+        health::Diverged,
+        measure::{
+            coordination::{NEEDED_ROUGH, NEEDED_SMOOTH, coordination},
+            grain_volume, packing, real, rest, stress,
+            structure::{self, Bins, Region},
+        },
+        packing::{Grown, Growth, Laws, Recipe, Room, first_scale, grow, scatter, sphere_volume},
+    },
+};
+
+/// Solid fraction of the final radii in the box.
+const FINAL_FRACTION: Real = 0.64;
+/// Growth of all diameters in ten relaxation times that counts as none where the way back is taken.
+const STUCK_SMOOTH: Real = 1e-3;
+/// Share of the last pressure at which it counts as reached.
+const REACHED: Real = 0.97;
+/// Share of the first pressure below which grains do not hold each other.
+const LOOSE: Real = 0.1;
+/// Width of a bin of g(r), in mean diameters.
+const BIN: Real = 0.02;
+/// Bins of g(r): to four diameters.
+const N_BINS: usize = 200;
+
+/// Columns of the record, one row for each state at rest.
+const COLUMNS: [(&str, &str); 10] = [
+    ("solid_fraction", "1"),
+    ("pressure", "Pa"),
+    ("coordination", "1"),
+    ("coordination_backbone", "1"),
+    ("rattler_share", "1"),
+    ("sliding_share", "1"),
+    ("overlap_mean_over_diameter", "1"),
+    ("overlap_max_over_diameter", "1"),
+    ("unbalanced_force", "1"),
+    ("kinetic_over_elastic", "1"),
+];
+
+/// What is being done.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+enum Stage {
+    Growing,
+    /// Sizes change by a step in every substep; then they rest.
+    Ramping {
+        time_left: Real,
+        step: Real,
+    },
+    /// Sizes stay, until nothing moves.
+    Resting(Settling),
+    Done,
+}
+
+/// Where the case stands.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct Place {
+    stage: Stage,
+    growth: grow::Progress,
+    scale: Real,
+    /// Pressure before the last small change, if that is being done [Pa].
+    probed_from: Option<Real>,
+    record: Record,
+}
+
+/// A case in the periodic box.
+pub(super) struct Boxed {
+    scene: Scene,
+    case: Case,
+    final_radii: Vec<Real>,
+    volume: Real,
+    growth: Growth,
+    system: System,
+    place: Place,
+}
+
+impl Boxed {
+    /// Scattered grains.
+    pub(super) fn new(scene: &Scene, case: Case) -> Result<Self, StartError> {
+        let is_mono = !matches!(case, Case::Poly);
+        let is_smooth = friction(scene, case) == 0.0;
+        let grains = &scene.grains;
+        let count = if is_mono && is_smooth { grains.count_smooth } else { grains.count };
+        let final_radii = sample::final_radii(scene, count, is_mono);
+        let solid: Real = final_radii.iter().map(|&r| sphere_volume(r)).sum();
+        let volume = solid / FINAL_FRACTION;
+        let period = Vec3::repeat(volume.cbrt());
+        let room = Room::Periodic { period };
+        let scale = first_scale(&final_radii, scene.compression.thin, volume);
+        let small: Vec<Real> = final_radii.iter().map(|r| scale * r).collect();
+        let mut random = Random::new(scene.seed, Stream::Position);
+        let places = scatter(&small, room.period(), &mut random, |it| room.place(0.0, it))?;
+        let grains = sample::grains(scene, places, &final_radii, scale);
+        let friction = friction(scene, case);
+        let law = sample::grain_law(&scene.grains, friction);
+        let (mean, largest) = (scene.grains.radius_mean(), scene.grains.radius_max);
+        let mut model = Model::of_grains(law, scene.compression.substep, largest, mean);
+        model.period = Some(period);
+        // Dense grains hardly move: short lists are soon built anew, and soon gone through.
+        model.skin = 0.1 * mean;
+        let recipe = recipe(scene, &model, volume, friction);
+        let growth = Growth::new(recipe, final_radii.clone(), scale);
+        let mut record = Record { case: case.name(), seed: scene.seed, ..Record::default() };
+        record.columns = COLUMNS.iter().map(|(name, unit)| Column::new(name, unit)).collect();
+        record.set("friction", friction, "1");
+        let place = Place {
+            stage: Stage::Growing,
+            growth: growth.progress(),
+            scale,
+            probed_from: None,
+            record,
+        };
+        let system = System::at_rest(model, Vec::new(), grains);
+        let (scene, case) = (scene.clone(), case);
+        Ok(Self { scene, case, final_radii, volume, growth, system, place })
+    }
+
+    /// One substep of the present stage.
+    fn step(&mut self) {
+        match self.place.stage {
+            Stage::Growing => {
+                let grown = self.growth.step(&mut self.system);
+                self.place.growth = self.growth.progress();
+                self.place.scale = self.place.growth.scale;
+                self.count("growing");
+                if grown != Grown::Growing {
+                    self.begin();
+                }
+            }
+            Stage::Ramping { time_left, step } => {
+                self.place.scale += step;
+                grow::resize(&mut self.system, &self.final_radii, self.place.scale);
+                self.system.step();
+                let time_left = time_left - self.system.model.substep;
+                self.place.stage = if time_left > 0.0 {
+                    Stage::Ramping { time_left, step }
+                } else {
+                    Stage::Resting(Settling::default())
+                };
+                self.count("ramping");
+            }
+            Stage::Resting(mut settling) => {
+                let is_time = settling.step(&mut self.system);
+                self.place.stage = Stage::Resting(settling);
+                self.count("resting");
+                if is_time {
+                    self.look(settling);
+                }
+                return;
+            }
+            Stage::Done => return,
+        }
+        sample::drag(&mut self.system, self.scene.compression.drag_time);
+    }
+
+    /// Grown grains rest. Without friction they are let go a little first: under the full pressure
+    /// they would creep for long.
+    fn begin(&mut self) {
+        self.place.stage = Stage::Resting(Settling::default());
+        if friction(&self.scene, self.case) == 0.0 {
+            let overlap = grow::mean_overlap(&self.system);
+            self.ramp(-self.scene.compression.share * overlap, self.place.growth.pressure);
+        }
+    }
+
+    fn count(&mut self, stage: &str) {
+        *self.place.record.n_substeps.entry(stage.to_owned()).or_default() += 1;
+    }
+
+    /// Records a state at rest and goes on to the next.
+    fn look(&mut self, mut settling: Settling) {
+        let unrest = settling.unrest(&self.system);
+        self.place.stage = Stage::Resting(settling);
+        let compression = self.scene.compression.clone();
+        let is_smooth = friction(&self.scene, self.case) == 0.0;
+        let System { model, state, scratch, .. } = &self.system;
+        let pressure = stress::normal_pressure(state, scratch, self.volume);
+        if !is_smooth && pressure < LOOSE * compression.pressure_first {
+            // Growth ended in motion, and at rest the grains do not hold each other yet.
+            return self.ramp(compression.share * self.first_overlap(), Real::INFINITY);
+        }
+        let n_max = compression.rest_time_max / model.substep;
+        if !unrest.is_rest() && !sample::is_over(settling.n_done, n_max) {
+            return;
+        }
+        let (pressure, overlap) = self.write(&unrest);
+        let last = last_pressure(&self.scene, self.case);
+        if let Some(before) = self.place.probed_from {
+            let modulus = (pressure - before) / (3.0 * self.scene.moduli.probe);
+            self.place.record.set("bulk_modulus", modulus, "Pa");
+            self.finish();
+        } else if is_smooth && pressure > compression.pressure_low {
+            self.ramp(-compression.share * overlap, pressure);
+        } else if !is_smooth && pressure < REACHED * last {
+            // By Hertz the last pressure needs this share of the overlap more.
+            let share = compression.share.min((last / pressure).powf(2.0 / 3.0) - 1.0);
+            self.ramp(share * overlap.max(self.first_overlap()), pressure);
+        } else if self.case == Case::Moduli {
+            self.place.probed_from = Some(pressure);
+            self.ramp(self.scene.moduli.probe, pressure);
+        } else {
+            self.finish();
+        }
+    }
+
+    /// Mean overlap over diameter at the first pressure, by Hertz and within a factor of two.
+    fn first_overlap(&self) -> Real {
+        let stiffness = self.system.model.grain_law.modulus;
+        (self.scene.compression.pressure_first / stiffness).powf(2.0 / 3.0)
+    }
+
+    /// Makes all grains, which are now under `pressure` [Pa], larger by the share `growth`, steadily.
+    fn ramp(&mut self, growth: Real, pressure: Real) {
+        let (compression, grains) = (&self.scene.compression, &self.scene.grains);
+        let rate = growth / compression.ramp_time;
+        let diameter = 2.0 * grains.radius_mean();
+        let number = rest::inertial_number(rate, diameter, grains.material.density, pressure);
+        let seen = &mut self.place.record.validity.inertial_number_max;
+        *seen = seen.max(number);
+        let n = (compression.ramp_time / compression.substep).ceil();
+        let step = self.place.scale * growth / n;
+        self.place.stage = Stage::Ramping { time_left: compression.ramp_time, step };
+    }
+
+    /// Adds a row; returns pressure [Pa] and mean overlap over diameter.
+    fn write(&mut self, unrest: &Unrest) -> (Real, Real) {
+        let System { model, state, scratch, .. } = &self.system;
+        let sigma = stress::contact_stress(model, state, scratch, self.volume);
+        let pressure = sigma.trace() / 3.0;
+        let is_smooth = model.grain_law.friction == 0.0;
+        let n_needed = if is_smooth { NEEDED_SMOOTH } else { NEEDED_ROUGH };
+        let coordination = coordination(state, scratch, n_needed);
+        let packing = packing(state, scratch);
+        let overlap = grow::mean_overlap(&self.system);
+        let overlap_max = packing.overlap_max / (2.0 * self.place.scale * model.radius_mean);
+        let row = [
+            grain_volume(state) / self.volume,
+            pressure,
+            coordination.mean,
+            coordination.backbone,
+            coordination.rattler_share,
+            packing.sliding_fraction,
+            overlap,
+            overlap_max,
+            unrest.unbalanced,
+            unrest.kinetic,
+        ];
+        let record = &mut self.place.record;
+        for (column, value) in record.columns.iter_mut().zip(row) {
+            column.values.push(value);
+        }
+        let validity = &mut record.validity;
+        validity.overlap_over_diameter_max = validity.overlap_over_diameter_max.max(overlap_max);
+        validity.unbalanced_force = validity.unbalanced_force.max(unrest.unbalanced);
+        let anisotropy = (sigma - nalgebra::Matrix3::identity() * pressure).norm() / pressure;
+        record.set("stress_anisotropy", anisotropy, "1");
+        (pressure, overlap)
+    }
+
+    /// Writes what is only looked at in the last state.
+    fn finish(&mut self) {
+        let System { model, state, .. } = &self.system;
+        let Some(period) = model.period else { return };
+        let radii = &state.grains.radii;
+        let mean = radii.iter().sum::<Real>() / real(radii.len());
+        let bins = Bins { width: BIN * 2.0 * mean, n_bins: N_BINS };
+        let region = Region::Periodic(period);
+        let g = structure::pair_distribution(&state.grains.positions, &region, &bins);
+        let cut = structure::cut_distribution(&state.grains, &region, &bins);
+        let middles = (0..N_BINS).map(|k| bins.middle(k) / (2.0 * mean)).collect();
+        let column =
+            |name: &str, values| Column { name: name.to_owned(), unit: "1".to_owned(), values };
+        let table =
+            vec![column("distance_over_diameter", middles), column("g", g), column("eq42", cut)];
+        let spread = (radii.iter().map(|r| (r / mean - 1.0).powi(2)).sum::<Real>()
+            / real(radii.len()))
+        .sqrt();
+        let mut digest = Digest::new();
+        state.digest(&mut digest);
+        let record = &mut self.place.record;
+        record.tables.insert("structure".to_owned(), table);
+        record.set("radius_spread", spread, "1");
+        record.digest = digest.finish();
+        self.place.stage = Stage::Done;
+    }
+
+    /// Share of the work that is done, as far as it can be told.
+    fn share(&self) -> Real {
+        let compression = &self.scene.compression;
+        let (from, to) = if friction(&self.scene, self.case) == 0.0 {
+            (compression.pressure_high, compression.pressure_low)
+        } else {
+            (compression.pressure_first, last_pressure(&self.scene, self.case))
+        };
+        let pressures = self.place.record.column("pressure").unwrap_or_default();
+        match (self.place.stage, pressures.last()) {
+            (Stage::Done, _) => 1.0,
+            (_, Some(now)) => 0.5 + 0.5 * ((now / from).ln() / (to / from).ln()).clamp(0.0, 0.99),
+            (_, None) => 0.5 * self.place.scale.powi(3).min(0.99),
+        }
+    }
+}
+
+/// Friction of `case`.
+fn friction(scene: &Scene, case: Case) -> Real {
+    match case {
+        Case::Mono { friction } => friction,
+        Case::Poly => 0.0,
+        Case::Moduli => scene.moduli.friction,
+        Case::Confined => scene.confined.friction,
+    }
+}
+
+/// Where compression with friction ends [Pa].
+fn last_pressure(scene: &Scene, case: Case) -> Real {
+    if case == Case::Moduli { scene.moduli.pressure } else { scene.compression.pressure_last }
+}
+
+/// Growth with the friction of the case.
+fn recipe(scene: &Scene, model: &Model, volume: Real, friction: Real) -> Recipe {
+    let compression = &scene.compression;
+    let stop = if friction == 0.0 { compression.pressure_high } else { compression.pressure_first };
+    let radius = scene.grains.radius_mean();
+    let mass = scene.grains.material.density * sphere_volume(radius);
+    // All grow at the rate of the lower pressure, so that the protocol is one for all.
+    let slow = Recipe::new(model, volume, compression.pressure_first, mass, radius);
+    let stuck = if friction == 0.0 { STUCK_SMOOTH } else { slow.stuck };
+    Recipe { laws: Laws::of(model), pressure_stop: stop, stuck, scale_last: 2.0, ..slow }
+}
+
+impl Run for Boxed {
+    fn advance(&mut self) -> Result<Progress, Diverged> {
+        let stage = match self.place.stage {
+            Stage::Growing => "growing",
+            Stage::Ramping { .. } | Stage::Resting(_) | Stage::Done => "resting",
+        };
+        for _ in 0..SLICE {
+            self.step();
+        }
+        self.system.check(self.place.record.n_substeps.values().sum())?;
+        let is_done = self.place.stage == Stage::Done;
+        Ok(Progress { stage, share: self.share(), is_done })
+    }
+
+    fn save(&self) -> Vec<u8> {
+        let saved = (saved_state::write(&self.system.state), &self.place);
+        postcard::to_stdvec(&saved).expect("numbers and names always serialise")
+    }
+
+    fn resume(&mut self, bytes: &[u8]) -> Result<(), ResumeError> {
+        let damaged = |reason: String| ResumeError { reason };
+        let (state, place): (Vec<u8>, Place) =
+            postcard::from_bytes(bytes).map_err(|error| damaged(error.to_string()))?;
+        let state = saved_state::read(&state).map_err(|error| damaged(error.to_string()))?;
+        if place.record.case != self.case.name() || state.grains.len() != self.final_radii.len() {
+            return Err(damaged(format!("is of case {}", place.record.case)));
+        }
+        let mut model = self.system.model.clone();
+        model.radius_max = state.grains.radii.iter().copied().fold(model.radius_max, Real::max);
+        let controls = self.system.controls.clone();
+        let friction = friction(&self.scene, self.case);
+        let recipe = recipe(&self.scene, &model, self.volume, friction);
+        self.growth = Growth::resumed(recipe, self.final_radii.clone(), place.growth);
+        self.system = System::new(model, controls, state);
+        self.place = place;
+        Ok(())
+    }
+
+    fn record(&self) -> Record {
+        self.place.record.clone()
+    }
+}

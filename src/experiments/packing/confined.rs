@@ -1,0 +1,256 @@
+//! Grains in a closed membrane under vacuum: the stress in them is the pressure that is put on them.
+//!
+//! Grains grow smoothly inside a membrane that is held as a sphere; then it is let go, the air is
+//! drawn out, and all comes to rest. σ_ij = 1/V Σ f_i l_j over all contacts, those with the membrane
+//! included, and V inside the membrane, must be the vacuum's pressure in every direction, but for what
+//! the tension of the membrane takes.
+
+use serde::{Deserialize, Serialize};
+
+use super::{
+    super::{
+        Progress, ResumeError, Run, StartError,
+        record::{Column, Record},
+    },
+    sample::{self, SLICE, Settling},
+    scene::{Confined as Keys, Scene},
+};
+use crate::{
+    base::{
+        Pose, Real,
+        digest::Digest,
+        random::{Random, Stream},
+        real::Twist,
+    },
+    cosim::saved_state,
+    physics::{
+        Model, System,
+        boundary::{
+            body::BodyMotion,
+            wall::{WallModel, WallShape},
+        },
+        contact::law::{self, PairLaw},
+        health::Diverged,
+        measure::{enclosed_volume, packing, stress},
+        membrane::{CARRIER_ID, FREE, MembraneModel, Sheet, mesh::Mesh},
+        model::ChamberModel,
+        packing::{Grown, Growth, Recipe, Room, first_scale, grow, scatter, sphere_volume},
+    },
+    scene::Material,
+};
+
+/// Solid fraction of the final radii in the sphere: what smooth grains reach in a small one.
+const FINAL_FRACTION: Real = 0.58;
+/// Poisson's number of a hexagonal net of springs.
+const NET_POISSON: Real = 1.0 / 3.0;
+/// Time over which the air is drawn out, in drag times.
+const DRAW_TIME: Real = 20.0;
+
+/// What is being done.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+enum Stage {
+    Growing,
+    Resting(Settling),
+    Done,
+}
+
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct Place {
+    stage: Stage,
+    growth: grow::Progress,
+    record: Record,
+}
+
+/// The case in the membrane.
+pub(super) struct Confined {
+    scene: Scene,
+    final_radii: Vec<Real>,
+    recipe: Recipe,
+    growth: Growth,
+    system: System,
+    place: Place,
+}
+
+impl Confined {
+    /// Scattered grains in the held membrane.
+    pub(super) fn new(scene: &Scene) -> Result<Self, StartError> {
+        let keys = &scene.confined;
+        let final_radii = sample::final_radii(scene, keys.count, false);
+        let solid: Real = final_radii.iter().map(|&r| sphere_volume(r)).sum();
+        let radius = (solid / FINAL_FRACTION / sphere_volume(1.0)).cbrt();
+        let model = model(scene, radius)?;
+        let room = Room::Shell { inner: 0.0, outer: radius };
+        let scale = first_scale(&final_radii, scene.compression.thin, room.volume());
+        let small: Vec<Real> = final_radii.iter().map(|r| scale * r).collect();
+        let margin = scene.grains.radius_max;
+        let mut random = Random::new(scene.seed, Stream::Position);
+        let places = scatter(&small, None, &mut random, |it| room.place(margin, it))?;
+        let grains = sample::grains(scene, places, &final_radii, scale);
+        let mean = scene.grains.radius_mean();
+        let mass = scene.grains.material.density * sphere_volume(mean);
+        let stop = scene.compression.pressure_first;
+        let recipe =
+            Recipe { scale_last: 2.0, ..Recipe::new(&model, room.volume(), stop, mass, mean) };
+        let growth = Growth::new(recipe, final_radii.clone(), scale);
+        let mut record =
+            Record { case: "confined".to_owned(), seed: scene.seed, ..Record::default() };
+        record.columns = ["pressure", "stress_x", "stress_y", "stress_z"]
+            .map(|name| Column::new(name, "Pa"))
+            .to_vec();
+        let place = Place { stage: Stage::Growing, growth: growth.progress(), record };
+        let frame = BodyMotion { pose: Pose::identity(), twist: Twist::zero() };
+        let system = System::at_rest(model, vec![frame], grains);
+        Ok(Self { scene: scene.clone(), final_radii, recipe, growth, system, place })
+    }
+
+    fn step(&mut self) {
+        match self.place.stage {
+            Stage::Growing => {
+                let grown = self.growth.step(&mut self.system);
+                self.place.growth = self.growth.progress();
+                self.count("growing");
+                if grown != Grown::Growing {
+                    self.let_go();
+                    self.place.stage = Stage::Resting(Settling::default());
+                }
+            }
+            Stage::Resting(mut settling) => {
+                let is_time = settling.step(&mut self.system);
+                self.place.stage = Stage::Resting(settling);
+                self.count("resting");
+                if is_time {
+                    self.look(settling);
+                }
+                return;
+            }
+            Stage::Done => return,
+        }
+        sample::drag(&mut self.system, self.scene.compression.drag_time);
+    }
+
+    fn count(&mut self, stage: &str) {
+        *self.place.record.n_substeps.entry(stage.to_owned()).or_default() += 1;
+    }
+
+    /// The membrane is free and the pump draws.
+    fn let_go(&mut self) {
+        self.system.model.membrane.holders.fill(FREE);
+        self.system.controls.gauge_setpoint = -self.scene.confined.pressure;
+    }
+
+    fn look(&mut self, mut settling: Settling) {
+        let unrest = settling.unrest(&self.system);
+        self.place.stage = Stage::Resting(settling);
+        let compression = &self.scene.compression;
+        let System { model, state, scratch, .. } = &self.system;
+        let n_max = 2.0 * compression.rest_time_max / model.substep;
+        let is_drawn = state.gauge <= -self.scene.confined.pressure;
+        let is_at_rest = is_drawn && unrest.is_rest();
+        if !is_at_rest && !sample::is_over(settling.n_done, n_max) {
+            return;
+        }
+        let volume = enclosed_volume(model, state);
+        let sigma = stress::contact_stress(model, state, scratch, volume);
+        let mut digest = Digest::new();
+        state.digest(&mut digest);
+        let packing = packing(state, scratch);
+        let row = [-state.gauge, sigma[(0, 0)], sigma[(1, 1)], sigma[(2, 2)]];
+        let shear = sigma[(0, 1)].hypot(sigma[(1, 2)]).hypot(sigma[(2, 0)]);
+        let overlap = packing.overlap_max / (2.0 * model.radius_mean);
+        let record = &mut self.place.record;
+        for (column, value) in record.columns.iter_mut().zip(row) {
+            column.values.push(value);
+        }
+        record.set("mean_stress", sigma.trace() / 3.0, "Pa");
+        record.set("shear_stress", shear, "Pa");
+        record.set("enclosed_volume", volume, "m^3");
+        record.set("coordination", packing.coordination_number, "1");
+        record.set("unbalanced_force", unrest.unbalanced, "1");
+        record.set("kinetic_over_elastic", unrest.kinetic, "1");
+        record.validity.overlap_over_diameter_max = overlap;
+        record.validity.unbalanced_force = unrest.unbalanced;
+        record.digest = digest.finish();
+        self.place.stage = Stage::Done;
+    }
+}
+
+/// Grains and a spherical membrane of `radius` [m] that is held all over.
+fn model(scene: &Scene, radius: Real) -> Result<Model, StartError> {
+    let (grains, keys) = (&scene.grains, &scene.confined);
+    let mesh = Mesh::icosphere(radius, keys.frequency)?;
+    let law = sample::grain_law(grains, keys.friction);
+    let substep = scene.compression.substep;
+    let mut model = Model::of_grains(law, substep, grains.radius_max, grains.radius_mean());
+    let rubber = rubber(keys, grains.material.density);
+    let surface = law::Surface { friction: keys.friction_membrane, ..grains.surface(0.0) };
+    model.membrane_law = PairLaw::between(&grains.material, &rubber, surface);
+    model.held_positions.clone_from(&mesh.positions);
+    model.membrane = MembraneModel::new(
+        mesh,
+        Sheet {
+            thickness: keys.thickness,
+            youngs_modulus: rubber.youngs_modulus,
+            density: rubber.density,
+            spring_damping: keys.spring_damping,
+            bending_stiffness: keys.bending_stiffness,
+            bending_damping: keys.bending_damping,
+        },
+    );
+    model.membrane.holders.fill(CARRIER_ID);
+    model.walls.push(WallModel { shape: WallShape::Frame, law });
+    let n_draw = DRAW_TIME * scene.compression.drag_time / substep;
+    model.chamber = ChamberModel { lag_factor: 0.0, change_max: keys.pressure / n_draw };
+    Ok(model)
+}
+
+/// Latex, as dense as the grains in the seeds' tables.
+fn rubber(keys: &Keys, density: Real) -> Material {
+    Material { youngs_modulus: keys.youngs_modulus, poisson_ratio: NET_POISSON, density }
+}
+
+impl Run for Confined {
+    fn advance(&mut self) -> Result<Progress, Diverged> {
+        let (stage, share) = match self.place.stage {
+            Stage::Growing => ("growing", 0.5 * self.place.growth.scale.powi(3).min(0.99)),
+            Stage::Resting(_) => ("resting", 0.5),
+            Stage::Done => ("resting", 1.0),
+        };
+        for _ in 0..SLICE {
+            self.step();
+        }
+        self.system.check(self.place.record.n_substeps.values().sum())?;
+        let is_done = self.place.stage == Stage::Done;
+        Ok(Progress { stage, share: if is_done { 1.0 } else { share }, is_done })
+    }
+
+    fn save(&self) -> Vec<u8> {
+        let saved = (saved_state::write(&self.system.state), &self.place);
+        postcard::to_stdvec(&saved).expect("numbers and names always serialise")
+    }
+
+    fn resume(&mut self, bytes: &[u8]) -> Result<(), ResumeError> {
+        let damaged = |reason: String| ResumeError { reason };
+        let (state, place): (Vec<u8>, Place) =
+            postcard::from_bytes(bytes).map_err(|error| damaged(error.to_string()))?;
+        let state = saved_state::read(&state).map_err(|error| damaged(error.to_string()))?;
+        let n_vertices = self.system.state.membrane.positions.len();
+        if state.grains.len() != self.final_radii.len()
+            || state.membrane.positions.len() != n_vertices
+        {
+            return Err(damaged("is of another sample".to_owned()));
+        }
+        let mut model = self.system.model.clone();
+        model.radius_max = state.grains.radii.iter().copied().fold(model.radius_max, Real::max);
+        self.growth = Growth::resumed(self.recipe, self.final_radii.clone(), place.growth);
+        self.system = System::new(model, self.system.controls.clone(), state);
+        self.place = place;
+        if self.place.stage != Stage::Growing {
+            self.let_go();
+        }
+        Ok(())
+    }
+
+    fn record(&self) -> Record {
+        self.place.record.clone()
+    }
+}

@@ -1,0 +1,441 @@
+//! What the records show: where each packing jams, with how many contacts, and how that compares.
+//!
+//! ```text
+//! φ_J  from φ = φ_J + a p^(2/3) through the three lowest pressures          (Hertz)
+//! z_J  from z = z_J + b √(φ − φ_J) through the same states
+//! K_EMT = [z² φ² G² p / (18 π² (1 − ν)²)]^(1/3)      effective medium, G of the grains (Walton 1987)
+//! ```
+
+use std::f64::consts::PI;
+
+use super::{
+    super::{
+        findings::{Curve, Expected, Findings, Quantity, Row, Told},
+        record::Record,
+    },
+    Case, fit, plots,
+    scene::Scene,
+};
+use crate::base::Real;
+
+/// Pressures from which the state without pressure is extrapolated.
+const N_LOWEST: usize = 3;
+/// The source's upper end of growth: a hundredth of its vacuum [Pa].
+const SOURCE_STOP: Real = 900.0;
+/// φ_J and z over friction after Silbert (2010), read from memory of its figures.
+pub(super) const SILBERT: [[Real; 3]; 5] =
+    [[0.0, 0.639, 6.0], [0.1, 0.61, 5.2], [0.3, 0.58, 4.6], [1.0, 0.56, 4.0], [10.0, 0.55, 3.9]];
+
+/// Where a packing jams.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Jammed {
+    pub(super) friction: Real,
+    pub(super) phi: Real,
+    pub(super) z: Real,
+}
+
+/// States of a record as (φ, p, z without rattlers), by falling pressure.
+pub(super) fn states(record: &Record) -> Vec<[Real; 3]> {
+    let column = |name| record.column(name).unwrap_or_default();
+    let (phi, pressure) = (column("solid_fraction"), column("pressure"));
+    let z = column("coordination_backbone");
+    let rows = phi.iter().zip(pressure).zip(z);
+    let mut states: Vec<[Real; 3]> = rows.map(|((&phi, &p), &z)| [phi, p, z]).collect();
+    states.sort_by(|a, b| b[1].total_cmp(&a[1]));
+    states
+}
+
+/// The state without pressure.
+pub(super) fn jammed(record: &Record) -> Option<Jammed> {
+    let states = states(record);
+    let lowest = states.get(states.len().checked_sub(N_LOWEST)?..)?;
+    let two_thirds: Vec<[Real; 2]> =
+        lowest.iter().map(|[phi, p, _]| [p.powf(2.0 / 3.0), *phi]).collect();
+    let phi = fit::line(&two_thirds)?.intercept;
+    let roots: Vec<[Real; 2]> =
+        lowest.iter().map(|[at, _, z]| [(at - phi).max(0.0).sqrt(), *z]).collect();
+    let z = fit::line(&roots)?.intercept;
+    Some(Jammed { friction: record.scalar("friction")?, phi, z })
+}
+
+/// All that the records show.
+pub(super) fn findings(scene: &Scene, records: &[Record]) -> Findings {
+    let mut findings = Findings::default();
+    let of = |case: Case| records.iter().find(|it| it.case == case.name());
+    curves(records, &mut findings);
+    let smooth = of(Case::Mono { friction: 0.0 });
+    let over_friction: Vec<Jammed> = (scene.frictions.iter())
+        .filter_map(|&friction| of(Case::Mono { friction }).and_then(jammed))
+        .collect();
+    match smooth {
+        Some(record) => {
+            close_packing(record, &mut findings);
+            structure(record, &mut findings);
+        }
+        None => missing("mono_friction_0", "U24, U25 and g(r)", &mut findings),
+    }
+    if over_friction.len() == scene.frictions.len() && over_friction.len() > 1 {
+        friction_rows(&over_friction, &mut findings);
+    } else {
+        missing("mono", "U26", &mut findings);
+    }
+    match of(Case::Poly) {
+        Some(record) => growth_rows(scene, record, &mut findings),
+        None => missing("poly_smooth", "C6", &mut findings),
+    }
+    match of(Case::Moduli) {
+        Some(record) => modulus_row(scene, record, &mut findings),
+        None => missing("moduli", "U21", &mut findings),
+    }
+    match of(Case::Confined) {
+        Some(record) => stress_rows(scene, record, &mut findings),
+        None => missing("confined", "U22", &mut findings),
+    }
+    rest_rows(records, &mut findings);
+    findings.plots = plots::all(records, smooth, &over_friction);
+    findings.notes.push(
+        "Packings jam by quasi-static isotropic compression of a dilute state with the friction of the \
+         case switched on all the time; φ_J with friction depends on that protocol."
+            .to_owned(),
+    );
+    findings
+}
+
+fn missing(case: &str, rows: &str, findings: &mut Findings) {
+    findings.notes.push(format!("{rows}: no record of {case}"));
+}
+
+/// Every record as tables.
+fn curves(records: &[Record], findings: &mut Findings) {
+    for record in records {
+        let name = record.case.clone();
+        findings.curves.push(Curve { name, columns: record.columns.clone() });
+        for (table, columns) in &record.tables {
+            let name = format!("{}_{table}", record.case);
+            findings.curves.push(Curve { name, columns: columns.clone() });
+        }
+    }
+}
+
+fn quantity(name: &str, meaning: &str, value: Real, unit: &str) -> Quantity {
+    Quantity {
+        name: name.to_owned(),
+        meaning: meaning.to_owned(),
+        value,
+        deviation: None,
+        n: 1,
+        unit: unit.to_owned(),
+    }
+}
+
+/// U24 and U25: the frictionless packing of equal grains.
+fn close_packing(record: &Record, findings: &mut Findings) {
+    let Some(at) = jammed(record) else { return missing(&record.case, "U24, U25", findings) };
+    findings.rows.push(Row::new(
+        &Told {
+            id: "U24.phi_j",
+            quantity: "solid fraction at which equal smooth spheres jam",
+            unit: "1",
+            oracle: "random close packing, 0.639 ± 0.001 for many grains (O'Hern et al. 2003)",
+            reason: "0.005: scatter between packings of 2000 grains, and of the rate of growth",
+        },
+        Expected::between(0.635, 0.645),
+        at.phi,
+    ));
+    findings.rows.push(Row::new(
+        &Told {
+            id: "U25.isostatic",
+            quantity: "contacts per grain without rattlers, extrapolated to no pressure, smooth",
+            unit: "1",
+            oracle: "isostatic: 6 (Maxwell's count in three dimensions)",
+            reason: "0.15: the line in √(φ − φ_J) through three states; 3 contacts of 2000 grains are 0.003",
+        },
+        Expected::within(6.0, 0.15),
+        at.z,
+    ));
+    let states = states(record);
+    let points: Vec<[Real; 2]> = states.iter().map(|s| [s[0], s[1]]).collect();
+    if let Some((_, exponent)) = fit::onset(&points, 0.004) {
+        findings.rows.push(Row::new(
+            &Told {
+                id: "U25.pressure_exponent",
+                quantity: "exponent of p over φ − φ_J, onset fitted as well",
+                unit: "1",
+                oracle: "Hertz: 3/2 (O'Hern et al. 2003)",
+                reason: "0.1: z rises by a tenth over the range, and p with it",
+            },
+            Expected::within(1.5, 0.1),
+            exponent,
+        ));
+    }
+    let excess: Vec<[Real; 2]> = (states.iter())
+        .map(|s| [s[0] - at.phi, s[2] - 6.0])
+        .filter(|p| p[0] > 0.0 && p[1] > 0.0)
+        .collect();
+    if let Some(exponent) = fit::exponent(&excess) {
+        findings.rows.push(Row::new(
+            &Told {
+                id: "U25.contact_exponent",
+                quantity: "exponent of z − 6 over φ − φ_J",
+                unit: "1",
+                oracle: "1/2 (O'Hern et al. 2003)",
+                reason: "0.1: z − 6 at the lowest pressure is 0.2 ± 0.05 in 2000 grains",
+            },
+            Expected::within(0.5, 0.1),
+            exponent,
+        ));
+    }
+}
+
+/// Peaks of g(r), E28.
+fn structure(record: &Record, findings: &mut Findings) {
+    let column = |name| record.table_column("structure", name);
+    let (Some(r), Some(g)) = (column("distance_over_diameter"), column("g")) else { return };
+    let highest = |from: Real, to: Real| {
+        (r.iter().zip(g).filter(|(r, _)| (from..to).contains(*r)))
+            .max_by(|a, b| a.1.total_cmp(b.1))
+            .map_or([Real::NAN; 2], |(r, g)| [*r, *g])
+    };
+    let lowest_between = (r.iter().zip(g).filter(|(r, _)| (1.78..1.92).contains(*r)))
+        .map(|(_, g)| *g)
+        .fold(Real::INFINITY, Real::min);
+    let (third, second) = (highest(1.66, 1.82), highest(1.9, 2.1));
+    let mut row = |id, quantity, oracle, reason, expected, measured| {
+        findings.rows.push(Row::new(
+            &Told { id, quantity, unit: "1", oracle, reason },
+            expected,
+            measured,
+        ));
+    };
+    row(
+        "U24.g_peak_at_2d",
+        "place of the second part of the second peak of g(r), in diameters",
+        "2: three grains in a line; Götz (2024), Fig. 25 shows peaks that die away, amorphous",
+        "0.03: one and a half bins",
+        Expected::within(2.0, 0.03),
+        second[0],
+    );
+    row(
+        "U24.g_peak_at_sqrt3d",
+        "place of the first part of the second peak of g(r), in diameters",
+        "√3: two triangles of grains that share a side",
+        "0.06: the part is broad",
+        Expected::within(3.0_f64.sqrt(), 0.06),
+        third[0],
+    );
+    row(
+        "U24.g_split",
+        "g at √3 d over its lowest value between √3 d and 2 d",
+        "above 1: the second peak is split",
+        "a bound",
+        Expected::at_least(1.0),
+        third[1] / lowest_between,
+    );
+    row(
+        "U24.g_no_lattice",
+        "highest g within 0.05 d of √2 d",
+        "at most 1: a lattice has a shell of neighbours there, a random packing nearly its lowest g",
+        "a bound",
+        Expected::at_most(1.0),
+        highest(1.364, 1.464)[1],
+    );
+}
+
+/// U26: what friction does.
+fn friction_rows(jammed: &[Jammed], findings: &mut Findings) {
+    for at in jammed {
+        let name = format!("phi_j_friction_{}", at.friction);
+        findings.quantities.push(quantity(&name, "solid fraction without pressure", at.phi, "1"));
+        let name = format!("z_friction_{}", at.friction);
+        findings.quantities.push(quantity(&name, "contacts per grain without pressure", at.z, "1"));
+    }
+    let largest_rise = |of: fn(&Jammed) -> Real| {
+        let rises = jammed.windows(2).map(|pair| of(&pair[1]) - of(&pair[0]));
+        rises.fold(Real::NEG_INFINITY, Real::max)
+    };
+    let mut row = |id, quantity, oracle, reason, expected, measured| {
+        findings.rows.push(Row::new(
+            &Told { id, quantity, unit: "1", oracle, reason },
+            expected,
+            measured,
+        ));
+    };
+    row(
+        "U26.phi_falls",
+        "largest rise of φ_J from one friction to the next",
+        "none: φ_J falls continuously from random close to random loose packing (Silbert 2010)",
+        "a bound; φ_J of one packing scatters by about 0.003",
+        Expected::at_most(0.003),
+        largest_rise(|it| it.phi),
+    );
+    row(
+        "U26.z_falls",
+        "largest rise of z from one friction to the next",
+        "none: z falls from approximately six to four (Silbert 2010)",
+        "a bound; z of one packing scatters by about 0.1",
+        Expected::at_most(0.1),
+        largest_rise(|it| it.z),
+    );
+    if let Some(loosest) = jammed.last() {
+        row(
+            "U26.phi_loosest",
+            "φ_J at the largest friction",
+            "0.550 ± 0.001, the loosest packing of rough spheres (Jerkins et al. 2008)",
+            "0.015: φ_J with friction depends on protocol and rate; Silbert's values scatter by 0.01",
+            Expected::within(0.55, 0.015),
+            loosest.phi,
+        );
+        row(
+            "U26.z_loosest",
+            "z at the largest friction, without pressure",
+            "4: isostatic with infinite friction",
+            "0.2: Silbert's values scatter by that",
+            Expected::within(4.0, 0.2),
+            loosest.z,
+        );
+    }
+    for [friction, phi, z] in SILBERT {
+        let Some(at) = jammed.iter().find(|it| (it.friction - friction).abs() < 1e-12) else {
+            continue;
+        };
+        findings.notes.push(format!(
+            "friction {friction}: φ_J = {:.4} (Silbert 2010 about {phi}), z = {:.2} (about {z})",
+            at.phi, at.z
+        ));
+    }
+}
+
+/// C6: growth as the source prepares its samples.
+fn growth_rows(scene: &Scene, record: &Record, findings: &mut Findings) {
+    let Some(at) = jammed(record) else { return missing(&record.case, "C6", findings) };
+    let grains = &scene.grains;
+    let uniform =
+        (grains.radius_max - grains.radius_min) / (12.0_f64.sqrt() * grains.radius_mean());
+    let column = |name| record.column(name).unwrap_or_default();
+    let overlap = (column("pressure").iter().zip(column("overlap_max_over_diameter")))
+        .find(|(p, _)| **p <= SOURCE_STOP)
+        .map_or(Real::NAN, |(_, overlap)| *overlap);
+    let mut row = |id, quantity, oracle, reason, expected, measured| {
+        findings.rows.push(Row::new(
+            &Told { id, quantity, unit: "1", oracle, reason },
+            expected,
+            measured,
+        ));
+    };
+    row(
+        "C6.phi_j",
+        "solid fraction at which smooth spheres of ±8 % jam after growth",
+        "0.64 for slow growth without friction",
+        "0.005: scatter between packings",
+        Expected::within(0.64, 0.005),
+        at.phi,
+    );
+    row(
+        "C6.isostatic",
+        "contacts per grain without rattlers, extrapolated to no pressure",
+        "isostatic: 6",
+        "0.15: as for equal spheres",
+        Expected::within(6.0, 0.15),
+        at.z,
+    );
+    row(
+        "C6.overlap",
+        "largest overlap over diameter where growth ends, below 1e-2 of the vacuum",
+        "at most 1 %: the grains still have their size",
+        "a bound",
+        Expected::at_most(0.01),
+        overlap,
+    );
+    row(
+        "C6.radius_spread",
+        "standard deviation of the radii over their mean, after growth",
+        "uniform between 2.3 and 2.7 mm: (R_max − R_min)/(√12 R̄), Götz (2024), table 2",
+        "5 %: four standard errors of a sample of 2000",
+        Expected::within(uniform, 0.05 * uniform),
+        record.scalar("radius_spread").unwrap_or(Real::NAN),
+    );
+}
+
+/// U21: the bulk modulus.
+fn modulus_row(scene: &Scene, record: &Record, findings: &mut Findings) {
+    let column = |name| record.column(name).unwrap_or_default();
+    // The last state is the one after the small change.
+    let before = column("pressure").len().checked_sub(2);
+    let at = |name| before.and_then(|k| column(name).get(k)).copied().unwrap_or(Real::NAN);
+    let (phi, p, z) = (at("solid_fraction"), at("pressure"), at("coordination"));
+    let material = &scene.grains.material;
+    let shear = material.youngs_modulus / (2.0 * (1.0 + material.poisson_ratio));
+    let inside =
+        (z * phi * shear).powi(2) * p / (18.0 * (PI * (1.0 - material.poisson_ratio)).powi(2));
+    let emt = inside.cbrt();
+    let modulus = record.scalar("bulk_modulus").unwrap_or(Real::NAN);
+    findings.quantities.push(quantity(
+        "bulk_modulus",
+        "of the packing at the seeds' vacuum",
+        modulus,
+        "Pa",
+    ));
+    findings.quantities.push(quantity("bulk_modulus_emt", "by effective-medium theory", emt, "Pa"));
+    findings.rows.push(Row::new(
+        &Told {
+            id: "U21.bulk_modulus",
+            quantity: "bulk modulus over that of effective-medium theory",
+            unit: "1",
+            oracle: "0.7 to 1.0: the theory moves all grains affinely, real ones relax (Makse et al. 1999)",
+            reason: "a range from the literature",
+        },
+        Expected::between(0.7, 1.0),
+        modulus / emt,
+    ));
+}
+
+/// U22: stress inside equals pressure outside.
+fn stress_rows(scene: &Scene, record: &Record, findings: &mut Findings) {
+    let pressure = scene.confined.pressure;
+    let mean = record.scalar("mean_stress").unwrap_or(Real::NAN);
+    for name in ["stress_x", "stress_y", "stress_z"] {
+        let value = record.column(name).and_then(|it| it.last()).copied().unwrap_or(Real::NAN);
+        findings.quantities.push(quantity(
+            name,
+            "normal stress of the confined sample",
+            value,
+            "Pa",
+        ));
+    }
+    findings.rows.push(Row::new(
+        &Told {
+            id: "U22.stress",
+            quantity: "mean stress of a sample in a membrane over the vacuum's pressure",
+            unit: "1",
+            oracle: "1: equilibrium, σ = 1/V Σ f l (Love, Weber)",
+            reason: "2 %: what the tension of the membrane takes, 2/3 of its work over the volume's",
+        },
+        Expected::within(1.0, 0.02),
+        mean / pressure,
+    ));
+}
+
+/// U23: at rest wherever something was recorded.
+fn rest_rows(records: &[Record], findings: &mut Findings) {
+    let worst = |name: &str| {
+        let of_columns = records.iter().filter_map(|it| it.column(name)).flatten().copied();
+        let of_scalars = records.iter().filter_map(|it| it.scalar(name));
+        of_columns.chain(of_scalars).fold(Real::NEG_INFINITY, Real::max)
+    };
+    for (id, name, quantity, bound) in [
+        ("U23.unbalanced", "unbalanced_force", "largest unbalanced force over contact force", 1e-3),
+        ("U23.kinetic", "kinetic_over_elastic", "largest kinetic over elastic energy", 1e-6),
+    ] {
+        findings.rows.push(Row::new(
+            &Told {
+                id,
+                quantity,
+                unit: "1",
+                oracle: "quasi-static: below 1e-3, and 1e-6 of the energy, in every recorded state",
+                reason: "a bound",
+            },
+            Expected::at_most(bound),
+            worst(name),
+        ));
+    }
+}
