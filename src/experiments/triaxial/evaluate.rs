@@ -1,7 +1,7 @@
 //! What the records of the triaxial tests show: rows of both sizes, curves, plots, run times.
 
 use super::{
-    CHECK, name,
+    CHECK, LOOSE, name,
     plots::{curve, plots},
     setup::Setup,
     specimen::{Choice, Kind},
@@ -52,6 +52,7 @@ pub(super) fn findings(setup: &Setup, records: &[Record]) -> Findings {
         }
     }
     check(setup, records, &mut findings);
+    loose(setup, records, &mut findings);
     let n_leaked: u64 = records.iter().map(|it| it.validity.n_leaked).sum();
     let told = Told {
         id: "C7.no_leak",
@@ -241,14 +242,17 @@ impl<'a> Group<'a> {
         let apart = root_mean(&|k| 0.5 * (a[k] + b[k] - c[k] - d[k]));
         let scatter = root_mean(&|k| (a[k] - b[k]).abs().max((c[k] - d[k]).abs()));
         let height = root_mean(&|k| 0.25 * (a[k] + b[k] + c[k] + d[k]));
+        let reason = "the first 0.5 % of strain is left out. If it fails: spheres of 0.65 mm on the \
+                      same cylinder leave less room, which table 3's numbers of grains fill more \
+                      densely: they are jammed when they are grown, those with triangles are not. \
+                      Tried: C7.same_stress_loose";
         let told = Told {
             id: &self.id("same_stress"),
             quantity: "distance of both models' mean stress difference over the larger distance of \
                        the initial states A and B",
             unit: "1",
             oracle: "Götz (2024), figure 6: no significant difference between the models",
-            reason: "within the scatter of A and B; root mean squares over strain, the first 0.5 % \
-                     left out. The samples differ in density by 0.01 as in table 3",
+            reason: &format!("within the scatter of A and B, root mean squares; {reason}"),
         };
         findings.rows.push(Row::new(&told, Expected::at_most(1.0), apart / scatter));
         let told = Told {
@@ -256,7 +260,7 @@ impl<'a> Group<'a> {
             quantity: "distance of both models' mean stress difference over their mean",
             unit: "1",
             oracle: "Götz (2024), figure 6: no significant difference between the models",
-            reason: "10 %: about what specimens of 1700 grains scatter by",
+            reason: &format!("10 %: about what 1700 grains scatter by; {reason}"),
         };
         findings.rows.push(Row::new(&told, Expected::at_most(0.1), apart / height));
     }
@@ -371,6 +375,33 @@ fn check(setup: &Setup, records: &[Record], findings: &mut Findings) {
         reason: "3 % per halving; the check has the shorter substep as well",
     };
     findings.rows.push(Row::new(&told, Expected::at_most(0.03), (apart / height).abs()));
+}
+
+/// Spheres in a room as full as that of the triangles.
+fn loose(setup: &Setup, records: &[Record], findings: &mut Findings) {
+    let of = |name: &str| find(records, name)?.column("stress_difference");
+    let choice = |kind, initial| Choice { size: 0, kind, initial };
+    let (Some(loose), Some(a), Some(b)) = (
+        of(&(name(choice(Kind::Spheres, 0)) + LOOSE)),
+        of(&name(choice(Kind::Triangles, 0))),
+        of(&name(choice(Kind::Triangles, 1))),
+    ) else {
+        return;
+    };
+    let step = setup.shear.strain / real(setup.shear.n_points);
+    let n = loose.len().min(a.len()).min(b.len());
+    let later: Vec<usize> = (0..n).filter(|&k| step * real(k) > RISE).collect();
+    let apart = mean(later.iter().map(|&k| (loose[k] - 0.5 * (a[k] + b[k])).powi(2))).sqrt();
+    let height = mean(later.iter().map(|&k| (0.5 * (a[k] + b[k])).powi(2))).sqrt();
+    let told = Told {
+        id: "C7.same_stress_loose",
+        quantity: "distance of the stress difference with spheres in a room as full as that of the \
+                   triangles, over the latter's mean",
+        unit: "1",
+        oracle: "Götz (2024), figure 6: no significant difference between the models",
+        reason: "10 %: about what 1700 grains scatter by; the first 0.5 % of strain is left out",
+    };
+    findings.rows.push(Row::new(&told, Expected::at_most(0.1), apart / height));
 }
 
 fn count(n: u64) -> f64 {
