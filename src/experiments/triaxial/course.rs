@@ -96,13 +96,16 @@ impl Test {
     ) -> Self {
         recipe.hold(&mut system.model);
         let growth = growth(&recipe, &system);
+        let mut logbook = Logbook::new(strain, n_points);
+        logbook.set("n_grains", real(recipe.final_radii.len()), "1");
+        logbook.set("n_vertices", real(system.model.membrane.mesh.n_vertices()), "1");
         let course = Course {
             stage: Stage::Growing,
             n_in_stage: 0,
             growth: growth.progress(),
             area: gauges::volume(&system) / gauges::height(&system),
             plate_forces: [0.0; 2],
-            logbook: Logbook::new(strain, n_points),
+            logbook,
         };
         Self { recipe, system, growth, course, speed, strain }
     }

@@ -1,7 +1,7 @@
 //! What the records of the triaxial tests show: rows of both sizes, curves, plots, run times.
 
 use super::{
-    CHECK, name,
+    CHECK, LOOSE, name,
     plots::{curve, plots},
     setup::Setup,
     specimen::{Choice, Kind},
@@ -28,6 +28,9 @@ const TABLE_4: [[f64; 2]; 2] = [[5.0, 32.0], [17.0, 96.0]];
 const TABLE_3: [[[f64; 2]; 2]; 2] =
     [[[0.576, 0.581], [0.567, 0.568]], [[0.568, 0.574], [0.588, 0.583]]];
 
+/// Table 3: vertices of the membrane by size and kind.
+const VERTICES: [[f64; 2]; 2] = [[1131.0, 10_440.0], [2214.0, 20_374.0]];
+
 /// All rows, curves and plots.
 pub(super) fn findings(setup: &Setup, records: &[Record]) -> Findings {
     let mut findings = Findings {
@@ -38,6 +41,7 @@ pub(super) fn findings(setup: &Setup, records: &[Record]) -> Findings {
     for size in 0..2 {
         let group = Group::new(setup, records, size);
         if !group.specimens.is_empty() {
+            group.vertices(&mut findings);
             group.fractions(&mut findings);
             group.isotropic(&mut findings);
             group.stresses(&mut findings);
@@ -48,6 +52,7 @@ pub(super) fn findings(setup: &Setup, records: &[Record]) -> Findings {
         }
     }
     check(setup, records, &mut findings);
+    loose(setup, records, &mut findings);
     let n_leaked: u64 = records.iter().map(|it| it.validity.n_leaked).sum();
     let told = Told {
         id: "C7.no_leak",
@@ -121,6 +126,24 @@ impl<'a> Group<'a> {
     /// Values of a column of all specimens.
     fn columns(&self, name: &str) -> Vec<&'a [f64]> {
         self.specimens.iter().filter_map(|(_, record)| record.column(name)).collect()
+    }
+
+    /// Table 3: the meshes.
+    fn vertices(&self, findings: &mut Findings) {
+        for (which, kind) in KINDS.into_iter().enumerate() {
+            let Some(found) = self.of(kind).find_map(|it| it.scalar("n_vertices")) else {
+                continue;
+            };
+            let told = Told {
+                id: &format!("C7.vertices_{}.case{}", kind.name(), self.size + 1),
+                quantity: &format!("vertices of the membrane, model with {}", kind.name()),
+                unit: "1",
+                oracle: "Götz (2024), table 3",
+                reason: "a whole number",
+            };
+            let expected = Expected::within(VERTICES[self.size][which], 0.0);
+            findings.rows.push(Row::new(&told, expected, found));
+        }
     }
 
     /// Table 3: how densely the grown grains fill the straight membrane.
@@ -219,14 +242,17 @@ impl<'a> Group<'a> {
         let apart = root_mean(&|k| 0.5 * (a[k] + b[k] - c[k] - d[k]));
         let scatter = root_mean(&|k| (a[k] - b[k]).abs().max((c[k] - d[k]).abs()));
         let height = root_mean(&|k| 0.25 * (a[k] + b[k] + c[k] + d[k]));
+        let reason = "the first 0.5 % of strain is left out. If it fails: spheres of 0.65 mm on the \
+                      same cylinder leave less room, which table 3's numbers of grains fill more \
+                      densely: they are jammed when they are grown, those with triangles are not. \
+                      Tried: C7.same_stress_loose";
         let told = Told {
             id: &self.id("same_stress"),
             quantity: "distance of both models' mean stress difference over the larger distance of \
                        the initial states A and B",
             unit: "1",
             oracle: "Götz (2024), figure 6: no significant difference between the models",
-            reason: "within the scatter of A and B; root mean squares over strain, the first 0.5 % \
-                     left out. The samples differ in density by 0.01 as in table 3",
+            reason: &format!("within the scatter of A and B, root mean squares; {reason}"),
         };
         findings.rows.push(Row::new(&told, Expected::at_most(1.0), apart / scatter));
         let told = Told {
@@ -234,7 +260,7 @@ impl<'a> Group<'a> {
             quantity: "distance of both models' mean stress difference over their mean",
             unit: "1",
             oracle: "Götz (2024), figure 6: no significant difference between the models",
-            reason: "10 %: about what specimens of 1700 grains scatter by",
+            reason: &format!("10 %: about what 1700 grains scatter by; {reason}"),
         };
         findings.rows.push(Row::new(&told, Expected::at_most(0.1), apart / height));
     }
@@ -250,7 +276,7 @@ impl<'a> Group<'a> {
             id: &self.id("barrel"),
             quantity: "growth of the membrane's radius in the middle over that at the ends, mean",
             unit: "1",
-            oracle: "the ends are held by plates with friction and by the end rings",
+            oracle: "Götz (2024), figure 5: the ends are held by the plates",
             reason: "a bound",
         };
         findings.rows.push(Row::new(&told, Expected::at_least(1.0), barrel));
@@ -306,10 +332,22 @@ fn run_times(record: &Record, size: usize, findings: &mut Findings) {
         quantity: "run time with spheres over run time with triangles, in turns on one thread",
         unit: "1",
         oracle: "Götz (2024), table 4 and section 3.3.1: faster by a factor of 5",
-        reason: "a bound. The ratio is that of the work per vertex, 9 vertices to 1, diluted by the \
-                 contacts between grains, which both models have",
+        reason: "a bound, with the source's hinge damping, which asks for shorter substeps on the fine \
+                 mesh. There are 9 vertices to 1, but contacts between grains, which both models have, \
+                 take their share",
     };
     findings.rows.push(Row::new(&told, Expected::at_least(5.0), ratio));
+    let steps =
+        KINDS.map(|kind| record.n_substeps.get(kind.name()).copied().map_or(f64::NAN, count));
+    let walls = KINDS.map(|kind| record.wall_s.get(kind.name()).copied().unwrap_or(f64::NAN));
+    findings.quantities.push(Quantity {
+        name: format!("run_time_ratio_of_a_substep_case{}", size + 1),
+        meaning: "time of a substep with spheres over that with triangles".to_owned(),
+        value: (walls[1] / steps[1]) / (walls[0] / steps[0]),
+        deviation: None,
+        n: 1,
+        unit: "1".to_owned(),
+    });
 }
 
 /// What speed-ups change.
@@ -337,6 +375,33 @@ fn check(setup: &Setup, records: &[Record], findings: &mut Findings) {
         reason: "3 % per halving; the check has the shorter substep as well",
     };
     findings.rows.push(Row::new(&told, Expected::at_most(0.03), (apart / height).abs()));
+}
+
+/// Spheres in a room as full as that of the triangles.
+fn loose(setup: &Setup, records: &[Record], findings: &mut Findings) {
+    let of = |name: &str| find(records, name)?.column("stress_difference");
+    let choice = |kind, initial| Choice { size: 0, kind, initial };
+    let (Some(loose), Some(a), Some(b)) = (
+        of(&(name(choice(Kind::Spheres, 0)) + LOOSE)),
+        of(&name(choice(Kind::Triangles, 0))),
+        of(&name(choice(Kind::Triangles, 1))),
+    ) else {
+        return;
+    };
+    let step = setup.shear.strain / real(setup.shear.n_points);
+    let n = loose.len().min(a.len()).min(b.len());
+    let later: Vec<usize> = (0..n).filter(|&k| step * real(k) > RISE).collect();
+    let apart = mean(later.iter().map(|&k| (loose[k] - 0.5 * (a[k] + b[k])).powi(2))).sqrt();
+    let height = mean(later.iter().map(|&k| (0.5 * (a[k] + b[k])).powi(2))).sqrt();
+    let told = Told {
+        id: "C7.same_stress_loose",
+        quantity: "distance of the stress difference with spheres in a room as full as that of the \
+                   triangles, over the latter's mean",
+        unit: "1",
+        oracle: "Götz (2024), figure 6: no significant difference between the models",
+        reason: "10 %: about what 1700 grains scatter by; the first 0.5 % of strain is left out",
+    };
+    findings.rows.push(Row::new(&told, Expected::at_most(0.1), apart / height));
 }
 
 fn count(n: u64) -> f64 {

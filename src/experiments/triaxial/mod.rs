@@ -65,12 +65,25 @@ struct Triaxials {
 /// A case.
 #[derive(Clone, Copy)]
 enum Case {
-    /// One specimen; as a check, with nothing sped up.
-    Sheared { choice: Choice, is_check: bool },
+    /// One specimen, as the scene has it or changed.
+    Sheared { choice: Choice, variant: Variant },
     /// Both membrane models side by side, of a size.
     Timed { size: usize },
 }
 
+/// What is changed of a specimen.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Variant {
+    /// Nothing.
+    Plain,
+    /// Half the speed, and a substep that needs no other argument.
+    Check,
+    /// As many grains as fill the room that spheres leave as densely as the other model's.
+    Loose,
+}
+
+/// What is appended to the name of a specimen with spheres that is filled less densely.
+const LOOSE: &str = "_loose";
 /// What is appended to the name of a specimen that checks the speed-ups.
 const CHECK: &str = "_check";
 
@@ -83,14 +96,19 @@ impl Triaxials {
             for kind in [Kind::Triangles, Kind::Spheres] {
                 for initial in 0..2 {
                     let choice = Choice { size, kind, initial };
-                    cases.push((name(choice), Case::Sheared { choice, is_check: false }));
+                    cases.push((name(choice), Case::Sheared { choice, variant: Variant::Plain }));
                 }
             }
         }
         if runs.check_strain > 0.0 {
             let choice = Choice { size: 0, kind: Kind::Triangles, initial: 0 };
-            let check = Case::Sheared { choice, is_check: true };
+            let check = Case::Sheared { choice, variant: Variant::Check };
             cases.push((name(choice) + CHECK, check));
+        }
+        if runs.loose_strain > 0.0 {
+            let choice = Choice { size: 0, kind: Kind::Spheres, initial: 0 };
+            let loose = Case::Sheared { choice, variant: Variant::Loose };
+            cases.push((name(choice) + LOOSE, loose));
         }
         if runs.timing > 0.0 {
             for size in 0..n_sizes {
@@ -123,8 +141,8 @@ impl Plan for Triaxials {
             return Err(StartError::NoSuchCase { name: case.to_owned(), known: self.cases() });
         };
         Ok(match chosen {
-            Case::Sheared { choice, is_check } => {
-                Box::new(run::Sheared::new(&self.setup, &name, choice, is_check)?)
+            Case::Sheared { choice, variant } => {
+                Box::new(run::Sheared::new(&self.setup, &name, choice, variant)?)
             }
             Case::Timed { size } => Box::new(timing::Timed::new(&self.setup, &name, size)?),
         })

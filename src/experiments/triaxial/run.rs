@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{
+    Variant,
     course::{Course, Stage, Test},
     setup::Setup,
     specimen::{Choice, Kind, Recipe},
@@ -24,24 +25,32 @@ pub(super) struct Sheared {
 }
 
 impl Sheared {
-    /// The chosen specimen; as a check, at half the speed and with nothing else sped up.
+    /// The chosen specimen, as it is or changed.
     pub(super) fn new(
         setup: &Setup,
         name: &str,
         choice: Choice,
-        is_check: bool,
+        variant: Variant,
     ) -> Result<Self, MeshFault> {
         let mut setup = setup.clone();
         let (shear, runs) = (&mut setup.shear, &setup.runs);
         let mut speed = shear.speed * shear.speed_factor;
-        if is_check {
-            speed *= 0.5;
-            // The points stay where they are: curves are compared point by point.
-            let step = shear.strain / real(shear.n_points);
-            shear.n_points = whole(runs.check_strain / step);
-            shear.strain = step * real(shear.n_points);
-            setup.time.rayleigh_share = runs.check_rayleigh_share;
-        }
+        let strain = match variant {
+            Variant::Plain => shear.strain,
+            Variant::Check => {
+                speed *= 0.5;
+                setup.time.rayleigh_share = runs.check_rayleigh_share;
+                runs.check_strain
+            }
+            Variant::Loose => {
+                setup.cases[choice.size].spheres.n_grains = [runs.loose_grains; 2];
+                runs.loose_strain
+            }
+        };
+        // The points stay where they are: curves are compared point by point.
+        let step = shear.strain / real(shear.n_points);
+        shear.n_points = whole(strain / step);
+        shear.strain = step * real(shear.n_points);
         let aim = (setup.shear.strain, setup.shear.n_points);
         let (recipe, system) = Recipe::new(&setup, choice)?;
         Ok(Self { name: name.to_owned(), test: Test::new(recipe, system, speed, aim) })

@@ -154,6 +154,10 @@ pub(super) struct Runs {
     pub(super) case2: bool,
     /// Strain to which a specimen is sheared with all that `quick` speeds up at half or less.
     pub(super) check_strain: Real,
+    /// Strain to which a specimen with spheres is sheared that is filled less densely; 0 for none.
+    pub(super) loose_strain: Real,
+    /// How many grains it has.
+    pub(super) loose_grains: usize,
     /// The share of the Rayleigh time in that check.
     pub(super) check_rayleigh_share: Real,
     /// Simulated time of the comparison of run times; 0 for none.
@@ -205,7 +209,14 @@ pub(super) fn blank() -> Setup {
             rest_time_max: NAN,
         },
         shear: Shear { speed: NAN, speed_factor: NAN, start_time: NAN, strain: NAN, n_points: 0 },
-        runs: Runs { case2: false, check_strain: NAN, check_rayleigh_share: NAN, timing: NAN },
+        runs: Runs {
+            case2: false,
+            check_strain: NAN,
+            loose_strain: NAN,
+            loose_grains: 0,
+            check_rayleigh_share: NAN,
+            timing: NAN,
+        },
         time: Time { rayleigh_share: NAN, safety: NAN },
     }
 }
@@ -232,8 +243,11 @@ impl Keys for Setup {
         walk.section("shear", |walk| shear(walk, &mut self.shear));
         walk.section("runs", |walk| {
             walk.flag("case2", &mut self.runs.case2);
-            let Runs { check_strain, check_rayleigh_share, .. } = &mut self.runs;
+            let Runs { check_strain, check_rayleigh_share, loose_strain, loose_grains, .. } =
+                &mut self.runs;
             walk.number("check_strain", Range::Between(0.0, 0.5), check_strain);
+            walk.number("loose_strain", Range::Between(0.0, 0.5), loose_strain);
+            whole_usize(walk, "loose_grains", (1, 200_000), loose_grains);
             walk.number("check_rayleigh_share", Range::AboveUpTo(0.0, 1.0), check_rayleigh_share);
             walk.quantity("timing", Quantity::at_least_zero(&TIME), &mut self.runs.timing);
         });
