@@ -190,7 +190,7 @@ impl<'a> Group<'a> {
                        the membrane's hoop, mean",
             unit: "1",
             oracle: "U22: σ = 1/V Σ f l equals the applied pressure",
-            reason: "2 %, as U22 has it; the hoop is that of a sheet without bending",
+            reason: "2 %, as U22 has it; the hoop is that of the springs, without hinges",
         };
         let (stresses, hoops) = (first("lateral_stress"), first("hoop_pressure"));
         let shares = stresses.iter().zip(&hoops).map(|(it, hoop)| it / (pressure + hoop));

@@ -17,7 +17,7 @@ use crate::{
         System,
         contact::sums,
         measure::{self, real},
-        membrane::pressure,
+        membrane::{pressure, stretch},
     },
 };
 
@@ -61,28 +61,31 @@ pub(super) fn radii(system: &System) -> [Real; 2] {
     [mean(&|z| z <= 0.25), mean(&|z| z >= 0.75)]
 }
 
-/// What the hoop tension of the membrane adds to the confining pressure in the middle half [Pa]; below
-/// zero where the grains have drawn together. The sheet lies in dimples, so it is the edges that tell
-/// its strain: those around have ε_θ, those across 1/4 ε_θ + 3/4 ε_z.
+/// What the springs of the membrane add to the confining pressure in the middle half [Pa]; below zero
+/// where the grains have drawn together. It is their lateral virial over twice the volume,
+/// Σ F (Δx² + Δy²)/L / 2V, from the means over edges around and across, of which there are twice as many.
 pub(super) fn hoop_pressure(system: &System) -> Real {
-    let mesh = &system.model.membrane.mesh;
+    let membrane = &system.model.membrane;
+    let (mesh, sheet) = (&membrane.mesh, &membrane.sheet);
+    let stiffness = stretch::stiffness(sheet.youngs_modulus, sheet.thickness);
     let top = mesh.positions.iter().map(|p| p.z).fold(0.0, Real::max);
     let (mut sums, mut n) = ([0.0; 2], [0; 2]);
     for ends in &mesh.edges {
-        let length = |all: &[Vec3]| (all[ends[0] as usize] - all[ends[1] as usize]).norm();
-        let [low, high] = ends.map(|v| mesh.positions[v as usize].z);
-        if low.abs().max(high.abs()) <= 0.5 * top {
-            let kind = usize::from((high - low).abs() > 1e-6 * top);
-            sums[kind] += length(&system.state.membrane.positions) / length(&mesh.positions) - 1.0;
+        let edge = |all: &[Vec3]| all[ends[0] as usize] - all[ends[1] as usize];
+        let (first, now) = (edge(&mesh.positions), edge(&system.state.membrane.positions));
+        let [low, high] = ends.map(|v| mesh.positions[v as usize].z.abs());
+        if low.max(high) <= 0.5 * top {
+            let kind = usize::from(first.z.abs() > 1e-6 * top);
+            let tension = stiffness * (now.norm() - first.norm());
+            sums[kind] += tension * now.xy().norm_squared() / now.norm();
             n[kind] += 1;
         }
     }
     let [around, across] = [0, 1].map(|kind| sums[kind] / real(n[kind].max(1)));
-    let axial = (4.0 * across - around) / 3.0;
-    let sheet = &system.model.membrane.sheet;
-    // A hexagonal net of springs has Poisson's ratio 1/3.
-    let stiffness = sheet.youngs_modulus * sheet.thickness / (1.0 - 1.0 / 9.0);
-    stiffness * (around + axial / 3.0) / radii(system)[0]
+    // A row of triangles has as many vertices as half its triangles: one edge around, two across.
+    let n_vertices = real(mesh.triangles.len()) / 2.0;
+    let volume = middle_section(system) * height(system);
+    n_vertices * (around + 2.0 * across) / (2.0 * volume)
 }
 
 /// Kinetic energy of the grains [J]. The membrane's is left out: here and there a vertex of some
