@@ -65,10 +65,9 @@ fn a_vacuum_presses_on_the_object_and_a_break_changes_no_bit() {
     let spread = 90e3 * (4.0_f64.powi(2) - 1.0);
     assert!(first < 0.2 * last && 2e3 < last && last < spread, "{pressure:?}");
     let solid = whole.column("solid_fraction").unwrap();
-    assert!(
-        solid[0] < solid[2] && 0.45 < solid[2] && solid[2] < 0.75,
-        "{solid:?}: a dense packing"
-    );
+    // Oracle: random packings of spheres, at most 0.64 and loose at 0.55; the layers at the membranes
+    // of so small a shell are looser by a few hundredths.
+    assert!(0.5 < solid[0] && solid[0] < 0.64 && solid[0] < solid[2], "{solid:?}");
     assert_eq!(whole.validity.n_leaked, 0);
 }
 
