@@ -7,17 +7,20 @@ use crate::{base::Real, experiments::record::Record, physics::measure::real};
 /// pushes the object out all the way.
 const NO_PULL_WITHIN: Real = 1.0 / 3.0;
 
+/// Way since the largest pull after which a lesser one is no mere tremble [m].
+const PAST_AFTER: Real = 1e-3;
+
 /// True if the grip may end: so much of the largest pull is gone that it is past, or nothing was
 /// pulled at all on the first third of the way.
 pub(super) fn has_passed(record: &Record, grip: usize, scene: &GripperScene) -> bool {
     let until = scene.accelerations.withdraw_until;
     let force = rows(record, grip, Phase::Withdraw, "force");
-    let largest = force.iter().copied().fold(0.0, Real::max);
-    let last = force.last().copied().unwrap_or(0.0);
-    if largest > 0.0 {
-        return last < until * largest;
-    }
     let at = rows(record, grip, Phase::Withdraw, "penetration");
+    let best = (0..force.len()).max_by(|&a, &b| force[a].total_cmp(&force[b]));
+    if let Some(best) = best.filter(|&k| force[k] > 0.0) {
+        let gone_on = at[best] - at[at.len() - 1];
+        return gone_on > PAST_AFTER && force[force.len() - 1] < until * force[best];
+    }
     let depth = scene.protocol.penetration;
     until > 0.0 && at.last().is_some_and(|&at| at < depth * (1.0 - NO_PULL_WITHIN))
 }
