@@ -287,13 +287,16 @@ fn over_modulus(
         y_label: "pressure on the object [kPa]".to_owned(),
         log_x: true,
         log_y: false,
-        series: vec![
+        series: [
             measured(sweep, "measured", findings::Kind::Points),
             measured(smooth, "measured, without friction", findings::Kind::Points),
             measured(stiff, "measured, contacts with the sheet as hard", findings::Kind::Points),
             level("continuum, derived", continuum.corrected),
             level("continuum, as printed (eq. 33)", continuum.printed),
-        ],
+        ]
+        .into_iter()
+        .filter(|it| !it.points.is_empty())
+        .collect(),
     }
 }
 
