@@ -11,6 +11,16 @@ pub type Quat = nalgebra::UnitQuaternion<Real>;
 /// Position and orientation of a frame.
 pub type Pose = nalgebra::Isometry3<Real>;
 
+/// A positive real rounded up to a count, at least 1.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "counts stay far below 2^53"
+)]
+pub fn count(value: Real) -> usize {
+    value.ceil().max(1.0) as usize
+}
+
 /// Linear and angular velocity of a body, world axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Twist {

@@ -4,6 +4,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{number, record::Column};
+use crate::physics::measure::real;
 
 /// All that the records show.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -36,6 +37,36 @@ pub struct Quantity {
     pub n: usize,
     /// Unit, `1` without one.
     pub unit: String,
+}
+
+/// Mean, standard deviation if there are several, and number of values.
+#[derive(Clone, Copy, Debug)]
+pub struct Mean {
+    /// The mean.
+    pub value: f64,
+    /// Standard deviation of the values.
+    pub deviation: Option<f64>,
+    /// How many there are.
+    pub n: usize,
+}
+
+impl Mean {
+    /// Of `values`; `None` without any.
+    pub fn new(values: &[f64]) -> Option<Self> {
+        let n = values.len();
+        if n == 0 {
+            return None;
+        }
+        let value = values.iter().sum::<f64>() / real(n);
+        let squares: f64 = values.iter().map(|it| (it - value).powi(2)).sum();
+        let deviation = (n > 1).then(|| (squares / real(n - 1)).sqrt());
+        Some(Self { value, deviation, n })
+    }
+
+    /// Standard error of the mean; zero of a single value.
+    pub fn error(&self) -> f64 {
+        self.deviation.map_or(0.0, |it| it / real(self.n).sqrt())
+    }
 }
 
 /// A table, one CSV file.

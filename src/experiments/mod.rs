@@ -8,6 +8,7 @@
 pub mod findings; // what was found
 pub mod gripper; // the force that holds an object
 pub mod hollow_sphere; // how much vacuum reaches an object
+mod kept; // a run as bytes
 pub mod laws; // closed forms, equation by equation
 mod number; // numbers in text
 pub mod oracles; // closed forms to compare with

@@ -77,6 +77,11 @@ impl Record {
         self.scalars.get(name).map(|it| it.value)
     }
 
+    /// Adds `n` substeps of `stage`.
+    pub fn count(&mut self, stage: &str, n: u64) {
+        *self.n_substeps.entry(stage.to_owned()).or_default() += n;
+    }
+
     /// Sets a number.
     pub fn set(&mut self, name: &str, value: f64, unit: &str) {
         self.scalars.insert(name.to_owned(), Scalar { value, unit: unit.to_owned() });

@@ -15,6 +15,7 @@ use super::{
     measure::real,
     membrane::{CARRIER_ID, MembraneState, mesh::Mesh},
     neighbours::weigh_pairs,
+    packing::sphere_volume,
     state::{Grains, Springs},
     substep,
 };
@@ -22,7 +23,7 @@ use crate::{
     base::{
         Real, Vec3,
         random::{Random, Stream},
-        real::Twist,
+        real::{Twist, count},
     },
     scene::Scene,
 };
@@ -422,18 +423,4 @@ fn scatter(scene: &Scene, recipe: &Recipe) -> State {
         gauge: 0.0,
         walls: vec![BodyMotion { pose, twist: Twist::zero() }],
     }
-}
-
-fn sphere_volume(radius: Real) -> Real {
-    4.0 / 3.0 * std::f64::consts::PI * radius.powi(3)
-}
-
-/// A positive real rounded up to a count.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "durations over substeps stay far below 2^53"
-)]
-fn count(value: Real) -> usize {
-    value.ceil().max(1.0) as usize
 }

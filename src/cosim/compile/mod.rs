@@ -9,7 +9,12 @@ use super::{
     saved_state::{self, SavedStateError, same_counts},
 };
 use crate::{
-    base::{Pose, Real, Vec3, digest::Digest, parallel, real::Twist},
+    base::{
+        Pose, Real, Vec3,
+        digest::Digest,
+        parallel,
+        real::{Twist, count},
+    },
     physics::{
         Model, State,
         boundary::{
@@ -26,7 +31,7 @@ use crate::{
         membrane::{MembraneModel, Sheet, mesh::Mesh},
         model::{BodyModel, BodySurface, ChamberModel},
     },
-    scene::{self, Scene, Shape},
+    scene::{Scene, Shape},
 };
 
 /// Changes whenever the same scene would settle differently: part of every cache key.
@@ -93,7 +98,7 @@ impl Compiled {
     /// If the substep is too long, a shape is unusable, or threads cannot be had.
     pub fn new(scene: &Scene, n_threads: usize) -> Result<Self, CompileError> {
         let mesh = Mesh::half_icosphere(scene.membrane.radius, scene.membrane.frequency)?;
-        let mut membrane = MembraneModel::new(mesh, sheet(&scene.membrane));
+        let mut membrane = MembraneModel::new(mesh, Sheet::of(&scene.membrane));
         membrane.scale_rest_lengths(1.0 - scene.membrane.rest_length_shrink);
         let (mut bodies, bulks) = bodies(scene)?;
         bodies.push(table(scene));
@@ -165,36 +170,13 @@ struct Laws {
 impl Laws {
     fn new(scene: &Scene) -> Self {
         let grains = &scene.grains;
-        let among_grains = law::Surface {
-            friction: grains.friction,
-            dissipation_time: grains.dissipation_time,
-            tangential_damping: grains.tangential_damping,
-        };
-        let on_membrane = membrane_surface(&scene.membrane, scene.membrane.friction);
+        let among_grains = law::Surface::of_grains(grains);
+        let on_membrane = law::Surface::of_membrane(&scene.membrane, scene.membrane.friction);
         Self {
             grain: PairLaw::between(&grains.material, &grains.material, among_grains),
             plate: PairLaw::against_rigid(&grains.material, among_grains),
             membrane: PairLaw::between(&grains.material, &scene.membrane.material, on_membrane),
         }
-    }
-}
-
-fn membrane_surface(membrane: &scene::Membrane, friction: Real) -> law::Surface {
-    law::Surface {
-        friction,
-        dissipation_time: membrane.dissipation_time,
-        tangential_damping: membrane.tangential_damping,
-    }
-}
-
-fn sheet(membrane: &scene::Membrane) -> Sheet {
-    Sheet {
-        thickness: membrane.thickness,
-        youngs_modulus: membrane.material.youngs_modulus,
-        density: membrane.material.density,
-        spring_damping: membrane.spring_damping,
-        bending_stiffness: membrane.bending_stiffness,
-        bending_damping: membrane.bending_damping,
     }
 }
 
@@ -205,7 +187,7 @@ fn bodies(scene: &Scene) -> Result<(Vec<BodyModel>, Vec<Bulk>), CompileError> {
         let surface = surface(&object.shape)
             .map_err(|fault| CompileError::Object { name: object.name.clone(), fault })?;
         let bulk = surface.bulk(object.material.density);
-        let on_object = membrane_surface(&scene.membrane, object.friction);
+        let on_object = law::Surface::of_membrane(&scene.membrane, object.friction);
         bodies.push(BodyModel {
             law: PairLaw::between(&scene.membrane.material, &object.material, on_object),
             contact_radius: contact_radius(&object.shape, bulk.volume),
@@ -242,7 +224,7 @@ fn contact_radius(shape: &Shape, volume: Real) -> Real {
 }
 
 fn table(scene: &Scene) -> BodyModel {
-    let on_table = membrane_surface(&scene.membrane, scene.table.friction);
+    let on_table = law::Surface::of_membrane(&scene.membrane, scene.table.friction);
     BodyModel {
         surface: BodySurface::HalfSpace,
         law: PairLaw::against_rigid(&scene.membrane.material, on_table),
@@ -272,7 +254,7 @@ fn plan(
     };
     let tick = std::time::Duration::from_nanos(scene.time.tick_ns).as_secs_f64();
     // A hand-set step that divides the tick must not be cut once more by rounding.
-    let n_first = count((tick / wanted - 1e-9).ceil());
+    let n_first = count(tick / wanted - 1e-9);
     let n_per_exchange = count((EXCHANGE_MAX * real(n_first) / tick).floor());
     let n_substeps = n_first.div_ceil(n_per_exchange) * n_per_exchange;
     Ok(Plan { tick, n_substeps, n_per_exchange })
@@ -296,14 +278,4 @@ fn critical_step(
         .map(|body| contact::stiffness(&body.law, body.contact_radius, pressure * area))
         .fold(0.0, Real::max);
     critical_step::critical_step(grains.radius_min, &grains.material, membrane, of_grain + of_body)
-}
-
-/// A whole positive real as a count, at least 1.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "substeps per tick stay far below 2^53"
-)]
-fn count(value: Real) -> usize {
-    value.max(1.0) as usize
 }

@@ -3,11 +3,11 @@
 use super::{
     phase::Phase,
     summary::rows,
-    verdict::{Judge, Mean, View},
+    verdict::{Judge, View},
 };
 use crate::{
     base::Real,
-    experiments::findings::{Expected, Told},
+    experiments::findings::{Expected, Mean, Told},
 };
 
 /// Scatter below which the force is as good as constant [N].

@@ -8,7 +8,6 @@ use crate::{
     experiments::record::{Column, Record},
     physics::{
         System,
-        contact::sums,
         measure::{self, real},
     },
 };
@@ -106,22 +105,6 @@ fn contacts(system: &System, volume: Real) -> (Real, Real) {
         }
     }
     (virial / (3.0 * volume), energy)
-}
-
-/// Mean force that is not balanced on a grain over the mean normal force of a contact.
-pub(super) fn unbalanced(system: &System) -> Real {
-    let System { model, state, scratch, .. } = system;
-    let grains = &state.grains;
-    let left: Real = (0..grains.len())
-        .map(|i| (sums::on_grain(grains, scratch, i).0 + model.gravity * grains.masses[i]).norm())
-        .sum();
-    let mut n = 0;
-    let mut sum = 0.0;
-    for pair in scratch.pair_forces.iter().filter(|it| it.overlap > 0.0) {
-        sum += pair.signed_normal.abs();
-        n += 1;
-    }
-    left / real(grains.len()) / (sum / real(n))
 }
 
 /// How the membrane lies on the object.

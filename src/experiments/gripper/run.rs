@@ -11,14 +11,14 @@ use super::{
     summary::{has_passed, summarise},
 };
 use crate::{
-    base::{Real, digest::Digest},
-    cosim::{compile::CompileError, saved_state},
-    experiments::{Progress, ResumeError, Run, record::Record},
+    base::Real,
+    cosim::compile::CompileError,
+    experiments::{Progress, ResumeError, Run, kept, record::Record},
     physics::{
         Model, State, System,
         fill::{self, Filling},
         health::Diverged,
-        measure::real,
+        measure::{real, rest::unbalanced_force},
     },
 };
 
@@ -62,15 +62,14 @@ pub(super) struct GripRun {
     n_expected: usize,
 }
 
-/// What is written down of a case that is broken off.
+/// What is written down of a case that is broken off, besides its states: the present one, and those
+/// that are settled and inserted if there are.
 #[derive(Serialize, Deserialize)]
 struct Saved {
-    case: String,
     place: Place,
     filling: fill::Place,
-    state: Vec<u8>,
-    settled: Option<Vec<u8>>,
-    inserted: Option<Vec<u8>>,
+    has_settled: bool,
+    has_inserted: bool,
     record: Record,
 }
 
@@ -135,7 +134,7 @@ impl GripRun {
     fn begin(&mut self, grip: usize) {
         let Some(ready) = self.grips.get(grip) else {
             self.place = Place::Done;
-            self.record.digest = digest(self.state());
+            self.record.digest = kept::digest(self.state());
             return;
         };
         let phase = if ready.is_inserted { Phase::Evacuate } else { Phase::Insert };
@@ -210,7 +209,7 @@ impl GripRun {
     fn end_phase(&mut self, grip: usize, phase: Phase, tick_of_grip: usize) {
         let Some(system) = &self.system else { return };
         if matches!(phase, Phase::Relax | Phase::Hold) {
-            let unbalanced = probe::unbalanced(system);
+            let unbalanced = unbalanced_force(&system.model, &system.state, &system.scratch);
             let name = format!("{}.unbalanced_{}", self.grips[grip].change.name(), phase.name());
             self.record.set(&name, unbalanced, "1");
             let validity = &mut self.record.validity;
@@ -235,12 +234,6 @@ fn lowest(state: &State) -> Real {
     state.membrane.positions.iter().map(|it| it.z).fold(Real::INFINITY, Real::min)
 }
 
-fn digest(state: &State) -> u64 {
-    let mut digest = Digest::new();
-    state.digest(&mut digest);
-    digest.finish()
-}
-
 impl Run for GripRun {
     fn advance(&mut self) -> Result<Progress, Diverged> {
         let stage = match self.place {
@@ -257,34 +250,25 @@ impl Run for GripRun {
 
     fn save(&self) -> Vec<u8> {
         let saved = Saved {
-            case: self.record.case.clone(),
             place: self.place,
             filling: self.filling.place(),
-            state: saved_state::write(self.state()),
-            settled: self.settled.as_ref().map(saved_state::write),
-            inserted: self.inserted.as_ref().map(saved_state::write),
+            has_settled: self.settled.is_some(),
+            has_inserted: self.inserted.is_some(),
             record: self.record.clone(),
         };
-        postcard::to_stdvec(&saved).expect("a list of numbers always serialises")
+        let states = [Some(self.state()), self.settled.as_ref(), self.inserted.as_ref()];
+        kept::pack(&self.record.case, &saved, states.into_iter().flatten())
     }
 
     fn resume(&mut self, bytes: &[u8]) -> Result<(), ResumeError> {
-        let reason = |reason: &str| ResumeError { reason: reason.to_owned() };
-        let saved: Saved =
-            postcard::from_bytes(bytes).map_err(|_| reason("the bytes are damaged"))?;
-        if saved.case != self.record.case {
-            return Err(reason("it is of another case"));
-        }
-        let read = |bytes: &[u8]| saved_state::read(bytes).map_err(|it| reason(&it.to_string()));
-        let state = read(&saved.state)?;
-        let n_vertices = self.models[1].membrane.mesh.n_vertices();
-        if state.grains.len() != self.scene.gripper.grains.count
-            || state.membrane.positions.len() != n_vertices
-        {
-            return Err(reason("it is of another scene"));
-        }
-        self.settled = saved.settled.as_deref().map(read).transpose()?;
-        self.inserted = saved.inserted.as_deref().map(read).transpose()?;
+        let reason = |reason: &str| kept::refusal(reason.to_owned());
+        let (saved, states): (Saved, _) = kept::unpack_any(&self.record.case, bytes)?;
+        let mut states = states.into_iter();
+        let mut next = || states.next().ok_or_else(|| reason("a state is missing"));
+        let state = next()?;
+        kept::of_one_scene(&state, self.state())?;
+        self.settled = saved.has_settled.then(&mut next).transpose()?;
+        self.inserted = saved.has_inserted.then(&mut next).transpose()?;
         self.place = saved.place;
         self.record = saved.record;
         match self.place {

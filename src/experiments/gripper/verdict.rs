@@ -8,7 +8,7 @@ use super::{
 use crate::{
     base::Real,
     experiments::{
-        findings::{Expected, Findings, Row, Told},
+        findings::{Expected, Findings, Mean, Row, Told},
         record::Record,
     },
     physics::measure::real,
@@ -42,32 +42,6 @@ pub(super) fn findings(scene: &GripperScene, cases: &[Case], records: &[Record])
 pub(super) struct View<'a> {
     pub(super) scene: &'a GripperScene,
     pub(super) records: &'a [Record],
-}
-
-/// Mean, standard deviation if there are several, and number of values.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Mean {
-    pub(super) value: Real,
-    pub(super) deviation: Option<Real>,
-    pub(super) n: usize,
-}
-
-impl Mean {
-    pub(super) fn new(values: &[Real]) -> Option<Self> {
-        let n = values.len();
-        if n == 0 {
-            return None;
-        }
-        let value = values.iter().sum::<Real>() / real(n);
-        let squares: Real = values.iter().map(|it| (it - value).powi(2)).sum();
-        let deviation = (n > 1).then(|| (squares / real(n - 1)).sqrt());
-        Some(Self { value, deviation, n })
-    }
-
-    /// Standard error of the mean; zero of a single value.
-    fn error(&self) -> Real {
-        self.deviation.map_or(0.0, |it| it / real(self.n).sqrt())
-    }
 }
 
 impl View<'_> {
@@ -370,31 +344,28 @@ fn checks(view: &View<'_>, judge: &mut Judge<'_>) {
     let own = view.protocol("holding_force");
     let ratio = |change| view.changed(change, "holding_force").zip(own);
     let sweep = &view.scene.sweep;
-    for ratio_of_springs in
-        cases::others(&sweep.spring_dampings, view.scene.gripper.membrane.spring_damping)
-    {
-        let change = Change::SpringDamping(ratio_of_springs);
+    let spring_damping = view.scene.gripper.membrane.spring_damping;
+    let dampings = cases::others(&sweep.spring_dampings, spring_damping).map(|it| {
+        (
+            Change::SpringDamping(it),
+            "holding force with this damping ratio of the membrane's springs over the protocol's",
+            "a quasi-static result does not depend on damping; the source's membranes have 0.3 and 0.15",
+        )
+    });
+    let slowdowns = cases::others(&sweep.slowdowns, 1.0).map(|it| {
+        (
+            Change::Slowdown(it),
+            "holding force with both ways slower by this factor over the protocol's",
+            "the accelerated protocol is legal if a slower one gives the same",
+        )
+    });
+    for (change, quantity, oracle) in dampings.chain(slowdowns) {
         judge.row_or(
             &Told {
                 id: &format!("C9.{}", change.name()),
-                quantity: "holding force with this damping ratio of the membrane's springs over the protocol's",
+                quantity,
                 unit: "1",
-                oracle: "a quasi-static result does not depend on damping; the source's membranes have 0.3 and 0.15",
-                reason: "10 %, what two histories of one bag may differ by",
-            },
-            Expected::within(1.0, SAME),
-            ratio(change).map(|(changed, own)| changed / own),
-            HISTORY,
-        );
-    }
-    for factor in cases::others(&sweep.slowdowns, 1.0) {
-        let change = Change::Slowdown(factor);
-        judge.row_or(
-            &Told {
-                id: &format!("C9.{}", change.name()),
-                quantity: "holding force with both ways slower by this factor over the protocol's",
-                unit: "1",
-                oracle: "the accelerated protocol is legal if a slower one gives the same",
+                oracle,
                 reason: "10 %, what two histories of one bag may differ by",
             },
             Expected::within(1.0, SAME),

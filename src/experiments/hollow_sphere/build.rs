@@ -10,6 +10,7 @@ use crate::{
         random::{Random, Stream},
         real::Twist,
     },
+    experiments::StartError,
     physics::{
         Controls, Model, State, System,
         boundary::{
@@ -29,8 +30,6 @@ use crate::{
     },
     scene::Material,
 };
-
-use crate::experiments::StartError;
 
 /// Solid fraction at which grains are scattered before they grow.
 const FIRST_SOLID_FRACTION: Real = 0.15;
@@ -59,7 +58,7 @@ pub(super) fn system(scene: &Scene, case: &Case) -> Result<(System, Parts), Star
     let inner_radius = scene.object.radius + scene.inner_clearance;
     let inner = Mesh::icosphere(inner_radius, scene.inner_frequency)?;
     let mesh = outer.joined(&inner.inside_out()?)?;
-    let membrane = MembraneModel::new(mesh, sheet(scene));
+    let membrane = MembraneModel::new(mesh, Sheet::of(&scene.membrane));
     let model = model(scene, case, membrane, n_outer);
 
     let seed = scene.seed + case.filling as u64;
@@ -98,27 +97,22 @@ fn model(scene: &Scene, case: &Case, mut membrane: MembraneModel, n_outer: usize
         density: scene.grains.material.density * case.mass_factor,
         ..scene.grains.material
     };
-    let friction = |mu: Real| if case.kind == Kind::Frictionless { 0.0 } else { mu };
-    let among_grains = Surface {
-        friction: friction(scene.grains.friction),
-        dissipation_time: scene.grains.dissipation_time,
-        tangential_damping: scene.grains.tangential_damping,
-    };
+    let (mut among_grains, mut on_sheet) = (
+        Surface::of_grains(&scene.grains),
+        Surface::of_membrane(&scene.membrane, scene.membrane.friction),
+    );
+    if case.kind == Kind::Frictionless {
+        (among_grains.friction, on_sheet.friction) = (0.0, 0.0);
+    }
     let touched = match case.kind {
         Kind::StiffContacts => Material { youngs_modulus: case.modulus, ..scene.membrane.material },
         _ => scene.membrane.material,
     };
-    let on_sheet = |friction| Surface {
-        friction,
-        dissipation_time: scene.membrane.dissipation_time,
-        tangential_damping: scene.membrane.tangential_damping,
-    };
-    let sheet_law =
-        PairLaw::between(&material, &touched, on_sheet(friction(scene.membrane.friction)));
+    let sheet_law = PairLaw::between(&material, &touched, on_sheet);
     let object_law = PairLaw::between(
         &scene.membrane.material,
         &scene.object.material,
-        on_sheet(scene.object.friction),
+        Surface::of_membrane(&scene.membrane, scene.object.friction),
     );
     let stretch = |v: usize| if v < n_outer { scene.membrane.fill_stretch } else { 1.0 };
     let held = membrane.mesh.positions.iter().enumerate().map(|(v, p)| p * stretch(v));
@@ -156,18 +150,6 @@ fn model(scene: &Scene, case: &Case, mut membrane: MembraneModel, n_outer: usize
         table: Pose::identity(),
         bodies: vec![object],
         membrane,
-    }
-}
-
-fn sheet(scene: &Scene) -> Sheet {
-    let it = &scene.membrane;
-    Sheet {
-        thickness: it.thickness,
-        youngs_modulus: it.material.youngs_modulus,
-        density: it.material.density,
-        spring_damping: it.spring_damping,
-        bending_stiffness: it.bending_stiffness,
-        bending_damping: it.bending_damping,
     }
 }
 

@@ -6,7 +6,7 @@ use super::{
     keys::Scene,
 };
 use crate::experiments::{
-    findings::{self, Curve, Expected, Findings, Plot, Quantity, Row, Series, Told},
+    findings::{self, Curve, Expected, Findings, Mean, Plot, Quantity, Row, Series, Told},
     oracles::shell::{ObjectPressure, shell_object_pressure},
     record::{Column, Record},
 };
@@ -82,10 +82,8 @@ impl Group<'_> {
 
     fn of(&self, value: impl Fn(&Record) -> f64) -> (f64, f64) {
         let values: Vec<f64> = self.records.iter().map(|it| value(it)).collect();
-        let n = crate::physics::measure::real(values.len());
-        let mean = values.iter().sum::<f64>() / n;
-        let square: f64 = values.iter().map(|it| (it - mean).powi(2)).sum();
-        (mean, if values.len() > 1 { (square / (n - 1.0)).sqrt() } else { 0.0 })
+        let mean = Mean::new(&values);
+        mean.map_or((f64::NAN, 0.0), |it| (it.value, it.deviation.unwrap_or(0.0)))
     }
 
     fn label(&self) -> String {

@@ -8,10 +8,9 @@ use super::{
     keys::{Protocol, Scene},
 };
 use crate::{
-    base::{Real, digest::Digest},
-    cosim::saved_state,
+    base::{Real, real::count},
     experiments::{
-        Progress, ResumeError, Run, StartError,
+        Progress, ResumeError, Run, StartError, kept,
         record::{Column, Record},
     },
     physics::{
@@ -137,9 +136,8 @@ impl Shell {
 
     /// Goes over to the next stage.
     fn turn(&mut self) {
-        let name = self.stage_name().to_owned();
-        let n = self.now.n_in_stage as u64;
-        *self.now.record.n_substeps.entry(name).or_default() += n;
+        let (name, n) = (self.stage_name(), self.now.n_in_stage as u64);
+        self.now.record.count(name, n);
         match self.now.stage {
             Stage::Growing => self.now.stage = Stage::Closing,
             Stage::Closing => self.now.stage = Stage::Resting,
@@ -152,7 +150,7 @@ impl Shell {
                 self.now.stage = Stage::Evacuating(level + 1);
                 if level == self.scene.protocol.n_levels {
                     self.now.stage = Stage::Done;
-                    self.now.record.digest = self.digest();
+                    self.now.record.digest = kept::digest(&self.system.state);
                 }
             }
             Stage::Done => {}
@@ -212,12 +210,6 @@ impl Shell {
         (self.now.sum, self.now.n_sum) = (0.0, 0);
     }
 
-    fn digest(&self) -> u64 {
-        let mut digest = Digest::new();
-        self.system.state.digest(&mut digest);
-        digest.finish()
-    }
-
     fn share(&self) -> Real {
         let it = &self.scene.protocol;
         let all = it.total_time();
@@ -263,18 +255,12 @@ impl Run for Shell {
     }
 
     fn save(&self) -> Vec<u8> {
-        let kept = (&self.case.name, &self.now, saved_state::write(&self.system.state));
-        postcard::to_stdvec(&kept).expect("numbers and names always serialise")
+        kept::pack(&self.case.name, &self.now, [&self.system.state])
     }
 
     fn resume(&mut self, bytes: &[u8]) -> Result<(), ResumeError> {
-        let refuse = |reason: String| ResumeError { reason };
-        let (name, now, state): (String, Progressed, Vec<u8>) =
-            postcard::from_bytes(bytes).map_err(|error| refuse(error.to_string()))?;
-        if name != self.case.name {
-            return Err(refuse(format!("it is of case `{name}`")));
-        }
-        let state = saved_state::read(&state).map_err(|error| refuse(error.to_string()))?;
+        let (now, [state]): (Progressed, _) = kept::unpack(&self.case.name, bytes)?;
+        kept::of_one_scene(&state, &self.system.state)?;
         self.system.scratch = Scratch::new(&self.system.model);
         self.system.controls.gauge_setpoint = state.gauge;
         self.system.state = state;
@@ -297,14 +283,4 @@ impl Run for Shell {
 /// Vacuum at a level [Pa].
 fn gauge(protocol: &Protocol, level: Real) -> Real {
     protocol.vacuum * level / real(protocol.n_levels)
-}
-
-/// A positive real rounded up to a count.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "durations over substeps stay far below 2^53"
-)]
-fn count(value: Real) -> usize {
-    value.ceil().max(1.0) as usize
 }

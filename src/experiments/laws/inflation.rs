@@ -105,18 +105,20 @@ fn cylinder(scene: &Scene, record: &mut Record) {
     let (model, height) = tube(scene, n_around, n_rows);
     let overpressure = scene.laplace.pressure_max;
     let lid = overpressure * std::f64::consts::PI * radius * radius / real(n_around);
+    let place = |row: usize| height * (real(row) - 0.5 * real(n_rows));
+    let in_row =
+        |v: usize, row: usize| (model.mesh.positions[v].z - place(row)).abs() < 0.5 * height;
     let pull: Vec<Vec3> = (0..model.masses.len())
-        .map(|v| match v / n_around {
-            0 => Vec3::z() * -lid,
-            row if row == n_rows => Vec3::z() * lid,
-            _ => Vec3::zeros(),
+        .map(|v| {
+            let end = f64::from(u8::from(in_row(v, n_rows))) - f64::from(u8::from(in_row(v, 0)));
+            Vec3::z() * (lid * end)
         })
         .collect();
     let mut state = MembraneState::at_rest(&model.mesh);
     settle(&model, &mut state, overpressure, &pull);
     let row_mean = |row: usize, of: &dyn Fn(&Vec3) -> Real| {
-        let vertices = &state.positions[row * n_around..(row + 1) * n_around];
-        vertices.iter().map(of).sum::<Real>() / real(n_around)
+        let vertices = (0..state.positions.len()).filter(|&v| in_row(v, row));
+        vertices.map(|v| of(&state.positions[v])).sum::<Real>() / real(n_around)
     };
     let (below, above) = (n_rows / 3, 2 * n_rows / 3);
     let hoop = row_mean(n_rows / 2, &|p| p.xy().norm()) / radius - 1.0;
@@ -130,36 +132,13 @@ fn cylinder(scene: &Scene, record: &mut Record) {
 /// The tube, and the height of its rows [m].
 fn tube(scene: &Scene, n_around: usize, n_rows: usize) -> (MembraneModel, Real) {
     let radius = scene.membrane.radius;
-    let turn = 2.0 * std::f64::consts::PI / real(n_around);
-    let edge = 2.0 * radius * (0.5 * turn).sin();
+    let half_turn = std::f64::consts::PI / real(n_around);
+    let edge = 2.0 * radius * half_turn.sin();
     // Rows are turned by half an edge: the height that makes all edges equal.
-    let sagitta = radius * (1.0 - (0.5 * turn).cos());
+    let sagitta = radius * (1.0 - half_turn.cos());
     let height = (0.75 * edge * edge - sagitta * sagitta).sqrt();
-    let mut positions = Vec::new();
-    for row in 0..=n_rows {
-        for column in 0..n_around {
-            let angle = turn * (real(column) + 0.5 * real(row % 2));
-            let z = height * real(row);
-            positions.push(Vec3::new(radius * angle.cos(), radius * angle.sin(), z));
-        }
-    }
-    let id = |row: usize, column: usize| {
-        u32::try_from(row * n_around + column % n_around).expect("a tube is small")
-    };
-    let mut triangles = Vec::new();
-    for row in 0..n_rows {
-        for k in 0..n_around {
-            let (a, b) = (id(row, k), id(row, k + 1));
-            let (c, d) = (id(row + 1, k), id(row + 1, k + 1));
-            if row % 2 == 0 {
-                triangles.extend([[a, b, c], [b, d, c]]);
-            } else {
-                triangles.extend([[a, b, d], [a, d, c]]);
-            }
-        }
-    }
-    let mesh = Mesh::new(positions, triangles).expect("a tube is a surface");
-    (MembraneModel::new(mesh, bag(scene)), height)
+    let mesh = Mesh::tube(radius, height * real(n_rows), n_around, n_rows + 1);
+    (MembraneModel::new(mesh.expect("a tube is a surface"), bag(scene)), height)
 }
 
 /// Force, torque and power of the air on a sphere with dents that is off the origin and moves.

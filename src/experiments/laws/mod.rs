@@ -21,6 +21,7 @@ mod tests;
 use super::{
     Experiment, Plan, Progress, ResumeError, Run, SceneText, StartError,
     findings::{Expected, Findings, Row, Told},
+    kept,
     record::{Column, Record},
 };
 use crate::{
@@ -136,14 +137,14 @@ impl Run for Pages {
     }
 
     fn save(&self) -> Vec<u8> {
-        postcard::to_stdvec(&(self.n_done, &self.record)).expect("numbers and names can be written")
+        kept::pack(&self.record.case, &(self.n_done, &self.record), [])
     }
 
     fn resume(&mut self, bytes: &[u8]) -> Result<(), ResumeError> {
-        let (n_done, record): (usize, Record) = postcard::from_bytes(bytes)
-            .map_err(|error| ResumeError { reason: error.to_string() })?;
-        if record.case != self.record.case || n_done > self.law.n_points(&self.scene) {
-            return Err(ResumeError { reason: format!("is of the case `{}`", record.case) });
+        let ((n_done, record), []) = kept::unpack(&self.record.case, bytes)?;
+        let n_points = self.law.n_points(&self.scene);
+        if n_done > n_points {
+            return Err(kept::refusal(format!("it has {n_done} points, the scene {n_points}")));
         }
         (self.n_done, self.record) = (n_done, record);
         Ok(())

@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     super::{
-        Progress, ResumeError, Run, StartError,
+        Progress, ResumeError, Run, StartError, kept,
         record::{Column, Record},
     },
     Case,
@@ -25,10 +25,8 @@ use super::{
 use crate::{
     base::{
         Real, Vec3,
-        digest::Digest,
         random::{Random, Stream},
     },
-    cosim::saved_state,
     physics::{
         Model, System,
         health::Diverged,
@@ -152,7 +150,7 @@ impl Boxed {
                 let grown = self.growth.step(&mut self.system);
                 self.place.growth = self.growth.progress();
                 self.place.scale = self.place.growth.scale;
-                self.count("growing");
+                self.place.record.count("growing", 1);
                 if grown != Grown::Growing {
                     self.begin();
                 }
@@ -167,12 +165,12 @@ impl Boxed {
                 } else {
                     Stage::Resting(Settling::default())
                 };
-                self.count("ramping");
+                self.place.record.count("ramping", 1);
             }
             Stage::Resting(mut settling) => {
                 let is_time = settling.step(&mut self.system);
                 self.place.stage = Stage::Resting(settling);
-                self.count("resting");
+                self.place.record.count("resting", 1);
                 if is_time {
                     self.look(settling);
                 }
@@ -191,10 +189,6 @@ impl Boxed {
             let overlap = grow::mean_overlap(&self.system);
             self.ramp(-self.scene.compression.share * overlap, self.place.growth.pressure);
         }
-    }
-
-    fn count(&mut self, stage: &str) {
-        *self.place.record.n_substeps.entry(stage.to_owned()).or_default() += 1;
     }
 
     /// Records a state at rest and goes on to the next.
@@ -305,12 +299,11 @@ impl Boxed {
         let spread = (radii.iter().map(|r| (r / mean - 1.0).powi(2)).sum::<Real>()
             / real(radii.len()))
         .sqrt();
-        let mut digest = Digest::new();
-        state.digest(&mut digest);
+        let digest = kept::digest(state);
         let record = &mut self.place.record;
         record.tables.insert("structure".to_owned(), table);
         record.set("radius_spread", spread, "1");
-        record.digest = digest.finish();
+        record.digest = digest;
         self.place.stage = Stage::Done;
     }
 
@@ -372,18 +365,12 @@ impl Run for Boxed {
     }
 
     fn save(&self) -> Vec<u8> {
-        let saved = (saved_state::write(&self.system.state), &self.place);
-        postcard::to_stdvec(&saved).expect("numbers and names always serialise")
+        kept::pack(&self.place.record.case, &self.place, [&self.system.state])
     }
 
     fn resume(&mut self, bytes: &[u8]) -> Result<(), ResumeError> {
-        let damaged = |reason: String| ResumeError { reason };
-        let (state, place): (Vec<u8>, Place) =
-            postcard::from_bytes(bytes).map_err(|error| damaged(error.to_string()))?;
-        let state = saved_state::read(&state).map_err(|error| damaged(error.to_string()))?;
-        if place.record.case != self.case.name() || state.grains.len() != self.final_radii.len() {
-            return Err(damaged(format!("is of case {}", place.record.case)));
-        }
+        let (place, [state]): (Place, _) = kept::unpack(&self.place.record.case, bytes)?;
+        kept::of_one_scene(&state, &self.system.state)?;
         let mut model = self.system.model.clone();
         model.radius_max = state.grains.radii.iter().copied().fold(model.radius_max, Real::max);
         let controls = self.system.controls.clone();

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     super::{
-        Progress, ResumeError, Run, StartError,
+        Progress, ResumeError, Run, StartError, kept,
         record::{Column, Record},
     },
     sample::{self, SLICE, Settling},
@@ -18,11 +18,9 @@ use super::{
 use crate::{
     base::{
         Pose, Real,
-        digest::Digest,
         random::{Random, Stream},
         real::Twist,
     },
-    cosim::saved_state,
     physics::{
         Model, System,
         boundary::{
@@ -108,7 +106,7 @@ impl Confined {
             Stage::Growing => {
                 let grown = self.growth.step(&mut self.system);
                 self.place.growth = self.growth.progress();
-                self.count("growing");
+                self.place.record.count("growing", 1);
                 if grown != Grown::Growing {
                     self.let_go();
                     self.place.stage = Stage::Resting(Settling::default());
@@ -117,7 +115,7 @@ impl Confined {
             Stage::Resting(mut settling) => {
                 let is_time = settling.step(&mut self.system);
                 self.place.stage = Stage::Resting(settling);
-                self.count("resting");
+                self.place.record.count("resting", 1);
                 if is_time {
                     self.look(settling);
                 }
@@ -126,10 +124,6 @@ impl Confined {
             Stage::Done => return,
         }
         sample::drag(&mut self.system, self.scene.compression.drag_time);
-    }
-
-    fn count(&mut self, stage: &str) {
-        *self.place.record.n_substeps.entry(stage.to_owned()).or_default() += 1;
     }
 
     /// The membrane is free and the pump draws.
@@ -151,8 +145,7 @@ impl Confined {
         }
         let volume = enclosed_volume(model, state);
         let sigma = stress::contact_stress(model, state, scratch, volume);
-        let mut digest = Digest::new();
-        state.digest(&mut digest);
+        let digest = kept::digest(state);
         let packing = packing(state, scratch);
         let row = [-state.gauge, sigma[(0, 0)], sigma[(1, 1)], sigma[(2, 2)]];
         let shear = sigma[(0, 1)].hypot(sigma[(1, 2)]).hypot(sigma[(2, 0)]);
@@ -169,7 +162,7 @@ impl Confined {
         record.set("kinetic_over_elastic", unrest.kinetic, "1");
         record.validity.overlap_over_diameter_max = overlap;
         record.validity.unbalanced_force = unrest.unbalanced;
-        record.digest = digest.finish();
+        record.digest = digest;
         self.place.stage = Stage::Done;
     }
 }
@@ -224,21 +217,12 @@ impl Run for Confined {
     }
 
     fn save(&self) -> Vec<u8> {
-        let saved = (saved_state::write(&self.system.state), &self.place);
-        postcard::to_stdvec(&saved).expect("numbers and names always serialise")
+        kept::pack(&self.place.record.case, &self.place, [&self.system.state])
     }
 
     fn resume(&mut self, bytes: &[u8]) -> Result<(), ResumeError> {
-        let damaged = |reason: String| ResumeError { reason };
-        let (state, place): (Vec<u8>, Place) =
-            postcard::from_bytes(bytes).map_err(|error| damaged(error.to_string()))?;
-        let state = saved_state::read(&state).map_err(|error| damaged(error.to_string()))?;
-        let n_vertices = self.system.state.membrane.positions.len();
-        if state.grains.len() != self.final_radii.len()
-            || state.membrane.positions.len() != n_vertices
-        {
-            return Err(damaged("is of another sample".to_owned()));
-        }
+        let (place, [state]): (Place, _) = kept::unpack(&self.place.record.case, bytes)?;
+        kept::of_one_scene(&state, &self.system.state)?;
         let mut model = self.system.model.clone();
         model.radius_max = state.grains.radii.iter().copied().fold(model.radius_max, Real::max);
         self.growth = Growth::resumed(self.recipe, self.final_radii.clone(), place.growth);

@@ -10,10 +10,9 @@ use super::{
     scene::{Pull, Scene},
 };
 use crate::{
-    base::{Pose, Real, Vec3, digest::Digest, real::Twist},
-    cosim::saved_state,
+    base::{Pose, Real, Vec3, real::Twist},
     experiments::{
-        Progress, ResumeError, Run, StartError,
+        Progress, ResumeError, Run, StartError, kept,
         record::{Column, Record},
     },
     physics::{
@@ -24,7 +23,7 @@ use crate::{
         },
         contact::{self, law::PairLaw, sums},
         health::Diverged,
-        measure::{packing, real},
+        measure::{packing, real, real_of},
         membrane::{CARRIER_ID, FREE, MembraneModel, MembraneState, SheetContact, critical_step},
         model::ChamberModel,
         state::{Grains, Springs},
@@ -179,7 +178,7 @@ impl Ride {
             self.look(&before);
         }
         let grains = &mut self.system.state.grains;
-        let ramp = 2.0 * whole(self.n_done) / whole(self.n_settling.max(1));
+        let ramp = 2.0 * real_of(self.n_done) / real_of(self.n_settling.max(1));
         let load = if is_settling { ramp.min(1.0) } else { 1.0 } * self.case.load;
         let gained = load / grains.masses[0] * dt;
         let (x, v) = (&mut grains.positions[0], &mut grains.velocities[0]);
@@ -216,7 +215,7 @@ impl Ride {
         let System { model, state, scratch, .. } = &self.system;
         let (force, _) = sums::on_grain(&state.grains, scratch, 0);
         let seen = packing(state, scratch);
-        let n_drawn = whole(self.n_done - self.n_settling);
+        let n_drawn = real_of(self.n_done - self.n_settling);
         let distance = n_drawn * self.case.pull.speed * model.substep;
         let across = Vec3::z().cross(&self.along);
         let row = [
@@ -247,31 +246,22 @@ impl Run for Ride {
             self.step();
         }
         self.system.check(self.n_done)?;
-        let mut digest = Digest::new();
-        self.system.state.digest(&mut digest);
-        self.record.digest = digest.finish();
+        self.record.digest = kept::digest(&self.system.state);
         let settled = self.n_done.min(self.n_settling);
         self.record.n_substeps = [("settling", settled), ("sliding", self.n_done - settled)]
             .map(|(stage, n)| (stage.to_owned(), n))
             .into();
-        let share = whole(self.n_done) / whole(self.n_substeps);
+        let share = real_of(self.n_done) / real_of(self.n_substeps);
         Ok(Progress { stage, share, is_done: self.n_done == self.n_substeps })
     }
 
     fn save(&self) -> Vec<u8> {
-        let state = saved_state::write(&self.system.state);
-        postcard::to_stdvec(&(self.n_done, state, &self.record)).expect("numbers can be written")
+        kept::pack(&self.record.case, &(self.n_done, &self.record), [&self.system.state])
     }
 
     fn resume(&mut self, bytes: &[u8]) -> Result<(), ResumeError> {
-        let (n_done, state, record): (u64, Vec<u8>, Record) = postcard::from_bytes(bytes)
-            .map_err(|error| ResumeError { reason: error.to_string() })?;
-        let state =
-            saved_state::read(&state).map_err(|error| ResumeError { reason: error.to_string() })?;
-        let n_vertices = self.system.state.membrane.positions.len();
-        if record.case != self.record.case || state.membrane.positions.len() != n_vertices {
-            return Err(ResumeError { reason: format!("is of the case `{}`", record.case) });
-        }
+        let ((n_done, record), [state]) = kept::unpack(&self.record.case, bytes)?;
+        kept::of_one_scene(&state, &self.system.state)?;
         self.system.state = state;
         self.system.scratch = Scratch::new(&self.system.model);
         (self.n_done, self.record) = (n_done, record);
@@ -359,9 +349,4 @@ fn state(scene: &Scene, model: &Model, start: Vec3) -> State {
 )]
 fn count(value: Real) -> u64 {
     value.round() as u64
-}
-
-#[expect(clippy::cast_precision_loss, reason = "some million substeps")]
-fn whole(n: u64) -> Real {
-    n as Real
 }

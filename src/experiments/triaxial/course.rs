@@ -21,7 +21,7 @@ use crate::{
     physics::{
         System,
         health::Diverged,
-        measure::{self, real},
+        measure::{self, real, real_of},
         packing::{
             Grown, Growth, Laws,
             grow::{self, Progress as Grow},
@@ -330,8 +330,4 @@ fn growth_recipe(recipe: &Recipe, system: &System) -> grow::Recipe {
         law.friction = setup.growth.friction;
     }
     growth
-}
-
-fn real_of(n: u64) -> Real {
-    real(usize::try_from(n).unwrap_or(usize::MAX))
 }

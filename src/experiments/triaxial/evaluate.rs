@@ -12,7 +12,7 @@ use crate::{
         findings::{Expected, Findings, Quantity, Row, Told},
         record::Record,
     },
-    physics::measure::real,
+    physics::measure::{real, real_of},
 };
 
 const KINDS: [Kind; 2] = [Kind::Triangles, Kind::Spheres];
@@ -61,7 +61,7 @@ pub(super) fn findings(setup: &Setup, records: &[Record]) -> Findings {
         oracle: "Götz (2024), section 3.3.1: the membrane holds the grains",
         reason: "a whole number; a specimen that leaks ends with a fault and has no record",
     };
-    findings.rows.push(Row::new(&told, Expected::at_most(0.0), count(n_leaked)));
+    findings.rows.push(Row::new(&told, Expected::at_most(0.0), real_of(n_leaked)));
     findings.notes.extend(notes(setup));
     findings
 }
@@ -362,7 +362,7 @@ fn run_times(record: &Record, size: usize, findings: &mut Findings) {
     };
     findings.rows.push(Row::new(&told, Expected::at_least(5.0), ratio));
     let steps =
-        KINDS.map(|kind| record.n_substeps.get(kind.name()).copied().map_or(f64::NAN, count));
+        KINDS.map(|kind| record.n_substeps.get(kind.name()).copied().map_or(f64::NAN, real_of));
     let walls = KINDS.map(|kind| record.wall_s.get(kind.name()).copied().unwrap_or(f64::NAN));
     findings.quantities.push(Quantity {
         name: format!("run_time_ratio_of_a_substep_case{}", size + 1),
@@ -428,10 +428,6 @@ fn loose(setup: &Setup, records: &[Record], findings: &mut Findings) {
                  given way; a number of grains between these would hit the triangles' rise",
     };
     findings.rows.push(Row::new(&told, Expected::at_most(0.1), apart / height));
-}
-
-fn count(n: u64) -> f64 {
-    real(usize::try_from(n).unwrap_or(usize::MAX))
 }
 
 fn mean(values: impl IntoIterator<Item = f64>) -> f64 {

@@ -12,13 +12,8 @@ mod setup; // the scene
 mod specimen; // grains, membrane, plates
 mod timing; // both models side by side
 
-use super::{
-    Experiment, Plan, Run, SceneText, Size, StartError, findings::Findings, record::Record,
-};
-use crate::scene::{
-    SceneError,
-    text::{Layers, fill},
-};
+use super::{Experiment, Plan, Run, SceneText, StartError, findings::Findings, record::Record};
+use crate::scene::{SceneError, text::fill};
 use setup::Setup;
 use specimen::{Choice, Kind};
 
@@ -42,18 +37,7 @@ impl Experiment for Triaxial {
     }
 
     fn read(&self, scene: &SceneText<'_>) -> Result<Box<dyn Plan>, SceneError> {
-        let chosen = match scene.size {
-            Size::Quick => "quick",
-            Size::Full => "full",
-        };
-        let layers = Layers {
-            text: scene.text,
-            source: scene.source,
-            variants: (&["quick", "full"], chosen),
-            overrides: scene.overrides,
-            on_defaults: false,
-        };
-        Ok(Box::new(Triaxials { setup: fill(&layers, setup::blank())? }))
+        Ok(Box::new(Triaxials { setup: fill(&scene.layers(false), setup::blank())? }))
     }
 }
 

@@ -1,7 +1,5 @@
 //! One specimen from growth to the last strain, slice by slice.
 
-use serde::{Deserialize, Serialize};
-
 use super::{
     Variant,
     course::{Course, Stage, Test},
@@ -9,9 +7,8 @@ use super::{
     specimen::{Choice, Kind, Recipe},
 };
 use crate::{
-    base::{Real, digest::Digest},
-    cosim::saved_state,
-    experiments::{Progress, ResumeError, Run, record::Record},
+    base::Real,
+    experiments::{Progress, ResumeError, Run, kept, record::Record},
     physics::{health::Diverged, measure::real, membrane::mesh::MeshFault, state::State},
 };
 
@@ -57,14 +54,6 @@ impl Sheared {
     }
 }
 
-/// All that is needed to go on.
-#[derive(Serialize, Deserialize)]
-struct Saved {
-    name: String,
-    course: Course,
-    state: Vec<u8>,
-}
-
 impl Run for Sheared {
     fn advance(&mut self) -> Result<Progress, Diverged> {
         let stage = self.test.course.stage;
@@ -80,32 +69,19 @@ impl Run for Sheared {
     }
 
     fn save(&self) -> Vec<u8> {
-        let saved = Saved {
-            name: self.name.clone(),
-            course: self.test.course.clone(),
-            state: saved_state::write(&self.test.system.state),
-        };
-        postcard::to_stdvec(&saved).expect("numbers and texts always serialise")
+        kept::pack(&self.name, &self.test.course, [&self.test.system.state])
     }
 
     fn resume(&mut self, bytes: &[u8]) -> Result<(), ResumeError> {
-        let refused = |reason: String| ResumeError { reason };
-        let saved: Saved =
-            postcard::from_bytes(bytes).map_err(|error| refused(error.to_string()))?;
-        if saved.name != self.name {
-            return Err(refused(format!("it is of case `{}`", saved.name)));
-        }
-        let state = saved_state::read(&saved.state).map_err(|error| refused(error.to_string()))?;
-        take(&mut self.test, saved.course, state).map_err(refused)
+        let (course, [state]) = kept::unpack(&self.name, bytes)?;
+        take(&mut self.test, course, state)
     }
 
     fn record(&self) -> Record {
         let initial = self.test.recipe.choice.initial;
         let seed = self.test.recipe.setup.seeds[initial];
         let mut record = self.test.course.logbook.record(&self.name, seed);
-        let mut digest = Digest::new();
-        self.test.system.state.digest(&mut digest);
-        record.digest = digest.finish();
+        record.digest = kept::digest(&self.test.system.state);
         record
     }
 }
@@ -121,14 +97,8 @@ pub(super) fn slice(test: &Test) -> usize {
 }
 
 /// Goes on from a course and its state, if they are of the same specimen.
-pub(super) fn take(test: &mut Test, course: Course, state: State) -> Result<(), String> {
-    let now = &test.system.state;
-    let same = state.grains.len() == now.grains.len()
-        && state.membrane.positions.len() == now.membrane.positions.len()
-        && state.walls.len() == now.walls.len();
-    if !same {
-        return Err("it is of another specimen".to_owned());
-    }
+pub(super) fn take(test: &mut Test, course: Course, state: State) -> Result<(), ResumeError> {
+    kept::of_one_scene(&state, &test.system.state)?;
     test.system.state = state;
     test.resume(course);
     Ok(())

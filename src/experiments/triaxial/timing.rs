@@ -11,9 +11,8 @@ use super::{
 };
 use crate::{
     base::{Real, digest::Digest},
-    cosim::saved_state,
-    experiments::{Progress, ResumeError, Run, record::Record},
-    physics::{health::Diverged, measure::real, membrane::mesh::MeshFault},
+    experiments::{Progress, ResumeError, Run, kept, record::Record},
+    physics::{State, health::Diverged, measure::real, membrane::mesh::MeshFault},
 };
 
 /// Stage in which both are made ready.
@@ -31,12 +30,10 @@ pub(super) struct Timed {
     last: Real,
 }
 
-/// All that is needed to go on.
+/// All that is needed to go on, besides the states.
 #[derive(Serialize, Deserialize)]
 struct Saved {
-    name: String,
     courses: [Course; 2],
-    states: [Vec<u8>; 2],
     times: [Real; 2],
     n_substeps: [u64; 2],
 }
@@ -106,25 +103,17 @@ impl Run for Timed {
     fn save(&self) -> Vec<u8> {
         let [first, second] = &self.tests;
         let saved = Saved {
-            name: self.name.clone(),
             courses: [first.course.clone(), second.course.clone()],
-            states: [first, second].map(|it| saved_state::write(&it.system.state)),
             times: self.times,
             n_substeps: self.n_substeps,
         };
-        postcard::to_stdvec(&saved).expect("numbers and texts always serialise")
+        kept::pack(&self.name, &saved, [&first.system.state, &second.system.state])
     }
 
     fn resume(&mut self, bytes: &[u8]) -> Result<(), ResumeError> {
-        let refused = |reason: String| ResumeError { reason };
-        let saved: Saved =
-            postcard::from_bytes(bytes).map_err(|error| refused(error.to_string()))?;
-        if saved.name != self.name {
-            return Err(refused(format!("it is of case `{}`", saved.name)));
-        }
-        for ((test, course), state) in self.tests.iter_mut().zip(saved.courses).zip(&saved.states) {
-            let state = saved_state::read(state).map_err(|error| refused(error.to_string()))?;
-            take(test, course, state).map_err(refused)?;
+        let (saved, states): (Saved, [State; 2]) = kept::unpack(&self.name, bytes)?;
+        for ((test, course), state) in self.tests.iter_mut().zip(saved.courses).zip(states) {
+            take(test, course, state)?;
         }
         (self.times, self.n_substeps) = (saved.times, saved.n_substeps);
         Ok(())

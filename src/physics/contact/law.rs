@@ -29,7 +29,7 @@
 
 use crate::{
     base::{Real, Vec3},
-    scene::Material,
+    scene::{self, Material},
 };
 
 /// Constants of one pair of materials.
@@ -79,6 +79,26 @@ pub struct Surface {
     pub dissipation_time: Real,
     /// Tangential damping γ_t.
     pub tangential_damping: Real,
+}
+
+impl Surface {
+    /// Among the grains of a scene, and of grains with walls.
+    pub fn of_grains(grains: &scene::Grains) -> Self {
+        Self {
+            friction: grains.friction,
+            dissipation_time: grains.dissipation_time,
+            tangential_damping: grains.tangential_damping,
+        }
+    }
+
+    /// Of a scene's membrane with something, with which it has this friction.
+    pub fn of_membrane(membrane: &scene::Membrane, friction: Real) -> Self {
+        Self {
+            friction,
+            dissipation_time: membrane.dissipation_time,
+            tangential_damping: membrane.tangential_damping,
+        }
+    }
 }
 
 /// Where and how fast two bodies touch.

@@ -124,6 +124,12 @@ pub fn enclosed_volume(model: &Model, state: &State) -> Real {
     pressure::volume(&model.membrane.mesh, &state.membrane.positions)
 }
 
+/// A number of substeps, or of anything that is counted for long, as a real number.
+#[expect(clippy::cast_precision_loss, reason = "counts stay far below 2^53")]
+pub fn real_of(count: u64) -> Real {
+    count as Real
+}
+
 /// A count as a real number.
 #[expect(clippy::cast_precision_loss, reason = "counts stay far below 2^53")]
 pub fn real(count: usize) -> Real {

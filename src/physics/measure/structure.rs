@@ -14,7 +14,7 @@
 
 use std::f64::consts::PI;
 
-use super::{overlap::sphere_in_box, real};
+use super::{overlap::sphere_in_box, real, real_of};
 use crate::{
     base::{Real, Vec3},
     physics::{contact::grains::closest_image, state::Grains},
@@ -80,7 +80,7 @@ pub fn pair_distribution(positions: &[Vec3], region: &Region, bins: &Bins) -> Ve
     let density = real(n_centres) / region_volume(region);
     let shell =
         |k: usize| 4.0 / 3.0 * PI * bins.width.powi(3) * (real(k + 1).powi(3) - real(k).powi(3));
-    let g = |(k, &n): (usize, &u64)| count(n) / (real(n_centres.max(1)) * density * shell(k));
+    let g = |(k, &n): (usize, &u64)| real_of(n) / (real(n_centres.max(1)) * density * shell(k));
     counts.iter().enumerate().map(g).collect()
 }
 
@@ -101,7 +101,7 @@ pub fn cut_distribution(grains: &Grains, region: &Region, bins: &Bins) -> Vec<Re
     (0..bins.n_bins)
         .map(|k| {
             cut += changes[k];
-            let n = count(u64::try_from(cut).unwrap_or(0));
+            let n = real_of(u64::try_from(cut).unwrap_or(0));
             n / (real(n_centres.max(1)) * 4.0 * PI * (bins.middle(k) / mean).powi(2))
         })
         .collect()
@@ -151,10 +151,6 @@ fn region_volume(region: &Region) -> Real {
 )]
 fn index(value: Real) -> usize {
     value as usize
-}
-
-fn count(n: u64) -> Real {
-    real(usize::try_from(n).unwrap_or(usize::MAX))
 }
 
 #[cfg(test)]

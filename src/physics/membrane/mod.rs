@@ -22,7 +22,10 @@ use bridson_2003::Fold;
 use mesh::{Mesh, area_normal};
 use stretch::Spring;
 
-use crate::base::{Real, Vec3, parallel};
+use crate::{
+    base::{Real, Vec3, parallel},
+    scene,
+};
 
 /// What the sheet is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,6 +60,20 @@ pub enum SheetContact {
 pub const FREE: u32 = u32::MAX;
 /// The first wall as a holder.
 pub const CARRIER_ID: u32 = 0;
+
+impl Sheet {
+    /// That of a scene.
+    pub fn of(membrane: &scene::Membrane) -> Self {
+        Self {
+            thickness: membrane.thickness,
+            youngs_modulus: membrane.material.youngs_modulus,
+            density: membrane.material.density,
+            spring_damping: membrane.spring_damping,
+            bending_stiffness: membrane.bending_stiffness,
+            bending_damping: membrane.bending_damping,
+        }
+    }
+}
 
 /// The membrane as it stays during a run.
 #[derive(Clone, Debug)]

@@ -28,7 +28,7 @@ use crate::{
     physics::{
         Model, System,
         contact::law::PairLaw,
-        measure::{real, stress},
+        measure::{real, real_of, stress},
         neighbours::weigh_pairs,
     },
 };
@@ -307,10 +307,6 @@ pub fn mean_overlap(system: &System) -> Real {
         }
     }
     sum / real(n_contacts.max(1))
-}
-
-fn real_of(n: u64) -> Real {
-    real(usize::try_from(n).unwrap_or(usize::MAX))
 }
 
 #[cfg(test)]
