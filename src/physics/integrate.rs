@@ -10,10 +10,16 @@ use crate::base::{Real, Vec3, parallel};
 
 /// Moves grains and membrane on by one substep.
 pub fn advance(model: &Model, controls: &Controls, scratch: &mut Scratch, state: &mut State) {
-    let carried = carried_to(controls) - scratch.neighbours.carrier_position;
+    let to = carried_to(controls);
+    let carried = Carried {
+        step: to - state.carrier_position(),
+        since_build: to - scratch.neighbours.carrier_position,
+    };
     let grains = advance_grains(model, scratch, state, &carried);
     let vertices = advance_membrane(model, controls, scratch, state, &carried);
-    scratch.neighbours.displacement_squared_max = grains.max(vertices);
+    let lists = &mut scratch.neighbours;
+    lists.displacement_squared_max = grains[0].max(vertices[0]);
+    lists.travel += grains[1].sqrt() + vertices[1].sqrt();
     state.walls.clone_from(&controls.walls);
 }
 
@@ -22,8 +28,32 @@ fn carried_to(controls: &Controls) -> Vec3 {
     controls.walls.get(CARRIER).map_or_else(Vec3::zeros, |it| it.pose.translation.vector)
 }
 
-/// Returns the largest squared displacement since the lists were built [m²].
-fn advance_grains(model: &Model, scratch: &Scratch, state: &mut State, carried: &Vec3) -> Real {
+/// How far the carrier goes.
+struct Carried {
+    /// In this substep [m].
+    step: Vec3,
+    /// Since the lists were built [m].
+    since_build: Vec3,
+}
+
+impl Carried {
+    /// Squared displacements relative to the carrier [m²]: since the lists were built, and in this
+    /// substep.
+    #[inline(always)]
+    fn apart(&self, built: &Vec3, before: &Vec3, now: &Vec3) -> [Real; 2] {
+        let since_build = now - built - self.since_build;
+        let step = now - before - self.step;
+        [since_build.norm_squared(), step.norm_squared()]
+    }
+}
+
+/// Returns the largest squared displacements [m²].
+fn advance_grains(
+    model: &Model,
+    scratch: &Scratch,
+    state: &mut State,
+    carried: &Carried,
+) -> [Real; 2] {
     let dt = model.substep;
     let mut positions = std::mem::take(&mut state.grains.positions);
     let mut velocities = std::mem::take(&mut state.grains.velocities);
@@ -38,8 +68,9 @@ fn advance_grains(model: &Model, scratch: &Scratch, state: &mut State, carried: 
             let (mass, radius) = (grains.masses[i], grains.radii[i]);
             *velocity += force * (dt / mass) + model.gravity * dt;
             *spin += torque * (dt / (0.4 * mass * radius * radius));
+            let before = *position;
             *position += *velocity * dt;
-            (*position - scratch.neighbours.grain_positions[i] - carried).norm_squared()
+            carried.apart(&scratch.neighbours.grain_positions[i], &before, position)
         },
     );
     state.grains.positions = positions;
@@ -48,18 +79,19 @@ fn advance_grains(model: &Model, scratch: &Scratch, state: &mut State, carried: 
     furthest
 }
 
-/// Returns the largest squared displacement since the lists were built [m²].
+/// Returns the largest squared displacements [m²].
 fn advance_membrane(
     model: &Model,
     controls: &Controls,
     scratch: &Scratch,
     state: &mut State,
-    carried: &Vec3,
-) -> Real {
+    carried: &Carried,
+) -> [Real; 2] {
     let dt = model.substep;
     let MembraneState { positions, velocities } = &mut state.membrane;
     let mut unused = vec![(); positions.len()];
     parallel::largest_of_three(positions, velocities, &mut unused, |v, position, velocity, ()| {
+        let before = *position;
         let holder = model.membrane.holders[v];
         if holder != FREE {
             let wall = &controls.walls[holder as usize];
@@ -70,6 +102,6 @@ fn advance_membrane(
             *velocity += force * (dt / model.membrane.masses[v]) + model.gravity * dt;
             *position += *velocity * dt;
         }
-        (*position - scratch.neighbours.vertex_positions[v] - carried).norm_squared()
+        carried.apart(&scratch.neighbours.vertex_positions[v], &before, position)
     })
 }

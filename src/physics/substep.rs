@@ -20,11 +20,13 @@ pub fn substep(model: &Model, controls: &Controls, state: &mut State, scratch: &
 fn forces(model: &Model, controls: &Controls, state: &mut State, scratch: &mut Scratch) {
     let mut springs = std::mem::take(&mut state.springs);
     let state_now = &*state;
-    let lists = &scratch.neighbours;
-    grains::forces(model, state_now, &mut springs.pairs, lists, &mut scratch.pair_forces);
-    sheet::forces(model, state_now, lists, &mut springs.patches, &mut scratch.patch_forces);
-    spheres::forces(model, state_now, &mut springs.spheres, &mut scratch.sphere_forces);
-    walls::forces(model, state_now, &mut springs.walls, &mut scratch.wall_forces);
+    let Scratch { neighbours: lists, grain_rows, pair_forces, candidates, .. } = scratch;
+    let Scratch { patch_forces, sphere_forces, wall_forces, .. } = scratch;
+    grains::forces(model, state_now, &mut springs.pairs, lists, (grain_rows, pair_forces));
+    let of_sheet = (&**grain_rows, candidates, patch_forces);
+    sheet::forces(model, state_now, &mut springs.patches, lists, of_sheet);
+    spheres::forces(model, state_now, &mut springs.spheres, sphere_forces);
+    walls::forces(model, state_now, &mut springs.walls, lists, wall_forces);
     bodies::forces(model, controls, state_now, &mut springs.bodies, &mut scratch.sample_forces);
     membrane::forces(&model.membrane, &state_now.membrane, state_now.gauge, &mut scratch.membrane);
     state.springs = springs;

@@ -145,13 +145,13 @@ impl Contact<'_> {
         }
         let touch = Touch {
             overlap,
-            normal,
-            velocity: sheet.velocity - self.motion.twist.at(&arm),
+            normal: normal.into(),
+            velocity: (sheet.velocity - self.motion.twist.at(&arm)).into(),
             radius: self.body.contact_radius,
             mass: sheet.mass,
         };
         let law: &PairLaw = &self.body.law;
-        let force = law::force(law, &touch, self.dt, spring);
+        let force = law::single(law, &touch, self.dt, spring);
         SampleForce {
             force: normal * force.normal + force.tangential,
             normal,

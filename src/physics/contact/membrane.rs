@@ -14,6 +14,7 @@
 use arrayvec::ArrayVec;
 
 use super::{
+    candidates,
     law::{self, Touch},
     sharing::{self, Minimum, N_TOUCHED, Passes},
 };
@@ -21,8 +22,8 @@ use crate::{
     base::{Real, Vec3, parallel},
     physics::{
         Model,
-        membrane::contact_geometry::{Feature, closest_on_triangle},
-        scratch::{Neighbours, PatchForce, PatchForces},
+        membrane::contact_geometry::Feature,
+        scratch::{CandidateScratch, GrainRow, Neighbours, PatchForce, PatchForces},
         state::{N_PATCHES, Patch, Patches, State},
     },
 };
@@ -44,23 +45,23 @@ struct Touched {
     distance_squared: Real,
 }
 
-/// Forces of the membrane on all grains; carries their springs on by one substep.
+/// Forces of the membrane on all grains near it; carries their springs on by one substep.
 pub fn forces(
     model: &Model,
     state: &State,
-    lists: &Neighbours,
     springs: &mut [Patches],
-    patch_forces: &mut Vec<PatchForces>,
+    lists: &mut Neighbours,
+    (rows, candidates, patch_forces): (&[GrainRow], &mut CandidateScratch, &mut Vec<PatchForces>),
 ) {
     patch_forces.resize(springs.len(), PatchForces::NONE);
-    parallel::for_each_of_two(patch_forces, springs, |i, force, patches| {
-        let range = lists.triangle_starts[i] as usize..lists.triangle_starts[i + 1] as usize;
-        if range.is_empty() {
-            // Most grains are inside the packing: nothing but the counts is touched.
-            (force.n, patches.n) = (0, 0);
-        } else {
-            on_grain(model, state, i, &lists.triangles[range], patches, force);
-        }
+    if lists.sheet_grains.is_empty() {
+        return;
+    }
+    candidates::look(model, state, lists, rows, candidates);
+    let (lists, candidates) = (&*lists, &*candidates);
+    parallel::for_listed_of_two(&lists.sheet_grains, patch_forces, springs, |s, force, patches| {
+        let touched = touching(state, lists, candidates, s);
+        on_grain(model, state, lists.sheet_grains[s] as usize, &touched, patches, force);
     });
 }
 
@@ -68,20 +69,19 @@ fn on_grain(
     model: &Model,
     state: &State,
     i: usize,
-    candidates: &[u32],
+    touched: &[Touched],
     patches: &mut Patches,
     result: &mut PatchForces,
 ) {
-    let touched = touching(model, state, i, candidates);
     let mut minima = ArrayVec::<Minimum, N_PATCHES>::new();
     for (place, contact) in touched.iter().enumerate() {
-        if !minima.is_full() && is_local_minimum(model, contact, &touched) {
+        if !minima.is_full() && is_local_minimum(model, contact, touched) {
             minima.push(contact.minimum(place, state.grains.radii[i]));
         }
     }
     let mut shares = [1.0; N_PATCHES];
     if minima.len() > 1 {
-        let mut passes = passes(model, state, i, &touched);
+        let mut passes = passes(model, state, i, touched);
         shares = sharing::shares(&minima, &mut passes, state.grains.radii[i]);
     }
     let (before, n_before) = (patches.slots, patches.n);
@@ -94,7 +94,7 @@ fn on_grain(
         let spring = spring_of(&before[..n_before], &minimum.normal);
         let mut patch = Patch { spring, normal: minimum.normal };
         let (force, torque) = of_patch(model, state, i, (contact, minimum.overlap), &mut patch);
-        result.is_outside |= contact.is_outside(model, state, &touched);
+        result.is_outside |= contact.is_outside(model, state, touched);
         result.contacts[slot] =
             PatchForce { force: force.force * share, normal: force.normal * share, ..force };
         result.torque += torque * share;
@@ -129,29 +129,25 @@ fn passes(model: &Model, state: &State, i: usize, touched: &[Touched]) -> Passes
     passes
 }
 
-/// Triangles that grain `i` overlaps, deepest first.
+/// Triangles that the `s`-th grain near the sheet overlaps, deepest first.
 fn touching(
-    model: &Model,
     state: &State,
-    i: usize,
-    candidates: &[u32],
+    lists: &Neighbours,
+    candidates: &CandidateScratch,
+    s: usize,
 ) -> ArrayVec<Touched, N_TOUCHED> {
-    let (position, radius) = (state.grains.positions[i], state.grains.radii[i]);
+    let radius = state.grains.radii[lists.sheet_grains[s] as usize];
     let mut touched = ArrayVec::<Touched, N_TOUCHED>::new();
-    for &triangle in candidates {
-        let corners = model.membrane.mesh.triangles[triangle as usize]
-            .map(|vertex| &state.membrane.positions[vertex as usize]);
-        let closest = closest_on_triangle(&position, corners);
-        let from_membrane = position - closest.point;
-        let distance_squared = from_membrane.norm_squared();
+    for a in candidates.awake_starts[s]..candidates.awake_starts[s + 1] {
+        let [distance_squared, w0, w1, w2, x, y, z, feature] = candidates.found[a];
         if distance_squared >= radius * radius || distance_squared == 0.0 {
             continue;
         }
         let contact = Touched {
-            triangle,
-            feature: closest.feature,
-            weights: closest.weights,
-            from_membrane,
+            triangle: lists.triangles[candidates.awake[a] as usize],
+            feature: Feature::of_number(feature),
+            weights: [w0, w1, w2],
+            from_membrane: Vec3::new(x, y, z),
             distance_squared,
         };
         let is_deeper = |other: &Touched| distance_squared < other.distance_squared;
@@ -221,8 +217,14 @@ fn of_patch(
     // The contact point lies on the sheet, so that both sides have the same lever.
     let arm = -contact.from_membrane;
     let velocity = grains.velocities[i] + grains.spins[i].cross(&arm) - sheet_velocity;
-    let touch = Touch { overlap, normal: patch.normal, velocity, radius, mass };
-    let force = law::force(&model.membrane_law, &touch, model.substep, &mut patch.spring);
+    let touch = Touch {
+        overlap,
+        normal: patch.normal.into(),
+        velocity: velocity.into(),
+        radius,
+        mass,
+    };
+    let force = law::single(&model.membrane_law, &touch, model.substep, &mut patch.spring);
     let result = PatchForce {
         triangle: contact.triangle,
         weights: contact.weights,

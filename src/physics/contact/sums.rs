@@ -34,11 +34,13 @@ pub fn on_grain(grains: &Grains, scratch: &Scratch, i: usize) -> (Vec3, Vec3) {
             torque -= pair.couple * lever(pair);
         }
     }
-    let patches = &scratch.patch_forces[i];
-    for patch in &patches.contacts[..patches.n] {
-        force += patch.force;
+    if lists.triangle_starts[i] < lists.triangle_starts[i + 1] {
+        let patches = &scratch.patch_forces[i];
+        for patch in &patches.contacts[..patches.n] {
+            force += patch.force;
+        }
+        torque += patches.torque;
     }
-    torque += patches.torque;
     let spheres = lists.sphere_starts[i] as usize..lists.sphere_starts[i + 1] as usize;
     for sphere in &scratch.sphere_forces[spheres] {
         if sphere.overlap > 0.0 {
@@ -46,9 +48,9 @@ pub fn on_grain(grains: &Grains, scratch: &Scratch, i: usize) -> (Vec3, Vec3) {
             torque += sphere.torque;
         }
     }
-    // Not by positions: `integrate` has them out while it moves the grains.
-    let n_grains = grains.radii.len();
-    for wall in scratch.wall_forces.iter().skip(i).step_by(n_grains) {
+    let walls = lists.wall_starts[i] as usize..lists.wall_starts[i + 1] as usize;
+    for &place in &lists.walls[walls] {
+        let wall = &scratch.wall_forces[place as usize];
         if wall.normal > 0.0 {
             force += wall.force;
             torque += wall.arm.cross(&wall.force);
@@ -61,17 +63,16 @@ pub fn on_grain(grains: &Grains, scratch: &Scratch, i: usize) -> (Vec3, Vec3) {
 pub fn on_membrane(model: &Model, controls: &Controls, scratch: &mut Scratch) {
     let mesh = &model.membrane.mesh;
     let n_vertices = mesh.n_vertices();
-    let Scratch { vertex_forces, patch_forces, sphere_forces, .. } = scratch;
+    let Scratch { neighbours, vertex_forces, patch_forces, sphere_forces, .. } = scratch;
     let Scratch { sample_forces, body_wrenches, leaked, .. } = scratch;
     vertex_forces.clear();
     vertex_forces.resize(n_vertices, Vec3::zeros());
     for sphere in sphere_forces.iter().filter(|it| it.overlap > 0.0) {
         vertex_forces[sphere.vertex as usize] -= sphere.force;
     }
-    for (grain, patches) in patch_forces.iter().enumerate() {
-        if patches.n == 0 {
-            continue;
-        }
+    for &grain in &neighbours.sheet_grains {
+        let grain = grain as usize;
+        let patches = &patch_forces[grain];
         if patches.is_outside && leaked.is_none() {
             *leaked = Some(grain);
         }
@@ -107,7 +108,7 @@ pub fn on_membrane(model: &Model, controls: &Controls, scratch: &mut Scratch) {
 /// and weight less what accelerates them, and the pressure on the lids of the rims it holds.
 pub fn on_walls(model: &Model, controls: &Controls, state: &State, scratch: &mut Scratch) {
     let mesh = &model.membrane.mesh;
-    let Scratch { wall_wrenches, wall_forces, membrane, vertex_forces, .. } = scratch;
+    let Scratch { neighbours, wall_wrenches, wall_forces, membrane, vertex_forces, .. } = scratch;
     wall_wrenches.clear();
     wall_wrenches.resize(model.walls.len(), Wrench::zero());
     let mut add = |wall: usize, point: &Vec3, force: Vec3| {
@@ -116,7 +117,9 @@ pub fn on_walls(model: &Model, controls: &Controls, state: &State, scratch: &mut
         wall_wrenches[wall].torque += arm.cross(&force);
     };
     let n_grains = state.grains.len();
-    for (k, contact) in wall_forces.iter().enumerate() {
+    for &place in &neighbours.walls {
+        let k = place as usize;
+        let contact = &wall_forces[k];
         if contact.normal > 0.0 {
             let position = &state.grains.positions[k % n_grains];
             add(k / n_grains, &(position + contact.arm), -contact.force);
