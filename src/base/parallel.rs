@@ -279,7 +279,7 @@ pub fn for_each<T: Send>(out: &mut [T], write: impl Fn(usize, &mut T) + Sync) {
 }
 
 /// Parts of this many elements keep the widest registers full.
-const PART: usize = 64;
+pub const PART: usize = 64;
 
 /// `write(start, part of a, part of b)` for parts that cover two slices of the same length; they begin
 /// at multiples of `PART`.
@@ -342,26 +342,28 @@ pub fn for_listed_of_two<A: Send, B: Send>(
     });
 }
 
-/// `write(i, &mut a[i], &mut b[i], &mut c[i])` for every element of three slices of the same length;
-/// returns the largest of each of the non-negative numbers that it gives, or 0.
+/// `write(start, part of a, part of b, part of c)` for parts, of at most `PART` elements, that cover
+/// three slices of the same length; returns the largest of each of the non-negative numbers that it
+/// gives, or 0.
 pub fn largest_of_three<A: Send, B: Send, C: Send, const N: usize>(
     a: &mut [A],
     b: &mut [B],
     c: &mut [C],
-    write: impl Fn(usize, &mut A, &mut B, &mut C) -> [f64; N] + Sync,
+    write: impl Fn(usize, &mut [A], &mut [B], &mut [C]) -> [f64; N] + Sync,
 ) -> [f64; N] {
     // The bits of non-negative doubles are ordered like the numbers; NaN is larger than all.
     let largest = [const { AtomicU64::new(0) }; N];
     assert!(a.len() == b.len() && b.len() == c.len(), "the slices belong together");
     let n = a.len();
     let (a, b, c) = (Shared::new(a), Shared::new(b), Shared::new(c));
-    split(n, &|range| {
+    split(n.div_ceil(PART), &|parts| {
         let mut here = [0; N];
-        for i in range {
+        for part in parts {
+            let range = part * PART..n.min((part + 1) * PART);
             #[expect(unsafe_code, reason = "see `Shared`")]
-            // SAFETY: `split` gives out each index below `n` once, while all are borrowed.
-            let (a, b, c) = unsafe { (a.element(i), b.element(i), c.element(i)) };
-            for (here, found) in here.iter_mut().zip(write(i, a, b, c)) {
+            // SAFETY: `split` gives out each part once, while all are borrowed.
+            let (a, b, c) = unsafe { (a.part(&range), b.part(&range), c.part(&range)) };
+            for (here, found) in here.iter_mut().zip(write(range.start, a, b, c)) {
                 *here = found.to_bits().max(*here);
             }
         }
@@ -387,9 +389,9 @@ mod tests {
                     let mut b = vec![0_usize; n];
                     for_each(&mut a, |i, a| *a += i + 1);
                     let mut c = vec![(); n];
-                    let [largest] = largest_of_three(&mut a, &mut b, &mut c, |i, a, b, ()| {
-                        *b = *a;
-                        [f64::from(u32::try_from(i).unwrap())]
+                    let [largest] = largest_of_three(&mut a, &mut b, &mut c, |start, a, b, _| {
+                        b.copy_from_slice(a);
+                        [f64::from(u32::try_from(start + a.len() - 1).unwrap())]
                     });
                     assert!((0..n).all(|i| a[i] == i + 1 && b[i] == i + 1), "{n_threads} {n}");
                     let last = f64::from(u32::try_from(n.max(1) - 1).unwrap());

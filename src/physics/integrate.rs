@@ -3,10 +3,13 @@
 use super::{
     Controls, Model, Scratch, State,
     boundary::wall::CARRIER,
-    contact::sums,
+    contact::sums::{self, PairSums},
     membrane::{FREE, MembraneState},
 };
-use crate::base::{Real, Vec3, parallel};
+use crate::base::{
+    Real, Vec3, lanes,
+    parallel::{self, PART},
+};
 
 /// Moves grains and membrane on by one substep.
 pub fn advance(model: &Model, controls: &Controls, scratch: &mut Scratch, state: &mut State) {
@@ -37,13 +40,16 @@ struct Carried {
 }
 
 impl Carried {
-    /// Squared displacements relative to the carrier [m²]: since the lists were built, and in this
-    /// substep.
+    /// Squared displacements relative to the carrier [m²], since the lists were built and in this
+    /// substep, added to the largest ones. What is no number is the largest.
     #[inline(always)]
-    fn apart(&self, built: &Vec3, before: &Vec3, now: &Vec3) -> [Real; 2] {
-        let since_build = now - built - self.since_build;
-        let step = now - before - self.step;
-        [since_build.norm_squared(), step.norm_squared()]
+    fn apart(&self, built: &Vec3, before: &Vec3, now: &Vec3, furthest: &mut [Real; 2]) {
+        let since_build = (now - built - self.since_build).norm_squared();
+        let step = (now - before - self.step).norm_squared();
+        // The bits of non-negative doubles are ordered like the numbers.
+        for (furthest, new) in furthest.iter_mut().zip([since_build, step]) {
+            *furthest = Real::from_bits(furthest.to_bits().max(new.to_bits()));
+        }
     }
 }
 
@@ -63,14 +69,23 @@ fn advance_grains(
         &mut positions,
         &mut velocities,
         &mut spins,
-        |i, position, velocity, spin| {
-            let (force, torque) = sums::on_grain(grains, scratch, i);
-            let (mass, radius) = (grains.masses[i], grains.radii[i]);
-            *velocity += force * (dt / mass) + model.gravity * dt;
-            *spin += torque * (dt / (0.4 * mass * radius * radius));
-            let before = *position;
-            *position += *velocity * dt;
-            carried.apart(&scratch.neighbours.grain_positions[i], &before, position)
+        |start, positions, velocities, spins| {
+            let mut sums = [[0.0; 8]; PART];
+            let sums = &mut sums[..positions.len()];
+            lanes::widest(PairSums { scratch, radii: &grains.radii, first: start, sums });
+            let mut furthest = [0.0; 2];
+            for (k, of_pairs) in sums.iter().enumerate() {
+                let i = start + k;
+                let (force, torque) = sums::with_others(scratch, i, of_pairs);
+                let (mass, radius) = (grains.masses[i], grains.radii[i]);
+                let (before, velocity) = (positions[k], &mut velocities[k]);
+                *velocity += force * (dt / mass) + model.gravity * dt;
+                spins[k] += torque * (dt / (0.4 * mass * radius * radius));
+                positions[k] += *velocity * dt;
+                let built = &scratch.neighbours.grain_positions[i];
+                carried.apart(built, &before, &positions[k], &mut furthest);
+            }
+            furthest
         },
     );
     state.grains.positions = positions;
@@ -90,18 +105,23 @@ fn advance_membrane(
     let dt = model.substep;
     let MembraneState { positions, velocities } = &mut state.membrane;
     let mut unused = vec![(); positions.len()];
-    parallel::largest_of_three(positions, velocities, &mut unused, |v, position, velocity, ()| {
-        let before = *position;
-        let holder = model.membrane.holders[v];
-        if holder != FREE {
-            let wall = &controls.walls[holder as usize];
-            *position = sums::held_position(model, wall, v);
-            *velocity = sums::wall_velocity(wall, position);
-        } else {
-            let force = scratch.membrane.forces[v] + scratch.vertex_forces[v];
-            *velocity += force * (dt / model.membrane.masses[v]) + model.gravity * dt;
-            *position += *velocity * dt;
+    parallel::largest_of_three(positions, velocities, &mut unused, |start, positions, velocities, _| {
+        let mut furthest = [0.0; 2];
+        for (k, (position, velocity)) in positions.iter_mut().zip(velocities).enumerate() {
+            let (v, before) = (start + k, *position);
+            let holder = model.membrane.holders[v];
+            if holder != FREE {
+                let wall = &controls.walls[holder as usize];
+                *position = sums::held_position(model, wall, v);
+                *velocity = sums::wall_velocity(wall, position);
+            } else {
+                let force = scratch.membrane.forces[v] + scratch.vertex_forces[v];
+                *velocity += force * (dt / model.membrane.masses[v]) + model.gravity * dt;
+                *position += *velocity * dt;
+            }
+            let built = &scratch.neighbours.vertex_positions[v];
+            carried.apart(built, &before, position, &mut furthest);
         }
-        carried.apart(&scratch.neighbours.vertex_positions[v], &before, position)
+        furthest
     })
 }

@@ -2,38 +2,74 @@
 //! wall. Every sum has a fixed order.
 
 use crate::{
-    base::{Vec3, real::Wrench},
+    base::{
+        Real, Vec3,
+        lanes::{self, Kernel, Lanes},
+        real::Wrench,
+    },
     physics::{
         Controls, Model, Scratch,
         boundary::body::BodyMotion,
         membrane::{FREE, pressure},
-        scratch::PairForce,
         state::{Grains, State},
     },
 };
 
 /// Force [N] and torque [N m] of all contacts on grain `i`.
-#[inline]
 pub fn on_grain(grains: &Grains, scratch: &Scratch, i: usize) -> (Vec3, Vec3) {
+    let mut sum = [[0.0; 8]];
+    lanes::widest(PairSums { scratch, radii: &grains.radii, first: i, sums: &mut sum });
+    with_others(scratch, i, &sum[0])
+}
+
+/// Sums of the pairs of each grain from `first` on: force, torque, and two numbers without meaning.
+pub struct PairSums<'a> {
+    /// Where the forces are.
+    pub scratch: &'a Scratch,
+    /// Radii of all grains [m].
+    pub radii: &'a [Real],
+    /// The first grain.
+    pub first: usize,
+    /// One row per grain [N], [N m].
+    pub sums: &'a mut [[Real; 8]],
+}
+
+impl Kernel for PairSums<'_> {
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let lists = &self.scratch.neighbours;
+        let rows: &[[Real; 8]] = bytemuck::cast_slice(&self.scratch.pair_forces);
+        for (i, written) in (self.first..).zip(self.sums) {
+            let mut sum = [0.0; 8];
+            let radius = self.radii[i];
+            // A pair without contact has rows of zeros, which is cheaper than asking.
+            let first = lists.first_starts[i] as usize..lists.first_starts[i + 1] as usize;
+            for row in &rows[first] {
+                sum = with_row(sum, row, 1.0, radius);
+            }
+            let second = lists.second_starts[i] as usize..lists.second_starts[i + 1] as usize;
+            for &k in &lists.second_pairs[second] {
+                sum = with_row(sum, &rows[k as usize], -1.0, radius);
+            }
+            *written = sum;
+        }
+    }
+}
+
+/// Force and torque of a grain of `radius` [m] with a row of `PairForce` added.
+#[inline(always)]
+fn with_row(sum: [Real; 8], row: &[Real; 8], sign: Real, radius: Real) -> [Real; 8] {
+    let lever = row[6] / 2.0 - radius;
+    let factors = [sign, sign, sign, lever, lever, lever, 0.0, 0.0];
+    std::array::from_fn(|c| sum[c] + row[c] * factors[c])
+}
+
+/// What sheet, spheres and walls add to the sum of the pairs of grain `i`.
+#[inline(always)]
+pub fn with_others(scratch: &Scratch, i: usize, of_pairs: &[Real; 8]) -> (Vec3, Vec3) {
     let lists = &scratch.neighbours;
-    let radius = grains.radii[i];
-    let mut force = Vec3::zeros();
-    let mut torque = Vec3::zeros();
-    let lever = |pair: &PairForce| radius - pair.overlap / 2.0;
-    for k in lists.first_starts[i] as usize..lists.first_starts[i + 1] as usize {
-        let pair = &scratch.pair_forces[k];
-        if pair.overlap > 0.0 {
-            force += pair.force;
-            torque -= pair.couple * lever(pair);
-        }
-    }
-    for s in lists.second_starts[i] as usize..lists.second_starts[i + 1] as usize {
-        let pair = &scratch.pair_forces[lists.second_pairs[s] as usize];
-        if pair.overlap > 0.0 {
-            force -= pair.force;
-            torque -= pair.couple * lever(pair);
-        }
-    }
+    let mut force = Vec3::new(of_pairs[0], of_pairs[1], of_pairs[2]);
+    let mut torque = Vec3::new(of_pairs[3], of_pairs[4], of_pairs[5]);
     if lists.triangle_starts[i] < lists.triangle_starts[i + 1] {
         let patches = &scratch.patch_forces[i];
         for patch in &patches.contacts[..patches.n] {
