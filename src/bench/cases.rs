@@ -67,12 +67,14 @@ const fn flow(
 
 const ONE: [usize; 3] = [1, 1, 1];
 
-const fn gripper(name: &'static str, about: &'static str, case: &'static str, at: Moment) -> Case {
-    let limits = match at {
-        Moment::Free => Limits::BAG,
-        _ => Limits::GRIPPING,
-    };
-    let spot = Spot { experiment: "gripper", case, overrides: GRIPPER, moment: at };
+const fn gripper(
+    name: &'static str,
+    about: &'static str,
+    case: &'static str,
+    moment: Moment,
+    limits: Limits,
+) -> Case {
+    let spot = Spot { experiment: "gripper", case, overrides: GRIPPER, moment };
     let work = Work { n_warm: 200, n_steps: 1000 };
     Case { name, about, work, limits, kind: Kind::Experiment(spot) }
 }
@@ -115,27 +117,76 @@ pub static CASES: &[Case] = &[
         (20, 100),
     ),
     rest("grains_1m_rest", "27 x 37 500 grains", (37_500, [3, 3, 3]), (3, 10)),
-    gripper("gripper_5mpa_free", "4200 grains of 5 MPa, bag vented", SOFT, Moment::Free),
+    gripper(
+        "gripper_5mpa_free",
+        "4200 grains of 5 MPa, bag vented",
+        SOFT,
+        Moment::Free,
+        Limits::BAG,
+    ),
     gripper(
         "gripper_5mpa_jamming",
         "the same, half evacuated around a sphere",
         SOFT,
         Moment::Jamming,
+        Limits::GRIPPING_SOFT,
     ),
-    gripper("gripper_5mpa_holding", "the same, at full vacuum", SOFT, Moment::Holding),
-    gripper("gripper_100mpa_free", "4200 grains of 100 MPa, bag vented", FIRM, Moment::Free),
-    gripper("gripper_100mpa_jamming", "the same, half evacuated", FIRM, Moment::Jamming),
-    gripper("gripper_100mpa_holding", "the same, at full vacuum", FIRM, Moment::Holding),
-    gripper("gripper_10gpa_free", "4200 grains of 10 GPa, bag vented", HARD, Moment::Free),
-    gripper("gripper_10gpa_jamming", "the same, half evacuated", HARD, Moment::Jamming),
-    gripper("gripper_10gpa_holding", "the same, at full vacuum", HARD, Moment::Holding),
+    gripper(
+        "gripper_5mpa_holding",
+        "the same, at full vacuum",
+        SOFT,
+        Moment::Holding,
+        Limits::GRIPPING_SOFT,
+    ),
+    gripper(
+        "gripper_100mpa_free",
+        "4200 grains of 100 MPa, bag vented",
+        FIRM,
+        Moment::Free,
+        Limits::BAG,
+    ),
+    gripper(
+        "gripper_100mpa_jamming",
+        "the same, half evacuated around a sphere",
+        FIRM,
+        Moment::Jamming,
+        Limits::GRIPPING,
+    ),
+    gripper(
+        "gripper_100mpa_holding",
+        "the same, at full vacuum",
+        FIRM,
+        Moment::Holding,
+        Limits::GRIPPING,
+    ),
+    gripper(
+        "gripper_10gpa_free",
+        "4200 grains of 10 GPa, bag vented",
+        HARD,
+        Moment::Free,
+        Limits::BAG,
+    ),
+    gripper(
+        "gripper_10gpa_jamming",
+        "the same, half evacuated around a sphere",
+        HARD,
+        Moment::Jamming,
+        Limits::GRIPPING,
+    ),
+    gripper(
+        "gripper_10gpa_holding",
+        "the same, at full vacuum",
+        HARD,
+        Moment::Holding,
+        Limits::GRIPPING,
+    ),
     triaxial("triaxial_case1", "1716 grains, 1131 vertices, shearing", "case1_triangles_A"),
     triaxial("triaxial_case2", "4645 grains, 2214 vertices, shearing", "case2_triangles_A"),
     Case {
         name: "pick_and_lift",
         about: "the default scene from the first tick to the last, without ROS and recordings",
         work: Work { n_warm: 0, n_steps: 0 },
-        limits: Limits::BAG,
+        limits: Limits::LIFTED,
         kind: Kind::Lift,
     },
 ];

@@ -6,12 +6,13 @@ use super::{
     BenchError, Case, Figures, Options,
     figures::{Stage, median},
     memory,
-    soundness::Seen,
+    soundness::{Seen, check_lift},
 };
 use crate::{
     base::Real,
     cosim::compile::Compiled,
     node::{
+        judge::Judge,
         orders::Orders,
         pacer::Stopwatch,
         progress::Progress,
@@ -40,6 +41,8 @@ struct Lap {
     parts: [Real; 3],
     /// Wall and simulated time of each phase [s].
     phases: BTreeMap<String, [Real; 2]>,
+    /// What came of it.
+    judge: Judge,
     /// Sum over all ticks of the contacts between grains.
     n_contact_ticks: Real,
 }
@@ -82,7 +85,7 @@ fn lap(case: &Case, scene: &Scene, mut session: Session) -> Result<Lap, BenchErr
     let tick_s = std::time::Duration::from_nanos(scene.time.tick_ns).as_secs_f64();
     let mut seen = take::snapshot(&session, schedule.parts(0));
     let (mut parts, mut phases) = ([0.0; 3], BTreeMap::<String, [Real; 2]>::new());
-    let mut n_contact_ticks = 0.0;
+    let (mut judge, mut n_contact_ticks) = (Judge::default(), 0.0);
     let whole = Stopwatch::start();
     let mut watch = Stopwatch::start();
     while !orders.is_done() {
@@ -93,6 +96,7 @@ fn lap(case: &Case, scene: &Scene, mut session: Session) -> Result<Lap, BenchErr
             .map_err(|fault| BenchError::Diverged { case: case.name.to_owned(), fault })?;
         let ticked = watch.lap_s();
         seen = take::snapshot(&session, schedule.parts(seen.time_ns + scene.time.tick_ns));
+        judge.look(&seen, tick_s);
         n_contact_ticks += real(seen.jamming.n_grain_contacts);
         let taken = watch.lap_s();
         for (sum, time) in parts.iter_mut().zip([drained, ticked, taken]) {
@@ -103,7 +107,7 @@ fn lap(case: &Case, scene: &Scene, mut session: Session) -> Result<Lap, BenchErr
         phase[0] += drained + ticked + taken;
         phase[1] += tick_s;
     }
-    Ok(Lap { session, wall_s: whole.total_s(), parts, phases, n_contact_ticks })
+    Ok(Lap { session, wall_s: whole.total_s(), parts, phases, judge, n_contact_ticks })
 }
 
 fn figures(
@@ -116,6 +120,7 @@ fn figures(
     let coupled = last.session.coupled();
     let seen = Seen::of(&coupled.model, &coupled.state, &coupled.scratch);
     seen.check(&case.limits)
+        .and_then(|()| check_lift(&last.judge.verdict()))
         .map_err(|fault| BenchError::Unsound { case: case.name.to_owned(), fault })?;
     let mut times: Vec<Real> = laps.iter().map(|lap| lap.wall_s).collect();
     times.sort_by(Real::total_cmp);

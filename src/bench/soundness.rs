@@ -3,6 +3,7 @@
 
 use crate::{
     base::Real,
+    node::judge::Verdict,
     physics::{
         Model, Scratch, State,
         measure::{kinetic_energy, packing, real},
@@ -64,13 +65,18 @@ impl Limits {
         speed: [0.0, 0.05],
         others: [1, 100, 0],
     };
-    /// Under vacuum the softest grains overlap by a fifth of the radius.
+    /// The same on its way, under vacuum or vented after the object was set down.
+    pub(super) const LIFTED: Self = Self { overlap_ratio: 0.2, speed: [0.0, 0.5], ..Self::BAG };
+    /// Under vacuum, around an object.
     pub(super) const GRIPPING: Self = Self {
         contacts_per_grain: 2.0,
-        overlap_ratio: 0.35,
+        overlap_ratio: 0.15,
         speed: [0.0, 0.2],
         others: [1, 500, 10],
     };
+    /// By Hertz overlaps grow as (p/E)^(2/3): those of the softest grains are seven times as deep as those
+    /// of 100 MPa.
+    pub(super) const GRIPPING_SOFT: Self = Self { overlap_ratio: 0.6, ..Self::GRIPPING };
     /// Under 100 kPa between two plates.
     pub(super) const CONFINED: Self = Self {
         contacts_per_grain: 1.5,
@@ -136,6 +142,18 @@ impl Seen {
         at_least("speed of the grains [m/s]", self.speed, limits.speed[0])?;
         at_most("speed of the grains [m/s]", self.speed, limits.speed[1])
     }
+}
+
+/// Whether the object was held while the flange was.
+///
+/// # Errors
+/// If it was not.
+pub(super) fn check_lift(verdict: &Verdict) -> Result<(), Unsound> {
+    if verdict.is_held() {
+        return Ok(());
+    }
+    let found = verdict.hold_share_min;
+    unsound("share of the flange's rise that the object had", found, "a held object".to_owned())
 }
 
 fn unsound(what: &'static str, found: Real, expected: String) -> Result<(), Unsound> {
