@@ -23,6 +23,7 @@ pub fn advance(model: &Model, controls: &Controls, scratch: &mut Scratch, state:
     let lists = &mut scratch.neighbours;
     lists.displacement_squared_max = grains[0].max(vertices[0]);
     lists.travel += grains[1].sqrt() + vertices[1].sqrt();
+    lists.vertex_travel += vertices[1].sqrt();
     state.walls.clone_from(&controls.walls);
 }
 

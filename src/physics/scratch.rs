@@ -20,7 +20,8 @@ pub struct Scratch {
     pub sphere_forces: Vec<SphereForce>,
     /// What walls do to each grain, wall by wall; none but the listed ones touch. Written by `contact::walls`.
     pub wall_forces: Vec<WallForce>,
-    /// What bodies do to samples of the membrane. Written by `contact::bodies`.
+    /// What bodies do to samples of the membrane, body by body: all vertices, then all facets; none but the
+    /// listed ones touch. Written by `contact::bodies`.
     pub sample_forces: Vec<SampleForce>,
     /// Contact force on each vertex of the membrane [N]. Written by `contact::on_membrane`.
     pub vertex_forces: Vec<Vec3>,
@@ -92,6 +93,10 @@ pub struct Neighbours {
     /// Sum of the largest steps of any grain and any vertex since the last build, relative to the
     /// carrier [m]. Written by `integrate`.
     pub travel: Real,
+    /// Sum of the largest steps of any vertex, relative to the carrier [m]. Written by `integrate`.
+    pub vertex_travel: Real,
+    /// Samples of the membrane near bodies; they have a time of their own.
+    pub bodies: BodyLists,
     /// Contacts of grain i with vertex spheres are `sphere_starts[i] .. sphere_starts[i + 1]`.
     pub sphere_starts: Vec<u32>,
     /// Where the walls near grain i begin in `walls`.
@@ -110,6 +115,32 @@ pub struct Neighbours {
     pub displacement_squared_max: Real,
     /// How often the lists were built.
     pub n_builds: u64,
+}
+
+/// Samples of the membrane that bodies may touch, valid until one of both has moved by the skin.
+#[derive(Clone, Default)]
+pub struct BodyLists {
+    /// False before the first build.
+    pub is_built: bool,
+    /// By body.
+    pub near: Vec<NearSamples>,
+    /// The bodies at the last build.
+    pub bodies_at_build: Vec<BodyMotion>,
+    /// No near sample was further than this from the origin of each body [m].
+    pub extents: Vec<Real>,
+    /// Position of the carrier at the last build [m].
+    pub carrier_position: Vec3,
+    /// `Neighbours::vertex_travel` at the last build [m].
+    pub travel_at_build: Real,
+}
+
+/// Samples of the membrane near one body.
+#[derive(Clone, Default)]
+pub struct NearSamples {
+    /// Vertices, ascending.
+    pub vertices: Vec<u32>,
+    /// Facets, ascending.
+    pub facets: Vec<u32>,
 }
 
 /// Closest points of the candidate triangles that are awake.
@@ -233,7 +264,7 @@ pub struct SampleForce {
     pub normal: Vec3,
     /// Position of the sample [m].
     pub point: Vec3,
-    /// Overlap [m]; no contact if not positive.
+    /// Overlap [m]; no contact if not positive, and then a lower bound.
     pub overlap: Real,
 }
 

@@ -11,6 +11,7 @@ use crate::{
         Controls, Model, Scratch,
         boundary::body::BodyMotion,
         membrane::{FREE, pressure},
+        scratch::SampleForce,
         state::{Grains, State},
     },
 };
@@ -122,21 +123,29 @@ pub fn on_membrane(model: &Model, controls: &Controls, scratch: &mut Scratch) {
     let n_samples = n_vertices + mesh.triangles.len();
     body_wrenches.clear();
     body_wrenches.resize(model.bodies.len(), Wrench::zero());
-    for (s, sample) in sample_forces.iter().enumerate() {
-        if sample.overlap <= 0.0 {
-            continue;
-        }
-        let (body, sample_of_sheet) = (s / n_samples, s % n_samples);
-        if sample_of_sheet < n_vertices {
-            vertex_forces[sample_of_sheet] += sample.force;
-        } else {
-            for vertex in mesh.triangles[sample_of_sheet - n_vertices] {
-                vertex_forces[vertex as usize] += sample.force / 3.0;
+    for (body, near) in neighbours.bodies.near.iter().enumerate() {
+        let origin = controls.bodies[body].pose.translation.vector;
+        let samples = &sample_forces[body * n_samples..(body + 1) * n_samples];
+        let mut react = |sample: &SampleForce| {
+            body_wrenches[body].force -= sample.force;
+            body_wrenches[body].torque -= (sample.point - origin).cross(&sample.force);
+        };
+        for &v in &near.vertices {
+            let sample = &samples[v as usize];
+            if sample.overlap > 0.0 {
+                vertex_forces[v as usize] += sample.force;
+                react(sample);
             }
         }
-        let arm = sample.point - controls.bodies[body].pose.translation.vector;
-        body_wrenches[body].force -= sample.force;
-        body_wrenches[body].torque -= arm.cross(&sample.force);
+        for &t in &near.facets {
+            let sample = &samples[n_vertices + t as usize];
+            if sample.overlap > 0.0 {
+                for vertex in mesh.triangles[t as usize] {
+                    vertex_forces[vertex as usize] += sample.force / 3.0;
+                }
+                react(sample);
+            }
+        }
     }
 }
 

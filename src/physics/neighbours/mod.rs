@@ -1,8 +1,10 @@
 //! Who may touch whom: lists with a skin, built anew only when something has moved far enough.
 //!
 //! Distances are taken relative to the carrier, the first wall, so that carrying the whole gripper through the
-//! room costs no rebuild. History outlives rebuilds: pairs stay sorted, and springs move by merge.
+//! room costs no rebuild. Who moves grains, vertices or walls otherwise than `integrate` does, or puts
+//! other bodies in, sets `Neighbours::is_built` to false. History outlives rebuilds: pairs stay sorted, and springs move by merge.
 
+mod body_list;
 mod cell_grid;
 mod crossings;
 mod sphere_list;
@@ -11,14 +13,23 @@ mod verlet_list;
 mod wall_list;
 
 use super::{
-    Model, Scratch, State,
+    Controls, Model, Scratch, State,
     membrane::SheetContact,
     scratch::{Neighbours, PatchForces},
     state::Patches,
 };
 
 /// Builds the lists anew if they may have become incomplete.
-pub fn refresh(model: &Model, state: &mut State, scratch: &mut Scratch) {
+pub fn refresh(model: &Model, controls: &Controls, state: &mut State, scratch: &mut Scratch) {
+    let Scratch { neighbours: lists, sample_forces, .. } = scratch;
+    lists.bodies.is_built &= lists.is_built;
+    let of_bodies = (&mut lists.bodies, sample_forces);
+    body_list::refresh(model, controls, state, lists.vertex_travel, of_bodies);
+    refresh_grains(model, state, scratch);
+}
+
+/// The same for all that has to do with grains.
+fn refresh_grains(model: &Model, state: &mut State, scratch: &mut Scratch) {
     if is_complete(model, state, &scratch.neighbours) {
         return;
     }
