@@ -53,19 +53,27 @@ fn line_up(state: &State, vertices: &mut Vec<[Real; 4]>) {
 fn wake(lists: &Neighbours, scratch: &mut CandidateScratch) {
     let CandidateScratch { awake, awake_starts, .. } = scratch;
     awake.clear();
+    awake.resize(lists.triangles.len(), 0);
     awake_starts.clear();
     awake_starts.push(0);
+    let mut n_awake = 0;
+    // The grains with candidates, and these, follow each other in all lists.
+    let mut k = 0;
     for &grain in &lists.sheet_grains {
-        let i = grain as usize;
-        for k in lists.triangle_starts[i]..lists.triangle_starts[i + 1] {
-            // Written so that a travel that is no number wakes all.
-            let sleeps = lists.wake_at[k as usize] > lists.travel;
-            if !sleeps {
-                awake.push(k);
-            }
+        let end = lists.triangle_starts[grain as usize + 1];
+        for (place, wake_at) in (k..end).zip(&lists.wake_at[k as usize..end as usize]) {
+            awake[n_awake] = place;
+            // Without a branch, and so that a travel that is no number wakes all.
+            n_awake += usize::from(!is_more(*wake_at, lists.travel));
         }
-        awake_starts.push(awake.len());
+        k = end;
+        awake_starts.push(n_awake);
     }
+    awake.truncate(n_awake);
+}
+
+fn is_more(a: Real, b: Real) -> bool {
+    a > b
 }
 
 /// What is looked at.
