@@ -62,6 +62,8 @@ pub trait Lanes:
     fn from_rows_of_3(rows: &[[f64; 3]]) -> [Self; 3];
     /// Writes three columns as the first `N` rows of three.
     fn to_rows_of_3(columns: [Self; 3], rows: &mut [[f64; 3]]);
+    /// Writes four columns as the first `N` rows of four.
+    fn to_rows_of_4(columns: [Self; 4], rows: &mut [[f64; 4]]);
     /// Writes eight columns as the first `N` rows of eight.
     fn to_rows_of_8(columns: [Self; 8], rows: &mut [[f64; 8]]);
 }
