@@ -99,6 +99,9 @@ pub(crate) struct Bench {
     /// Time on the clock for which the laps of a case are repeated; there are always three
     #[arg(long, value_name = "S", default_value_t = 3.0, value_parser = seconds)]
     pub(crate) seconds: f64,
+    /// Runs LAMMPS, LIGGGHTS and YADE, whichever is installed, on the same packings in turns with ours
+    #[arg(long)]
+    pub(crate) peers: bool,
     /// Prints an array of cases, one a line, and nothing else
     #[arg(long)]
     pub(crate) json: bool,

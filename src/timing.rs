@@ -25,6 +25,7 @@ pub(crate) fn bench(args: &Bench) -> Result<ExitCode, Box<dyn Error>> {
         n_threads: args.n_threads(),
         seconds: args.seconds,
         cache: args.cache.clone().map_or_else(Cache::of_user, Cache::new),
+        with_peers: args.peers,
         is_quiet: args.json,
     };
     let cases = bench::chosen(&args.cases)?;

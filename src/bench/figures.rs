@@ -5,6 +5,7 @@ use std::{collections::BTreeMap, fmt::Write};
 use serde::{Deserialize, Serialize};
 
 use super::{
+    PeerFigures,
     laps::{Lap, Work},
     soundness::Seen,
 };
@@ -72,6 +73,10 @@ pub struct Figures {
     pub stages: Vec<Stage>,
     /// Real-time factor of each phase of a session.
     pub phases: BTreeMap<String, Real>,
+    /// Other codes on the same packing.
+    pub peers: Vec<PeerFigures>,
+    /// Other codes that are not installed, with the remedy.
+    pub peers_missing: Vec<String>,
 }
 
 /// The time of one stage.
@@ -173,6 +178,23 @@ impl Figures {
             let phases: Vec<String> =
                 self.phases.iter().map(|(name, factor)| format!("{name} {factor:.3}")).collect();
             writeln!(text, "  real-time factor by phase: {}", phases.join(", "))?;
+        }
+        for it in &self.peers {
+            writeln!(
+                text,
+                "  {:.2} x {}: {:.2} M contact-steps/s per core (spread {:.1} %), {:.0} contacts, kinetic \
+                 energy {:.3e} J; {}",
+                it.ratio,
+                it.peer,
+                it.contact_steps_per_s_per_core / 1e6,
+                100.0 * it.spread,
+                it.n_contacts,
+                it.kinetic_energy_j,
+                it.version
+            )?;
+        }
+        for line in &self.peers_missing {
+            writeln!(text, "  {line}")?;
         }
         let memory = self.peak_rss_bytes.map_or_else(
             || "memory unknown".to_owned(),

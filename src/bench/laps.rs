@@ -4,7 +4,9 @@ use std::collections::BTreeMap;
 
 use super::{
     BenchError, Case, Figures, Options,
+    cases::Kind,
     figures::Stage,
+    peers::Peers,
     prepare::{self, Subject},
     soundness::Seen,
 };
@@ -63,6 +65,18 @@ impl<'a> Course<'a> {
         Ok(Self { case, options, subject, pool, laps: Vec::new() })
     }
 
+    /// The other codes on the same packing, if they are wanted and it is one.
+    pub(super) fn peers(&self) -> Result<Option<Peers>, BenchError> {
+        let Kind::Grains(boxed) = &self.case.kind else { return Ok(None) };
+        if !self.options.with_peers {
+            return Ok(None);
+        }
+        let of_case = (self.case.work, &self.case.limits);
+        let peers = Peers::new(boxed, &self.subject.system, of_case, self.options.n_threads);
+        let fault = |fault| BenchError::Peer { case: self.case.name.to_owned(), fault };
+        peers.map(Some).map_err(fault)
+    }
+
     /// True when there are enough laps.
     pub(super) fn is_over(&self) -> bool {
         let measured: Real = self.laps.iter().map(|lap| lap.wall_s).sum();
@@ -98,7 +112,7 @@ impl<'a> Course<'a> {
     }
 
     /// What came out, with one more lap for the shares of the stages.
-    pub(super) fn figures(self) -> Result<Figures, BenchError> {
+    pub(super) fn figures(self, peers: Option<&Peers>) -> Result<Figures, BenchError> {
         let work = self.case.work;
         let mut times = vec![0.0; STAGES.len()];
         let (by_stages, end) =
@@ -113,6 +127,8 @@ impl<'a> Course<'a> {
             })
             .collect();
         let system = &self.subject.system;
+        let speeds = Figures::of_laps(&self.laps, work, self.options.n_threads);
+        let ours = speeds.contact_steps_per_s_per_core;
         Ok(Figures {
             case: self.case.name.to_owned(),
             n_grains: system.state.grains.len(),
@@ -127,7 +143,9 @@ impl<'a> Course<'a> {
             stages,
             phases: BTreeMap::new(),
             peak_rss_bytes: super::memory::peak(),
-            ..Figures::of_laps(&self.laps, work, self.options.n_threads)
+            peers: peers.map_or_else(Vec::new, |it| it.figures(ours)),
+            peers_missing: peers.map_or_else(Vec::new, |it| it.missing.clone()),
+            ..speeds
         }
         .with_speed_of_time()
         .seeing(&by_stages.seen))

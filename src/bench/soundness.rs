@@ -32,7 +32,7 @@ pub(super) struct Seen {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Limits {
     /// Contacts between grains, per grain, at least.
-    contacts_per_grain: Real,
+    pub(super) contacts_per_grain: Real,
     /// Largest overlap over the mean radius.
     overlap_ratio: Real,
     /// Speed of the grains, from and to [m/s].
