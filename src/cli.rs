@@ -105,6 +105,9 @@ pub(crate) struct Bench {
     /// Prints an array of cases, one a line, and nothing else
     #[arg(long)]
     pub(crate) json: bool,
+    /// Adds a row for each case to this CSV file, for example benches/results/desk.csv
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
     /// Keeps states to start from in this folder [default: ~/.cache/jamgrip]
     #[arg(long, value_name = "DIR")]
     pub(crate) cache: Option<PathBuf>,

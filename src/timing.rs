@@ -7,7 +7,7 @@ use std::{
 };
 
 use jamgrip::{
-    bench::{self, CASES, Options},
+    bench::{self, CASES, Options, sheet},
     node::cache::Cache,
 };
 
@@ -37,6 +37,10 @@ pub(crate) fn bench(args: &Bench) -> Result<ExitCode, Box<dyn Error>> {
         } else {
             write!(stdout, "{}", figures.to_text())?;
             stdout.flush()?;
+        }
+        if let Some(out) = &args.out {
+            // Row by row: an interrupted evening keeps what was measured.
+            sheet::add(out, &[figures])?;
         }
     }
     if args.json {

@@ -8,6 +8,7 @@ use super::{
     figures::Stage,
     peers::Peers,
     prepare::{self, Subject},
+    process,
     soundness::Seen,
 };
 use crate::{
@@ -37,6 +38,8 @@ pub(super) struct Work {
 pub(super) struct Lap {
     /// Time on the clock for the measured substeps [s].
     pub(super) wall_s: Real,
+    /// Processor time of all threads for them [s], if the system tells it.
+    pub(super) processor_s: Option<Real>,
     /// Contacts between grains, the mean of before and after.
     pub(super) n_contacts: Real,
     /// How often the lists were built.
@@ -61,7 +64,7 @@ impl<'a> Course<'a> {
     pub(super) fn new(case: &'a Case, options: &'a Options) -> Result<Self, BenchError> {
         let pool = parallel::pool(options.n_threads)?;
         let subject = prepare::subject(case, options, &pool)?;
-        super::memory::forget_peak();
+        process::forget_peak();
         Ok(Self { case, options, subject, pool, laps: Vec::new() })
     }
 
@@ -142,7 +145,7 @@ impl<'a> Course<'a> {
             n_lap_steps: work.n_steps,
             stages,
             phases: BTreeMap::new(),
-            peak_rss_bytes: super::memory::peak(),
+            peak_rss_bytes: process::peak(),
             peers: peers.map_or_else(Vec::new, |it| it.figures(ours)),
             peers_missing: peers.map_or_else(Vec::new, |it| it.missing.clone()),
             ..speeds
@@ -162,6 +165,7 @@ fn lap(subject: &Subject, work: Work, times: Option<&mut Vec<Real>>) -> (Lap, Sy
     }
     let before = look(&system);
     let n_builds = system.scratch.neighbours.n_builds;
+    let processor = process::processor_s();
     let mut watch = Stopwatch::start();
     if let Some(times) = times {
         for _ in 0..work.n_steps {
@@ -176,9 +180,11 @@ fn lap(subject: &Subject, work: Work, times: Option<&mut Vec<Real>>) -> (Lap, Sy
         }
     }
     let wall_s = watch.total_s();
+    let processor_s = process::processor_s().zip(processor).map(|(after, before)| after - before);
     let seen = look(&system);
     let lap = Lap {
         wall_s,
+        processor_s,
         n_contacts: 0.5 * (real(before.n_grain_contacts) + real(seen.n_grain_contacts)),
         n_builds: system.scratch.neighbours.n_builds - n_builds,
         digest: digest(&system),

@@ -10,10 +10,11 @@ mod cases; // what is measured
 pub mod figures; // what is told of a case
 mod laps; // stepping and timing
 mod lift; // a whole session
-mod memory; // how much of it
 mod packing; // grains in a box
 mod peers; // the same in other codes
 mod prepare; // states to start from
+mod process; // what the system tells
+pub mod sheet; // figures kept over time
 mod soundness; // is it worth measuring?
 
 pub use cases::{CASES, Case};
@@ -147,7 +148,7 @@ pub fn chosen(names: &[String]) -> Result<Vec<&'static Case>, BenchError> {
 /// # Errors
 /// If it cannot be started, or is not worth measuring.
 pub fn run(case: &Case, options: &Options) -> Result<Figures, BenchError> {
-    memory::forget_peak();
+    process::forget_peak();
     match &case.kind {
         cases::Kind::Lift => lift::run(case, options),
         cases::Kind::Grains(..) | cases::Kind::Experiment(..) => {

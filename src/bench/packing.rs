@@ -56,15 +56,15 @@ const SKIN_SHARE: Real = 0.25;
 /// other, then what is loose and falls on its neighbours.
 const DRAG: [Real; 2] = [0.98, 0.998];
 /// Substeps with each drag: of a grown box, of a box of copies, of an opened one.
-const N_REST: [[u64; 2]; 3] = [[1000, 3000], [200, 400], [1000, 1000]];
+const N_REST: [[u64; 2]; 3] = [[1000, 3000], [200, 400], [500, 4000]];
 /// Substeps of 10 us from tilting to the state that is measured.
-const N_FLOW: u64 = 3000;
+const N_FLOW: u64 = 2000;
 /// Height of the opened box over that of the closed one.
 const OPENED: Real = 1.5;
 /// Standard gravity [m/s²].
 const GRAVITY: Real = 9.81;
 /// Changes whenever the same box would be filled otherwise.
-const VERSION: u64 = 2;
+const VERSION: u64 = 3;
 
 /// Grains in a box.
 #[derive(Clone, Copy, Debug)]

@@ -61,8 +61,9 @@ mod tests {
     fn what_a_peer_says_is_read() {
         let lap = read(Tool::LammpsHistory, SAID).unwrap();
         assert_eq!(lap.version, "LAMMPS (22 Jul 2025 - Update 4)");
-        assert_eq!([lap.wall_s, lap.kinetic_energy], [0.5, 5.9e-7]);
-        assert_eq!(lap.n_contacts, [8637.0, 8647.0]);
+        let Lap { wall_s, n_contacts, kinetic_energy, .. } = lap;
+        let found = format!("{wall_s} {n_contacts:?} {kinetic_energy:e}");
+        assert_eq!(found, "0.5 [8637.0, 8647.0] 5.9e-7");
     }
 
     /// Every line that is missing or garbled is an error that shows what was said instead.

@@ -15,7 +15,7 @@ use std::{
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use super::{figures::median, laps::Work, packing::Boxed, soundness::Limits};
+use super::{figures::median, laps::Work, packing::Boxed, process::niceness, soundness::Limits};
 use crate::{
     base::Real,
     physics::{
@@ -182,14 +182,6 @@ impl Peers {
         }
         Ok(command)
     }
-}
-
-/// How nice this process is.
-fn niceness() -> i32 {
-    let stat = fs::read_to_string("/proc/self/stat").unwrap_or_default();
-    // The name of the program, in parentheses, may hold anything; the 17th word after it is meant.
-    let after = stat.rsplit_once(')').map_or("", |(_, after)| after);
-    after.split_whitespace().nth(16).and_then(|it| it.parse().ok()).unwrap_or(0)
 }
 
 /// A folder for the time of the runs.
