@@ -7,7 +7,7 @@ use std::{
 };
 
 use jamgrip::{
-    bench::{self, CASES, Options, sheet},
+    benchmarks::{self, CASES, Options, sheet},
     node::cache::Cache,
 };
 
@@ -28,10 +28,10 @@ pub(crate) fn bench(args: &Bench) -> Result<ExitCode, Box<dyn Error>> {
         with_peers: args.peers,
         is_quiet: args.json,
     };
-    let cases = bench::chosen(&args.cases)?;
+    let cases = benchmarks::chosen(&args.cases)?;
     let mut lines = Vec::new();
     for case in cases {
-        let figures = bench::run(case, &options)?;
+        let figures = benchmarks::run(case, &options)?;
         if args.json {
             lines.push(serde_json::to_string(&figures)?);
         } else {

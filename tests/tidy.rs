@@ -61,7 +61,7 @@ const DOORS: &[(&str, &[&str])] = &[
     ("comfy_table", &["node/summary.rs", "lab/table.rs"]),
     ("plotters", &["lab/plot.rs", "lab/axis.rs"]),
     ("maud", &["lab/report.rs"]),
-    ("csv", &["lab/folder.rs", "bench/sheet.rs"]),
+    ("csv", &["lab/folder.rs", "benchmarks/sheet.rs"]),
     ("ctrlc", &["node/shutdown.rs", "node/launch.rs"]),
     ("clap", &["src/cli.rs", "src/main.rs"]),
 ];

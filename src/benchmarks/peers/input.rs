@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use super::tool::Tool;
 use crate::{
     base::Real,
-    bench::{
+    benchmarks::{
         laps::Work,
         packing::{Boxed, MATERIAL, RESTITUTION, SUBSTEP, SURFACE},
     },

@@ -164,7 +164,7 @@ fn unsound(what: &'static str, found: Real, expected: String) -> Result<(), Unso
 mod tests {
     use super::*;
     use crate::{
-        bench::packing::{Boxed, Phase},
+        benchmarks::packing::{Boxed, Phase},
         physics::{System, boundary::wall::WallShape},
     };
 
