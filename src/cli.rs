@@ -99,9 +99,15 @@ pub(crate) struct Bench {
     /// Time on the clock for which the laps of a case are repeated; there are always three
     #[arg(long, value_name = "S", default_value_t = 3.0, value_parser = seconds)]
     pub(crate) seconds: f64,
+    /// Runs LAMMPS, LIGGGHTS and YADE, whichever is installed, on the same packings in turns with ours
+    #[arg(long)]
+    pub(crate) peers: bool,
     /// Prints an array of cases, one a line, and nothing else
     #[arg(long)]
     pub(crate) json: bool,
+    /// Adds a row for each case to this CSV file, for example benches/results/desk.csv
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
     /// Keeps states to start from in this folder [default: ~/.cache/jamgrip]
     #[arg(long, value_name = "DIR")]
     pub(crate) cache: Option<PathBuf>,

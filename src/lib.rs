@@ -16,4 +16,4 @@ pub mod sinks; // where snapshots go
 pub mod sources; // where commands come from
 pub mod node; // the running thing
 pub mod lab; // runs experiments: threads, files, reports
-pub mod bench; // how fast it is
+pub mod benchmarks; // how fast it is

@@ -13,7 +13,7 @@ use std::{
 use clap::Parser;
 use cli::{Action, Cli};
 use jamgrip::{
-    bench::BenchError,
+    benchmarks::BenchError,
     lab::fault::LabError,
     node::{
         cache::Cache,

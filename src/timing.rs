@@ -7,7 +7,7 @@ use std::{
 };
 
 use jamgrip::{
-    bench::{self, CASES, Options},
+    benchmarks::{self, CASES, Options, sheet},
     node::cache::Cache,
 };
 
@@ -25,17 +25,22 @@ pub(crate) fn bench(args: &Bench) -> Result<ExitCode, Box<dyn Error>> {
         n_threads: args.n_threads(),
         seconds: args.seconds,
         cache: args.cache.clone().map_or_else(Cache::of_user, Cache::new),
+        with_peers: args.peers,
         is_quiet: args.json,
     };
-    let cases = bench::chosen(&args.cases)?;
+    let cases = benchmarks::chosen(&args.cases)?;
     let mut lines = Vec::new();
     for case in cases {
-        let figures = bench::run(case, &options)?;
+        let figures = benchmarks::run(case, &options)?;
         if args.json {
             lines.push(serde_json::to_string(&figures)?);
         } else {
             write!(stdout, "{}", figures.to_text())?;
             stdout.flush()?;
+        }
+        if let Some(out) = &args.out {
+            // Row by row: an interrupted evening keeps what was measured.
+            sheet::add(out, &[figures])?;
         }
     }
     if args.json {

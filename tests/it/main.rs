@@ -3,6 +3,7 @@
 
 #[cfg(feature = "bag")]
 mod bags; // recordings, read back by independent libraries
+mod bench; // how fast it is told to be
 mod by_tick; // a made-up system whose numbers follow from its tick
 mod coarse; // a coarse gripper for tests of the physics
 mod commands; // commands from ROS 2 messages

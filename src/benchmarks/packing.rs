@@ -30,8 +30,11 @@ use crate::{
 /// The grains' material.
 pub(super) const MATERIAL: Material =
     Material { youngs_modulus: 1e8, poisson_ratio: 0.25, density: 2500.0 };
-/// Dissipation as of a restitution of about one half, the other codes' 0.5.
-const SURFACE: Surface = Surface { friction: 0.5, dissipation_time: 3e-5, tangential_damping: 0.3 };
+/// What the other codes call the dissipation.
+pub(super) const RESTITUTION: Real = 0.5;
+/// Dissipation as of a restitution of about one half.
+pub(super) const SURFACE: Surface =
+    Surface { friction: 0.5, dissipation_time: 3e-5, tangential_damping: 0.3 };
 /// Smallest and largest radius [m].
 const RADII: [Real; 2] = [1.8e-3, 2.2e-3];
 /// Solid fraction of the box at these radii; grains grow a little beyond or stay a little below.
@@ -53,15 +56,15 @@ const SKIN_SHARE: Real = 0.25;
 /// other, then what is loose and falls on its neighbours.
 const DRAG: [Real; 2] = [0.98, 0.998];
 /// Substeps with each drag: of a grown box, of a box of copies, of an opened one.
-const N_REST: [[u64; 2]; 3] = [[1000, 3000], [200, 400], [1000, 1000]];
+const N_REST: [[u64; 2]; 3] = [[1000, 3000], [200, 400], [500, 4000]];
 /// Substeps of 10 us from tilting to the state that is measured.
-const N_FLOW: u64 = 3000;
+const N_FLOW: u64 = 2000;
 /// Height of the opened box over that of the closed one.
-pub(super) const OPENED: Real = 1.5;
+const OPENED: Real = 1.5;
 /// Standard gravity [m/s²].
-pub(super) const GRAVITY: Real = 9.81;
+const GRAVITY: Real = 9.81;
 /// Changes whenever the same box would be filled otherwise.
-const VERSION: u64 = 2;
+const VERSION: u64 = 3;
 
 /// Grains in a box.
 #[derive(Clone, Copy, Debug)]

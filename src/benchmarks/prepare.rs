@@ -91,7 +91,7 @@ pub(super) fn subject(
         }
         Kind::Experiment(spot) => maker.experiment(spot),
         Kind::Lift => {
-            unreachable!("a session is no single system; `bench::run` takes it elsewhere")
+            unreachable!("a session is no single system; `benchmarks::run` takes it elsewhere")
         }
     }
 }
