@@ -83,7 +83,8 @@ pub fn launch(scene: &Scene, options: &Options) -> Result<Finished, RunError> {
     let encoder = Arc::new(Encoder::new(scene, &mesh.triangles, &mesh.positions));
     let sizes = Sizes { n_grains: scene.grains.count, n_vertices: mesh.n_vertices() };
     // Recording first: a folder that cannot be written is noticed before the bag is filled.
-    let (outlets, outside) = Doors { scene, encoder: &encoder, progress: &progress }.open(sizes)?;
+    let doors = Doors { scene, encoder: &encoder, progress: &progress, substep_s };
+    let (outlets, outside) = doors.open(sizes)?;
     let started = start::start(compiled, options.n_threads, &options.cache, &progress)?;
     let Started { mut session, origin } = started;
     let end_ns = end_ns(scene, options.duration);

@@ -82,7 +82,7 @@ def with_mcap(folder):
             },
             "compressions": sorted({chunk.compression for chunk in summary.chunk_indexes}),
             "attachments": {
-                attachment.name: attachment.data.decode()
+                attachment.name: attachment.data.decode(errors="replace")
                 for attachment in reader.iter_attachments()
             },
             "metadata": {record.name: record.metadata for record in reader.iter_metadata()},
