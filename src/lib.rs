@@ -17,4 +17,6 @@ pub mod bag; // what a recording is, written and read
 pub mod sinks; // where snapshots go
 pub mod sources; // where commands come from
 pub mod node; // the running thing
+#[cfg(feature = "bag")]
+pub mod replay; // recordings, run again
 pub mod lab; // runs experiments: threads, files, reports

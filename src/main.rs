@@ -1,6 +1,8 @@
 //! Command line to run.
 
 mod cli;
+#[cfg(feature = "bag")]
+mod recordings;
 mod trials;
 
 use std::{
@@ -33,6 +35,8 @@ fn main() -> ExitCode {
     env_logger::Builder::from_env(env_logger::Env::default().default_filter_or(LOG_FILTER)).init();
     let outcome = match cli.action {
         Action::Run(args) => run(&args),
+        #[cfg(feature = "bag")]
+        Action::Replay(args) => recordings::replay(&args),
         Action::Check(args) => check(&args),
         Action::Experiment(args) => trials::experiment(&args),
         Action::Validate(args) => trials::validate(&args),

@@ -8,6 +8,7 @@ pub mod chain; // the digest of every tick, each tied to all before it
 pub mod disk; // a file that can be completed on a full disk
 pub mod metadata; // what a recording says about itself
 pub mod reader; // records of a file, however damaged
+pub mod recording; // what is needed to run it again
 pub mod writer; // one file
 
 use std::{

@@ -206,15 +206,21 @@ impl<R: Read> Reader<R> {
         if !is_mcap {
             waiting.push_back(Item::Damage(Damage::NotMcap));
         }
+        let reader = Self::from_record(input, MAGIC.len() as u64, length);
+        Self { waiting, is_over: !is_mcap, ..reader }
+    }
+
+    /// Reads on from the record at `offset`, where `input` stands, in a file of `length` bytes.
+    pub fn from_record(input: R, offset: u64, length: u64) -> Self {
         Self {
             input,
             length,
-            offset: MAGIC.len() as u64,
+            offset,
             channels: BTreeMap::new(),
             schemas: BTreeMap::new(),
-            waiting,
+            waiting: VecDeque::new(),
             is_closed: false,
-            is_over: !is_mcap,
+            is_over: false,
         }
     }
 
