@@ -1,6 +1,6 @@
 //! The command line, as written by people.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, Parser, Subcommand};
 use jamgrip::{
@@ -37,10 +37,14 @@ pub(crate) struct Cli {
 pub(crate) enum Action {
     /// Runs a scene to its end
     Run(Run),
-    /// Runs a recording again
+    /// Plays a recording, proves it, or branches a new run off it
     #[cfg(feature = "bag")]
-    #[command(after_help = REPLAY_HELP)]
-    Replay(Replay),
+    #[command(after_help = crate::cli_bags::REPLAY_HELP)]
+    Replay(crate::cli_bags::Replay),
+    /// Looks into recordings, also those of others, and mends damaged ones
+    #[cfg(feature = "bag")]
+    #[command(subcommand)]
+    Bag(crate::cli_bags::Bag),
     /// Checks a scene and prints it with all defaults
     Check(SceneArgs),
     /// Runs an experiment and sets what it finds beside what its source shows
@@ -74,51 +78,6 @@ measured, pass, reason; also oracle_source, relation, experiment, wall_s, left_v
 is none is null.\n\n\
 Exit codes: 0 all rows pass, 1 something could not run (a case that did not come to its end is also a \
 red row), 2 the command line is wrong, 3 a row is red, 130 interrupted.";
-
-#[cfg(feature = "bag")]
-const REPLAY_HELP: &str = "\
---verify simulates again from the scene, the start and the commands in the recording and compares the \
-digest of every tick. With --json it ends with one line: ticks (simulated), first_difference (the first \
-tick whose digest differs, or null), real_time_factor, compared (digests), remarks.\n\n\
-Exit codes: 0 every digest is equal, 1 one differs or the recording cannot be run again, 2 the command \
-line is wrong, 130 interrupted.";
-
-/// A recording and what becomes of it.
-#[cfg(feature = "bag")]
-#[derive(Debug, Args)]
-pub(crate) struct Replay {
-    /// The recording: a rosbag2 folder, or an .mcap file
-    pub(crate) bag: PathBuf,
-    /// Simulates again and proves every tick's digest equal
-    #[arg(long)]
-    pub(crate) verify: bool,
-    /// Verifies from the last checkpoint before this simulated time
-    #[arg(long, value_name = "TIME", value_parser = time_or_zero)]
-    pub(crate) start: Option<f64>,
-    /// Ends at this simulated time
-    #[arg(long, value_name = "TIME", value_parser = time)]
-    pub(crate) end: Option<f64>,
-    /// With --verify, fills the bag again from scene and seed too, in place of the recorded start
-    #[arg(long, requires = "verify", conflicts_with = "start")]
-    pub(crate) settle: bool,
-    /// Shows no progress and ends with one line of JSON on standard output
-    #[arg(long)]
-    pub(crate) json: bool,
-    /// Solver threads; the result is the same for any number [default: all processors]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    threads: Option<u16>,
-    /// Keeps settled start states in this folder [default: ~/.cache/jamgrip]
-    #[arg(long, value_name = "DIR")]
-    pub(crate) cache: Option<PathBuf>,
-}
-
-#[cfg(feature = "bag")]
-impl Replay {
-    /// How many solver threads.
-    pub(crate) fn n_threads(&self) -> usize {
-        self.threads.map_or_else(n_processors, usize::from)
-    }
-}
 
 /// An experiment and how it is run.
 #[derive(Debug, Args)]
@@ -236,6 +195,10 @@ pub(crate) struct Run {
     /// Ends the run after this simulated time, for example 2s
     #[arg(long = "for", value_name = "TIME", value_parser = time)]
     pub(crate) duration: Option<f64>,
+    /// Takes all commands from this recording, a rosbag2 folder or an .mcap file, whoever made it
+    #[cfg(feature = "bag")]
+    #[arg(long, value_name = "BAG")]
+    pub(crate) commands: Option<PathBuf>,
     /// Solver threads; the result is the same for any number [default: all processors]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
@@ -271,11 +234,7 @@ impl Run {
         let chosen = flags.into_iter().filter(|(is_set, _)| *is_set);
         overrides.extend(chosen.map(|(_, text)| text.to_owned()));
         overrides.extend(self.seed.map(|seed| format!("seed={seed}")));
-        overrides.extend(self.bag.as_ref().map(|folder| {
-            // A JSON string is a YAML string, whatever stands in it.
-            let folder = serde_json::Value::from(folder.to_string_lossy());
-            format!("outputs.bag.folder={folder}")
-        }));
+        overrides.extend(self.bag.as_deref().map(bag_folder));
         overrides
     }
 
@@ -285,12 +244,21 @@ impl Run {
     }
 }
 
-fn time_or_zero(text: &str) -> Result<f64, String> {
+/// The change of a scene that records into a folder.
+pub(crate) fn bag_folder(folder: &Path) -> String {
+    // A JSON string is a YAML string, whatever stands in it.
+    let folder = serde_json::Value::from(folder.to_string_lossy());
+    format!("outputs.bag.folder={folder}")
+}
+
+/// A time of zero or more.
+pub(crate) fn time_or_zero(text: &str) -> Result<f64, String> {
     let seconds = jamgrip::scene::quantity::TIME.parse(text).map_err(|error| error.to_string())?;
     if 0.0 <= seconds { Ok(seconds) } else { Err("write a time such as 2s".to_owned()) }
 }
 
-fn time(text: &str) -> Result<f64, String> {
+/// A time above zero.
+pub(crate) fn time(text: &str) -> Result<f64, String> {
     let seconds = time_or_zero(text)?;
     if 0.0 < seconds { Ok(seconds) } else { Err("write a time above zero, such as 2s".to_owned()) }
 }

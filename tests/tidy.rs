@@ -56,7 +56,7 @@ const DOORS: &[(&str, &[&str])] = &[
     ("ros2_client", &["sinks/ros.rs", "sources/ros.rs"]),
     ("rustdds", &["sinks/ros.rs", "sources/ros.rs"]),
     ("iceoryx2", &["wire/rows.rs", "sinks/shm.rs"]),
-    ("mcap", &["bag/writer.rs", "bag/reader.rs", "bag/recover.rs"]),
+    ("mcap", &["bag/writer.rs", "bag/reader.rs", "bag/recover.rs", "bag/check.rs"]),
     ("zstd", &["bag/writer.rs", "bag/reader.rs"]),
     ("indicatif", &["node/progress.rs", "lab/board.rs"]),
     ("comfy_table", &["node/summary.rs", "lab/table.rs"]),
@@ -64,7 +64,7 @@ const DOORS: &[(&str, &[&str])] = &[
     ("maud", &["lab/report.rs"]),
     ("csv", &["lab/folder.rs"]),
     ("ctrlc", &["node/shutdown.rs", "node/launch.rs"]),
-    ("clap", &["src/cli.rs", "src/main.rs"]),
+    ("clap", &["src/cli.rs", "src/cli_bags.rs", "src/main.rs"]),
 ];
 
 #[test]

@@ -163,3 +163,60 @@ pub fn qos_profiles(qos: Qos) -> String {
 fn indented(n_spaces: usize, text: &str) -> String {
     text.lines().map(|line| format!("{}{line}\n", " ".repeat(n_spaces))).collect()
 }
+
+/// Qualities of service in the words of version 9. Recordings of other makers may have the numbers
+/// of older versions; what is no list gives nothing.
+pub fn qos_in_words(text: &str) -> String {
+    if !text.trim_start().starts_with('-') {
+        return String::new();
+    }
+    let in_words = |line: &str| {
+        let Some((key, value)) = line.split_once(": ") else { return format!("{line}\n") };
+        let word = match value.trim().parse() {
+            Ok(number) => word(key.trim_start_matches(['-', ' ']), number),
+            Err(_) => None,
+        };
+        format!("{key}: {}\n", word.unwrap_or(value))
+    };
+    text.lines().map(in_words).collect()
+}
+
+/// The word for a number of rmw's enumerations.
+fn word(key: &str, number: usize) -> Option<&'static str> {
+    let words: &[&str] = match key {
+        "history" => &["system_default", "keep_last", "keep_all", "unknown"],
+        "reliability" => {
+            &["system_default", "reliable", "best_effort", "unknown", "best_available"]
+        }
+        "durability" => {
+            &["system_default", "transient_local", "volatile", "unknown", "best_available"]
+        }
+        "liveliness" => &[
+            "system_default",
+            "automatic",
+            "manual_by_node",
+            "manual_by_topic",
+            "unknown",
+            "best_available",
+        ],
+        _ => return None,
+    };
+    words.get(number).copied()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Oracle: rmw/types.h, where the enumerations are defined.
+    #[test]
+    fn numbers_of_older_versions_become_words() {
+        let old = "- history: 3\n  depth: 0\n  reliability: 1\n  durability: 2\n  liveliness: 1\n";
+        let new = "- history: unknown\n  depth: 0\n  reliability: reliable\n  \
+                   durability: volatile\n  liveliness: automatic\n";
+        assert_eq!(qos_in_words(old), new);
+        assert_eq!(qos_in_words(new), new);
+        assert_eq!(qos_in_words(""), "");
+        assert_eq!(qos_in_words("{}"), "");
+    }
+}

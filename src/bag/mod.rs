@@ -5,10 +5,13 @@
 //! and, now and then, all that is needed to go on, make it more than a film: it can be run again.
 
 pub mod chain; // the digest of every tick, each tied to all before it
+pub mod check; // does all that it says agree with what is in it?
 pub mod disk; // a file that can be completed on a full disk
+pub mod info; // what is in it, counted
 pub mod metadata; // what a recording says about itself
 pub mod reader; // records of a file, however damaged
 pub mod recording; // what is needed to run it again
+pub mod recover; // what can be saved of a damaged one
 pub mod writer; // one file
 
 use std::{

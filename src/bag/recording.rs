@@ -126,6 +126,18 @@ impl Recording {
     /// If a file cannot be opened.
     pub fn course(&self, topics: &[Topic], tick_ns: u64) -> io::Result<Course> {
         let inputs = topics.iter().filter(|it| it.is_input).map(|it| it.name.clone()).collect();
+        self.read_course(Inputs::Named(inputs), tick_ns)
+    }
+
+    /// As `course`, with the inputs told by their names alone: for those who do not read the scene.
+    ///
+    /// # Errors
+    /// If a file cannot be opened.
+    pub fn course_of_all(&self, tick_ns: u64) -> io::Result<Course> {
+        self.read_course(Inputs::ByName, tick_ns)
+    }
+
+    fn read_course(&self, inputs: Inputs, tick_ns: u64) -> io::Result<Course> {
         let mut clerk = Clerk {
             inputs,
             tick_ns,
@@ -178,9 +190,26 @@ impl Place {
     }
 }
 
+/// Which topics carry commands.
+enum Inputs {
+    /// These.
+    Named(Vec<String>),
+    /// Those of our node whose names say so.
+    ByName,
+}
+
+impl Inputs {
+    fn contains(&self, topic: &str) -> bool {
+        match self {
+            Self::Named(names) => names.iter().any(|it| it == topic),
+            Self::ByName => topic.starts_with(NODE) && topic.ends_with("_cmd"),
+        }
+    }
+}
+
 /// Notes what is read.
 struct Clerk {
-    inputs: Vec<String>,
+    inputs: Inputs,
     tick_ns: u64,
     links: String,
     statistics: String,

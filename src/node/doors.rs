@@ -37,6 +37,9 @@ pub(super) struct Doors<'a> {
     /// Length of a substep [s].
     #[cfg_attr(not(feature = "bag"), expect(dead_code, reason = "only recordings tell it"))]
     pub(super) substep_s: f64,
+    /// What the recording says of the run besides what it always says.
+    #[cfg_attr(not(feature = "bag"), expect(dead_code, reason = "only recordings tell it"))]
+    pub(super) facts: &'a [(&'static str, String)],
 }
 
 /// Those who may command from outside.
@@ -118,7 +121,7 @@ impl Doors<'_> {
             split_bytes: bag.split_size.map(|mebibytes| mebibytes << 20),
             split_ns: bag.split_duration.map(|it| u64::try_from(whole_ns(it)).unwrap_or(u64::MAX)),
         };
-        let facts = vec![
+        let mut facts = vec![
             ("seed", self.scene.seed.to_string()),
             ("version", env!("CARGO_PKG_VERSION").to_owned()),
             ("commit", option_env!("JAMGRIP_COMMIT").unwrap_or("unknown").to_owned()),
@@ -127,6 +130,7 @@ impl Doors<'_> {
             ("substep_s", format!("{:e}", self.substep_s)),
             ("machine", format!("{} {}", std::env::consts::OS, std::env::consts::ARCH)),
         ];
+        facts.extend_from_slice(self.facts);
         let scene_text = crate::scene::to_yaml(self.scene);
         crate::bag::Subject { scene_text, scene_files: self.scene_files(), facts, format }
     }

@@ -99,9 +99,9 @@ pub struct Report<Fault> {
 pub fn run<P: Plant>(plant: &mut P, crew: &mut Crew) -> Report<P::Fault> {
     let mut seen = Arc::new(Packet::new(plant.snapshot(Parts::ALL), None));
     crew.wait_for_orders(plant, &seen);
-    let mut checkpoints: Vec<_> =
-        crew.checkpoint(plant, seen.snapshot.time_ns).into_iter().collect();
-    let mut pacer = Pacer::start(crew.is_real_time);
+    // The start is kept whatever the rate, at whatever time it is.
+    let mut checkpoints: Vec<_> = crew.checkpoint(plant, true).into_iter().collect();
+    let mut pacer = Pacer::start_at(seen.snapshot.time_ns, crew.is_real_time);
     let ending = loop {
         if let Some(ending) = crew.ending(&seen.snapshot) {
             break Ok(ending);
@@ -113,7 +113,8 @@ pub fn run<P: Plant>(plant: &mut P, crew: &mut Crew) -> Report<P::Fault> {
         let time_ns = seen.snapshot.time_ns + crew.tick_ns;
         let snapshot = plant.snapshot(crew.schedule.parts(time_ns)); // a copy
         pacer.wait_until(time_ns); // the only clock
-        checkpoints.extend(crew.checkpoint(plant, time_ns));
+        let is_due = crew.schedule.checkpoint(time_ns);
+        checkpoints.extend(crew.checkpoint(plant, is_due));
         let packet = crew.pack(snapshot, &pacer);
         seen = Arc::new(packet.with_checkpoints(mem::take(&mut checkpoints)));
         crew.outlets.publish(&plant.view(&seen.snapshot), &seen); // never fails the run
@@ -142,9 +143,8 @@ impl Crew {
     }
 
     /// All that is needed to go on, if it is due and someone keeps it.
-    fn checkpoint<P: Plant>(&self, plant: &P, time_ns: u64) -> Option<Checkpoint> {
-        let is_kept = self.outlets.bag.is_some() && self.schedule.checkpoint(time_ns);
-        if is_kept { plant.checkpoint() } else { None }
+    fn checkpoint<P: Plant>(&self, plant: &P, is_due: bool) -> Option<Checkpoint> {
+        if is_due && self.outlets.bag.is_some() { plant.checkpoint() } else { None }
     }
 
     fn ending(&mut self, seen: &Snapshot) -> Option<Ending> {

@@ -36,11 +36,9 @@ impl Schedule {
         }
     }
 
-    /// True if all that is needed to go on is to be kept at `time_ns`: always at the start, then at
-    /// multiples of the period.
+    /// True if all that is needed to go on is to be kept at `time_ns`, besides the start.
     pub fn checkpoint(&self, time_ns: u64) -> bool {
-        let is_due = |(rate, tick_ns)| due::is_due(rate, time_ns, tick_ns);
-        time_ns == 0 || self.checkpoints.is_some_and(is_due)
+        self.checkpoints.is_some_and(|(rate, tick_ns)| due::is_due(rate, time_ns, tick_ns))
     }
 
     /// True if statistics are due at `time_ns`.

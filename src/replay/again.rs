@@ -11,7 +11,6 @@ use crate::{
         NotABag,
         recording::{Course, Order, Recording},
     },
-    command::Command,
     cosim::{
         compile::{CompileError, Compiled},
         saved_state::SavedStateError,
@@ -20,6 +19,7 @@ use crate::{
     physics::health::Diverged,
     scene::{self, Scene, SceneError},
     session::Session,
+    sources::bag::Script,
     wire::{
         from_ros::{CommandCodec, NotACommand},
         topics::topics,
@@ -77,6 +77,14 @@ pub enum ReplayError {
         version: String,
         /// What is wrong with it.
         fault: SavedStateError,
+    },
+    /// The run did not begin at the scene's start, and where it began was not kept.
+    #[error("{}: it begins at tick {tick}, but no checkpoint of that start is in it", path.display())]
+    NoStart {
+        /// The recording.
+        path: PathBuf,
+        /// Its first tick.
+        tick: u64,
     },
     /// A recorded command cannot be read.
     #[error("command in tick {tick}: {fault}")]
@@ -171,30 +179,7 @@ impl Again {
             let command = command.map_err(|fault| ReplayError::Command { tick: *tick, fault })?;
             commands.push((*tick, command));
         }
-        // Sorting keeps the order within a tick.
-        commands.sort_by_key(|(tick, _)| *tick);
-        Ok(Script { commands, next: 0 })
-    }
-}
-
-/// Commands, each with the tick in which it took effect.
-#[derive(Clone, Debug)]
-pub struct Script {
-    commands: Vec<(u64, Command)>,
-    next: usize,
-}
-
-impl Script {
-    /// The commands of a tick. Ticks are asked for in ascending order; what lies before is skipped.
-    pub fn of(&mut self, tick: u64) -> Vec<Command> {
-        let is_before = |it: &Self| it.commands.get(it.next).is_some_and(|(at, _)| *at < tick);
-        while is_before(self) {
-            self.next += 1;
-        }
-        let of_tick = self.commands[self.next..].iter().take_while(|(at, _)| *at == tick);
-        let of_tick: Vec<_> = of_tick.map(|(_, command)| command.clone()).collect();
-        self.next += of_tick.len();
-        of_tick
+        Ok(Script::new(commands))
     }
 }
 

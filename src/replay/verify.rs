@@ -145,11 +145,16 @@ fn session(
     options: &Options<'_>,
     verdict: &mut Verdict,
 ) -> Result<Session, ReplayError> {
-    let tick = options.from_ns / again.scene.time.tick_ns;
+    // A run that branched off another begins later than at zero.
+    let first = again.course.digests.first().map_or(0, |(tick, _)| *tick);
+    let tick = first.max(options.from_ns / again.scene.time.tick_ns);
     if !options.settles
         && let Some(session) = again.session_before(tick, &again.scene, options.n_threads)?
     {
         return Ok(session);
+    }
+    if again.course.is_every_tick && 1 < first {
+        return Err(ReplayError::NoStart { path: again.path.clone(), tick: first });
     }
     let compiled = Compiled::new(&again.scene, options.n_threads)?;
     if options.settles {

@@ -5,6 +5,7 @@
 //! with their units and limits, `check` joins them; all faults come at once. `print` goes back.
 
 pub mod fault; // what can be wrong
+pub mod plain; // YAML that is no scene
 pub mod print; // scene to text
 pub mod quantity; // "2 mm"
 pub mod text; // text to scene

@@ -214,10 +214,9 @@ impl Bag {
         if self.chain.tick().is_none() && self.n_sent.iter().all(|n| *n == 0) {
             encoder.latched(begin_ns).iter().try_for_each(|message| self.put(message))?;
         }
-        for checkpoint in &packet.checkpoints {
-            if checkpoint.tick.0 == 0 {
-                self.link(0, 0, checkpoint.digest)?;
-            }
+        // The start's checkpoint comes with the first packet: its digest is the first link.
+        for checkpoint in packet.checkpoints.iter().filter(|it| it.tick < snapshot.tick) {
+            self.link(checkpoint.tick.0, checkpoint.time_ns, checkpoint.digest)?;
         }
         for record in &snapshot.commands {
             let message = encoder.commands().encode(&record.command, begin_ns);

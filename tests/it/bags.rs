@@ -5,6 +5,7 @@ use std::{
 };
 
 use jamgrip::{
+    scene::BagCompression,
     sinks::{
         Sink,
         bag::{Bag, BagError, BagReport, Format, Subject},
@@ -291,4 +292,53 @@ fn a_killed_recording_keeps_what_was_flushed() {
     // Oracle: what the recording reported when it flushed.
     assert_eq!(n_found, n_reported);
     assert!(300 < n_found);
+}
+
+/// Oracle: the number of ticks over the length of a file; two independent libraries read all files,
+/// and what late readers get is there from each file's beginning.
+#[test]
+fn a_long_recording_is_split_and_every_file_stands_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, format, n_files) in [
+        ("by_time", Format { split_ns: Some(250_000_000), ..Format::default() }, 4),
+        ("by_size", Format { split_bytes: Some(1), ..Format::default() }, 0),
+        ("lz4", Format { compression: BagCompression::Lz4, ..Format::default() }, 1),
+        ("none", Format { compression: BagCompression::Uncompressed, ..Format::default() }, 1),
+    ] {
+        let place = folder.path().join(name);
+        let mut bag =
+            Bag::create(&place, synthetic::encoder(), Subject { format, ..subject() }).unwrap();
+        for tick in 1..=1000 {
+            bag.write(&synthetic::packet(tick)).unwrap();
+            if tick == 100 {
+                bag.idle().unwrap();
+            }
+            if name == "by_size" && tick == 5 {
+                break;
+            }
+        }
+        bag.close().unwrap();
+        let read = read_back(&place);
+        let n_found = read["mcap"]["files"].as_u64().unwrap();
+        assert!(n_found == n_files || n_files == 0, "{name}: {n_found} files");
+        let counts = &read["mcap"]["counts"];
+        let n_ticks = if name == "by_size" { 5 } else { 1000 };
+        assert_eq!(counts["/jamgrip/state_digest"], n_ticks, "{name}");
+        assert_eq!(counts["/tf_static"].as_u64(), Some(n_found), "{name}: repeated in each file");
+        assert_eq!(counts["/jamgrip/membrane/mesh"].as_u64(), Some(n_found), "{name}");
+        for first in read["mcap"]["first_topics"].as_array().unwrap() {
+            let first: Vec<&str> =
+                first.as_array().unwrap().iter().filter_map(Value::as_str).collect();
+            assert!(first.contains(&"/tf_static"), "{name}: {first:?}");
+            assert!(first.contains(&"/jamgrip/membrane/mesh"), "{name}: {first:?}");
+        }
+        let expected = match name {
+            "lz4" => "lz4",
+            "none" => "",
+            _ => "zstd",
+        };
+        assert_eq!(read["mcap"]["compressions"], serde_json::json!([expected]), "{name}");
+        let findings = jamgrip::bag::check::check(&place).unwrap();
+        assert!(findings.is_empty(), "{name}: {findings:?}");
+    }
 }
