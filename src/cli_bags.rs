@@ -119,6 +119,14 @@ pub(crate) enum Bag {
     Info(Look),
     /// Checks that a recording is whole and agrees with itself; exit code 1 if not
     Check(Look),
+    /// Draws force, pressure, heights and events over time, as a page of HTML
+    Plot {
+        /// The recording: a rosbag2 folder, or an .mcap file
+        bag: PathBuf,
+        /// Where to write the page [default: report.html in the folder, or beside the file]
+        #[arg(long, short, value_name = "FILE")]
+        output: Option<PathBuf>,
+    },
     /// Saves what can be saved of a damaged recording, as a whole one beside it
     Recover {
         /// The recording: a rosbag2 folder, or an .mcap file

@@ -11,6 +11,7 @@ use std::{
 
 use jamgrip::{
     bag::{check, info::Info, recover},
+    lab::bag_page,
     node::{
         cache::Cache,
         launch::{Finished, Options, launch_by},
@@ -49,6 +50,7 @@ pub(crate) fn bag(action: &Bag) -> Result<ExitCode, Box<dyn Error>> {
     match action {
         Bag::Info(look) => info(look),
         Bag::Check(look) => check(look),
+        Bag::Plot { bag, output } => plot(bag, output.as_deref()),
         Bag::Recover { bag, output } => recover(bag, output.as_deref()),
     }
 }
@@ -254,6 +256,20 @@ fn check(look: &Look) -> Result<ExitCode, Box<dyn Error>> {
         writeln!(stdout, "{n_errors} errors, {} notes", findings.len() - n_errors)?;
     }
     Ok(if n_errors == 0 { ExitCode::SUCCESS } else { ExitCode::from(FAILED) })
+}
+
+fn plot(path: &Path, output: Option<&Path>) -> Result<ExitCode, Box<dyn Error>> {
+    let beside = || match path.is_dir() {
+        true => path.join("report.html"),
+        false => path.with_extension("html"),
+    };
+    let output = output.map_or_else(beside, Path::to_owned);
+    let page = bag_page::page(path)?;
+    let fault =
+        |error| format!("{}: {error}; choose another place with --output", output.display());
+    std::fs::write(&output, page).map_err(fault)?;
+    writeln!(io::stdout().lock(), "{}", output.display())?;
+    Ok(ExitCode::SUCCESS)
 }
 
 fn recover(path: &Path, output: Option<&Path>) -> Result<ExitCode, Box<dyn Error>> {

@@ -61,7 +61,7 @@ const DOORS: &[(&str, &[&str])] = &[
     ("indicatif", &["node/progress.rs", "lab/board.rs"]),
     ("comfy_table", &["node/summary.rs", "lab/table.rs"]),
     ("plotters", &["lab/plot.rs", "lab/axis.rs"]),
-    ("maud", &["lab/report.rs"]),
+    ("maud", &["lab/report.rs", "lab/bag_page.rs"]),
     ("csv", &["lab/folder.rs"]),
     ("ctrlc", &["node/shutdown.rs", "node/launch.rs"]),
     ("clap", &["src/cli.rs", "src/cli_bags.rs", "src/main.rs"]),

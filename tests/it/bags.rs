@@ -342,3 +342,28 @@ fn a_long_recording_is_split_and_every_file_stands_alone() {
         assert!(findings.is_empty(), "{name}: {findings:?}");
     }
 }
+
+/// Oracle: the numbers of `synthetic::snapshot`, and a parser of pages that is not ours.
+#[test]
+fn a_recording_becomes_a_page() {
+    let folder = tempfile::tempdir().unwrap();
+    let bag = folder.path().join("bag");
+    record_second(&bag);
+    let page = jamgrip::lab::bag_page::page(&bag).unwrap();
+    let file = folder.path().join("report.html");
+    fs::write(&file, &page).unwrap();
+    let read = peers::run("read_page.py", &[file.to_str().unwrap()]);
+    assert!(!read.is_empty());
+    for told in [
+        "Force on the gripper",
+        "Gauge pressure in the bag",
+        "Heights",
+        "command: gauge pressure -80 kPa",
+        "command: release cylinder",
+        "object detected, vacuum builds up",
+        "phase lift",
+    ] {
+        assert!(page.contains(told), "{told}");
+    }
+    assert_eq!(page.matches("<figure>").count(), 6);
+}

@@ -322,3 +322,51 @@ fn read_flushed(said: &mut impl BufRead) -> u64 {
     }
     panic!("the recording ended by itself");
 }
+
+/// Oracle: `write_variants.py`, which writes with the library of the format's authors.
+#[test]
+fn every_variant_that_others_write_is_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let n_files: usize =
+        peers::run("write_variants.py", &[folder.path().to_str().unwrap()]).trim().parse().unwrap();
+    let files: Vec<_> = fs::read_dir(folder.path()).unwrap().map(|it| it.unwrap().path()).collect();
+    assert_eq!((n_files, files.len()), (384, 384));
+    for file in files {
+        let name = file.file_name().unwrap().to_str().unwrap().to_owned();
+        let (mut messages, mut attached, mut noted) = (Vec::new(), 0, 0);
+        for item in Reader::open(&file).unwrap() {
+            match item {
+                Item::Message(it) => {
+                    let (topic, type_name) = (it.channel.topic.clone(), it.channel.type_name());
+                    let type_name = type_name.to_owned();
+                    messages.push((topic, type_name, it.log_time, it.publish_time, it.data));
+                }
+                Item::Attachment(it) => {
+                    assert_eq!((it.name.as_str(), it.times), ("file", (2, 1)), "{name}");
+                    assert_eq!(it.data, b"contents", "{name}");
+                    attached += 1;
+                }
+                Item::Metadata(it) => {
+                    assert_eq!((it.name.as_str(), it.metadata["a"].as_str()), ("notes", "b"));
+                    noted += 1;
+                }
+                Item::Damage(damage) => panic!("{name}: {damage}"),
+                _ => {}
+            }
+        }
+        assert_eq!((messages.len(), attached, noted), (5, 1, 1), "{name}");
+        for (i, (topic, type_name, log_time, publish_time, data)) in
+            messages.into_iter().enumerate()
+        {
+            let is_even = i.is_multiple_of(2);
+            let expected = if is_even { ("/with", "pkg/msg/T") } else { ("/without", "") };
+            assert_eq!((topic.as_str(), type_name.as_str()), expected, "{name}");
+            assert_eq!((log_time, publish_time), (i as u64, 10 + i as u64), "{name}");
+            assert_eq!(data, vec![u8::try_from(i).unwrap(); 40], "{name}");
+        }
+        // What is saved of it reads the same in the end.
+        let saved = folder.path().join("saved.mcap");
+        assert_eq!(recover::recover(&file, &saved).unwrap().n_messages, 5, "{name}");
+        fs::remove_file(&saved).unwrap();
+    }
+}
