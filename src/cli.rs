@@ -53,6 +53,9 @@ pub(crate) enum Action {
     /// Runs all quick experiments and prints one table of verdicts
     #[command(after_help = VALIDATE_HELP)]
     Validate(Validate),
+    /// Measures how fast the simulation is
+    #[command(after_help = BENCH_HELP)]
+    Bench(Bench),
     /// Writes kept results beside what their sources show, as Markdown with figures
     Report {
         /// Folder of result files, for example tests/golden/validation
@@ -78,6 +81,55 @@ measured, pass, reason; also oracle_source, relation, experiment, wall_s, left_v
 is none is null.\n\n\
 Exit codes: 0 all rows pass, 1 something could not run (a case that did not come to its end is also a \
 red row), 2 the command line is wrong, 3 a row is red, 130 interrupted.";
+
+const BENCH_HELP: &str = "\
+Each case starts from a state that is made once and kept (the first time takes minutes), and steps copies \
+of it in laps of the same work. The digest is that of the state at the end of a lap: it depends on neither \
+threads nor seconds.\n\n\
+Examples:\n  \
+jamgrip bench --case grains_3k_rest --case grains_3k_flow --threads 1\n  \
+jamgrip bench --json --seconds 1\n\n\
+Exit codes: 0 all cases were measured, 1 a case is not worth measuring or could not run, 2 the command line \
+is wrong.";
+
+/// Cases and how they are measured.
+#[derive(Debug, Args)]
+pub(crate) struct Bench {
+    /// Names all cases
+    #[arg(long)]
+    pub(crate) list: bool,
+    /// Measures this case; may be given more than once [default: all]
+    #[arg(long = "case", value_name = "NAME", conflicts_with = "list")]
+    pub(crate) cases: Vec<String>,
+    /// Solver threads [default: all processors]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+    /// Time on the clock for which the laps of a case are repeated; there are always three
+    #[arg(long, value_name = "S", default_value_t = 3.0, value_parser = seconds)]
+    pub(crate) seconds: f64,
+    /// Prints an array of cases, one a line, and nothing else
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Keeps states to start from in this folder [default: ~/.cache/jamgrip]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) cache: Option<PathBuf>,
+}
+
+impl Bench {
+    /// How many solver threads.
+    pub(crate) fn n_threads(&self) -> usize {
+        self.threads.map_or_else(n_processors, usize::from)
+    }
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    let seconds: f64 = text.parse().map_err(|error| format!("{error}"))?;
+    if (0.0..=86_400.0).contains(&seconds) {
+        Ok(seconds)
+    } else {
+        Err("write seconds from 0 to 86400, such as 0.5".to_owned())
+    }
+}
 
 /// An experiment and how it is run.
 #[derive(Debug, Args)]

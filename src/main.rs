@@ -5,6 +5,7 @@ mod cli;
 mod cli_bags;
 #[cfg(feature = "bag")]
 mod recordings;
+mod timing;
 mod trials;
 
 use std::{
@@ -16,6 +17,7 @@ use std::{
 use clap::Parser;
 use cli::{Action, Cli};
 use jamgrip::{
+    bench::BenchError,
     lab::fault::LabError,
     node::{
         cache::Cache,
@@ -44,12 +46,14 @@ fn main() -> ExitCode {
         Action::Check(args) => check(&args),
         Action::Experiment(args) => trials::experiment(&args),
         Action::Validate(args) => trials::validate(&args),
+        Action::Bench(args) => timing::bench(&args),
         Action::Report { from, to } => trials::report(&from, &to),
     };
     outcome.unwrap_or_else(|error| {
         // If standard error is gone there is nobody to tell.
         drop(writeln!(io::stderr().lock(), "{error}"));
         let is_of_command_line = error.is::<SceneError>()
+            || error.downcast_ref::<BenchError>().is_some_and(BenchError::is_of_command_line)
             || error.downcast_ref::<LabError>().is_some_and(LabError::is_of_command_line);
         ExitCode::from(if is_of_command_line { WRONG } else { FAILED })
     })
