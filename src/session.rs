@@ -5,6 +5,7 @@ use crate::{
     command::{
         Command, CommandRecord,
         apply::{Desk, Frames},
+        change::{Change, ChangeRefused, Scope},
     },
     cosim::{
         Coupled, FLANGE, Inputs, Means,
@@ -14,16 +15,27 @@ use crate::{
     },
     physics::{
         State,
+        boundary::body::BodyMotion,
         fill::{self, Progress},
         health::{self, Diverged},
         measure,
     },
-    scene::Scene,
+    scene::{Object, Scene},
 };
+
+/// What a reset goes back to.
+struct Start {
+    /// The settled bag.
+    state: State,
+    /// The scene's own objects.
+    objects: Vec<Object>,
+}
 
 /// A run.
 pub struct Session {
+    /// Its objects are those that are there now.
     scene: Scene,
+    start: Start,
     coupled: Coupled,
     desk: Desk,
     tick: Tick,
@@ -59,6 +71,7 @@ impl Session {
 
     fn start(compiled: Compiled, mut state: State) -> Self {
         let Compiled { scene, model, plan, bulks, limits, pool, .. } = compiled;
+        let start = Start { state: state.clone(), objects: scene.objects.clone() };
         let n_samples = model.membrane.mesh.n_vertices() + model.membrane.mesh.triangles.len();
         state.springs.bodies = vec![Vec3::zeros(); n_samples * model.bodies.len()];
         let step = plan.tick / measure::real(plan.n_substeps / plan.n_per_exchange);
@@ -66,18 +79,13 @@ impl Session {
         let (n_objects, n_grains) = (scene.objects.len(), state.grains.positions.len());
         let desk = Desk::new(&scene);
         let coupled = Coupled::new(model, plan, state, world, limits);
-        let still = vec![Wrench::zero(); n_objects];
         let mut session = Self {
             scene,
+            start,
             coupled,
             desk,
             tick: Tick(0),
-            means: Means {
-                membrane_on_objects: still.clone(),
-                contacts_on_objects: still,
-                objects_on_gripper: Wrench::zero(),
-                gripper_on_mount: Wrench::zero(),
-            },
+            means: no_forces(n_objects),
             records: Vec::new(),
             digest: 0,
             // Nothing is known of forces before the first tick.
@@ -103,6 +111,81 @@ impl Session {
         self.normal_forces = measure::normal_forces(state, scratch);
         self.digest = self.take_digest();
         health::check(model, state, scratch, self.tick.0)
+    }
+
+    /// Changes the world between two ticks.
+    ///
+    /// # Errors
+    /// If the change cannot be made; nothing is changed then.
+    pub fn change(&mut self, change: &Change) -> Result<(), ChangeRefused> {
+        match change {
+            Change::Reset(scope) => self.reset(*scope),
+            Change::PlaceObject { object, pose, twist } => {
+                let i = self.find(object)?;
+                let motion = BodyMotion { pose: *pose, twist: *twist };
+                self.coupled.place_object(&self.scene, i, &motion)?;
+                self.desk.release(i);
+            }
+            Change::PlaceFlange { pose } => {
+                self.coupled.place_flange(&self.scene, pose)?;
+                self.desk.place_flange(*pose, self.time_ns());
+            }
+            Change::Insert(object) => self.insert(object)?,
+            Change::Remove { object } => {
+                let i = self.find(object)?;
+                self.remove(i);
+            }
+        }
+        self.means = no_forces(self.scene.objects.len());
+        self.normal_forces.fill(0.0);
+        self.records.clear();
+        self.digest = self.take_digest();
+        Ok(())
+    }
+
+    fn reset(&mut self, scope: Scope) {
+        let is_own = |object: &Object| self.start.objects.iter().any(|it| it.name == object.name);
+        if scope.state {
+            let added = self.scene.objects.iter().filter(|it| !scope.spawned && !is_own(it));
+            self.scene.objects = self.start.objects.iter().chain(added).cloned().collect();
+            self.coupled.start_anew(&self.scene, &self.start.state);
+            self.desk.restart(&self.scene);
+        } else if scope.spawned {
+            let objects = self.scene.objects.iter().enumerate();
+            let added: Vec<usize> = objects.filter(|(_, it)| !is_own(it)).map(|(i, _)| i).collect();
+            added.into_iter().rev().for_each(|i| self.remove(i));
+        }
+        if scope.time {
+            self.tick = Tick(0);
+            self.desk.restart_time();
+        } else if scope.state {
+            self.desk.place_flange(self.scene.flange.pose, self.time_ns());
+        }
+    }
+
+    fn insert(&mut self, object: &Object) -> Result<(), ChangeRefused> {
+        let mut names = self.scene.objects.iter().chain(&self.start.objects);
+        if names.any(|it| it.name == object.name) {
+            return Err(ChangeRefused::NameTaken { object: object.name.clone() });
+        }
+        self.coupled.insert(&self.scene, object)?;
+        self.scene.objects.push(object.clone());
+        self.desk.insert(object);
+        Ok(())
+    }
+
+    fn remove(&mut self, i: usize) {
+        self.coupled.remove(i);
+        self.scene.objects.remove(i);
+        self.desk.remove(i);
+    }
+
+    fn find(&self, object: &str) -> Result<usize, ChangeRefused> {
+        let objects = &self.scene.objects;
+        objects.iter().position(|it| it.name == object).ok_or_else(|| {
+            let known: Vec<&str> = objects.iter().map(|it| it.name.as_str()).collect();
+            ChangeRefused::UnknownObject { object: object.to_owned(), known: known.join(", ") }
+        })
     }
 
     fn advance(&mut self, inputs: &Inputs) {
@@ -174,5 +257,15 @@ impl Session {
     /// The settled start state as bytes for a cache. Only meaningful before the first tick.
     pub fn start_state(&self) -> Vec<u8> {
         saved_state::write(&self.coupled.state)
+    }
+}
+
+/// Before a first tick nothing is known of forces.
+fn no_forces(n_objects: usize) -> Means {
+    Means {
+        membrane_on_objects: vec![Wrench::zero(); n_objects],
+        contacts_on_objects: vec![Wrench::zero(); n_objects],
+        objects_on_gripper: Wrench::zero(),
+        gripper_on_mount: Wrench::zero(),
     }
 }

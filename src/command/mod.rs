@@ -4,6 +4,7 @@
 //! recorded too.
 
 pub mod apply;
+pub mod change; // what no body could do by moving
 
 /// One wish of the outside.
 #[derive(Clone, Debug, PartialEq)]
