@@ -14,5 +14,6 @@ pub mod experiments; // validated experiments, cut into cases
 pub mod wire; // bytes for the outside
 pub mod sinks; // where snapshots go
 pub mod sources; // where commands come from
+pub mod services; // where questions come in and answers go out
 pub mod node; // the running thing
 pub mod lab; // runs experiments: threads, files, reports

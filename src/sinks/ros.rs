@@ -173,6 +173,11 @@ impl RosNode {
         self.open(topic, |node, it| node.create_subscription(it, None))
     }
 
+    /// The participant itself, for services.
+    pub fn participant(&self) -> rustdds::DomainParticipant {
+        self.context.domain_participant()
+    }
+
     fn open<Port>(
         &self,
         topic: &Topic,
@@ -273,6 +278,11 @@ impl Sink for RosSink {
         self.publishers.clear();
         Ok(())
     }
+}
+
+/// The same for ports on bare DDS.
+pub fn policies(qos: Qos) -> rustdds::QosPolicies {
+    profile(qos).into()
 }
 
 fn profile(qos: Qos) -> QosProfile {
