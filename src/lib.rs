@@ -15,5 +15,6 @@ pub mod wire; // bytes for the outside
 pub mod sinks; // where snapshots go
 pub mod sources; // where commands come from
 pub mod services; // where questions come in and answers go out
+pub mod simulator; // what ROS 2 users may ask of a simulator
 pub mod node; // the running thing
 pub mod lab; // runs experiments: threads, files, reports

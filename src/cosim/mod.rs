@@ -10,6 +10,7 @@ pub mod compile;
 pub mod flange;
 pub mod rapier_world;
 pub mod saved_state;
+pub mod volume; // whether places overlap
 
 use crate::{
     base::{

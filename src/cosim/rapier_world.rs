@@ -31,7 +31,7 @@ use crate::{
 };
 
 /// Half the edge of the table's slab, and half its thickness [m].
-const TABLE_HALF: [Real; 2] = [2.0, 0.1];
+pub const TABLE_HALF: [Real; 2] = [2.0, 0.1];
 /// Length that rapier takes as typical of the bodies [m].
 const LENGTH_UNIT: Real = 0.02;
 

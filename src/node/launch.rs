@@ -1,6 +1,6 @@
 //! From a scene to a run and its summary.
 
-use std::{sync::Arc, time::Duration};
+use std::{path::PathBuf, sync::Arc, time::Duration};
 
 use super::{
     Crew, Ending, Report,
@@ -32,6 +32,8 @@ pub struct Options {
     pub n_threads: usize,
     /// Simulated time after which the run ends [s].
     pub duration: Option<f64>,
+    /// The file that the scene is from.
+    pub scene_file: PathBuf,
     /// Where settled start states are kept.
     pub cache: Cache,
     /// True shows no progress.
@@ -83,13 +85,17 @@ pub fn launch(scene: &Scene, options: &Options) -> Result<Finished, RunError> {
     let encoder = Arc::new(Encoder::new(scene, &mesh.triangles, &mesh.positions));
     let sizes = Sizes { n_grains: scene.grains.count, n_vertices: mesh.n_vertices() };
     // Recording first: a folder that cannot be written is noticed before the bag is filled.
-    let (outlets, outside) = Doors { scene, encoder: &encoder, progress: &progress }.open(sizes)?;
+    let (outlets, outside) = {
+        let scene_file = &options.scene_file;
+        Doors { scene, scene_file, encoder: &encoder, progress: &progress }.open(sizes)?
+    };
     let started = start::start(compiled, options.n_threads, &options.cache, &progress)?;
     let Started { mut session, origin } = started;
     let end_ns = end_ns(scene, options.duration);
     progress.running(end_ns);
     let mut crew = Crew {
-        orders: Orders::new(scene, outside),
+        orders: Orders::new(scene, outside.sources),
+        front: outside.front,
         outlets,
         schedule: Schedule::new(&scene.outputs, scene.time.tick_ns),
         judge: Judge::default(),
@@ -98,6 +104,7 @@ pub fn launch(scene: &Scene, options: &Options) -> Result<Finished, RunError> {
         tick_ns: scene.time.tick_ns,
         end_ns,
         is_real_time: scene.outputs.real_time,
+        n_packets: 0,
         about: RunStatistics { substep_s, seed: scene.seed, ..RunStatistics::default() },
     };
     let start_time_s = since_start.wall_time_s();

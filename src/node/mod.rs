@@ -2,6 +2,7 @@
 
 pub mod cache; // settled start states on disk
 mod doors; // recording, streams, ROS 2
+pub mod front; // the simulator at its bench
 pub mod judge; // what came of a run
 pub mod launch; // scene to a run
 pub mod orders; // who may command
@@ -18,6 +19,7 @@ pub mod summary; // what is left at the end
 use std::{fmt, sync::Arc, time::Duration};
 
 use self::{
+    front::Front,
     judge::Judge,
     orders::Orders,
     outlets::Outlets,
@@ -28,6 +30,8 @@ use self::{
     shutdown::Shutdown,
 };
 use crate::{
+    command::Command,
+    simulator::World,
     sinks::{Packet, RunStatistics},
     snapshot::Snapshot,
 };
@@ -46,6 +50,8 @@ pub enum Ending {
     Interrupted,
     /// The recording failed, and the scene says to stop then.
     RecordingFailed,
+    /// A client of the simulator told it to quit.
+    Quit,
 }
 
 impl fmt::Display for Ending {
@@ -55,6 +61,7 @@ impl fmt::Display for Ending {
             Self::TimeUp => "time is up",
             Self::Interrupted => "interrupted",
             Self::RecordingFailed => "recording failed",
+            Self::Quit => "told to quit",
         })
     }
 }
@@ -63,6 +70,8 @@ impl fmt::Display for Ending {
 pub struct Crew {
     /// Who commands.
     pub orders: Orders,
+    /// Who may ask and change, if anybody.
+    pub front: Option<Front>,
     /// Where results go.
     pub outlets: Outlets,
     /// What is due when.
@@ -81,6 +90,8 @@ pub struct Crew {
     pub is_real_time: bool,
     /// What statistics say of the scene.
     pub about: RunStatistics,
+    /// Packets given out so far.
+    pub n_packets: u64,
 }
 
 /// How a run went, as far as clocks and plant know.
@@ -98,21 +109,27 @@ pub struct Report<Fault> {
 /// Runs `plant` until there is a reason to end. What was recorded is still open afterwards.
 pub fn run<P: Plant>(plant: &mut P, crew: &mut Crew) -> Report<P::Fault> {
     let mut seen = Arc::new(Packet::new(plant.snapshot(Parts::ALL), None));
-    crew.wait_for_orders(plant, &seen);
     let mut pacer = Pacer::start(crew.is_real_time);
+    crew.greet();
     let ending = loop {
         if let Some(ending) = crew.ending(&seen.snapshot) {
             break Ok(ending);
         }
-        let commands = crew.orders.drain(&seen.snapshot); // outside to plain values
+        seen = crew.attend(plant, seen, &mut pacer); // questions between two ticks
+        if !crew.may_tick() {
+            crew.stand_still(plant, &seen, &mut pacer);
+            continue;
+        }
+        let commands = crew.commands(&seen.snapshot); // outside to plain values
         if let Err(fault) = plant.tick(&commands) {
             break Err(fault); // the core cannot go on, nobody can
         }
         let time_ns = seen.snapshot.time_ns + crew.tick_ns;
         let snapshot = plant.snapshot(crew.schedule.parts(time_ns)); // a copy
-        pacer.wait_until(time_ns); // the only clock
-        seen = Arc::new(crew.pack(snapshot, &pacer));
+        crew.pace(&mut pacer, time_ns); // the only clock
+        seen = crew.pack(snapshot, &pacer);
         crew.outlets.publish(&plant.view(&seen.snapshot), &seen); // never fails the run
+        crew.ticked(&seen);
     };
     crew.progress.end();
     let (wall_time_s, real_time_factor) = (pacer.wall_time_s(), pacer.real_time_factor_mean());
@@ -120,26 +137,96 @@ pub fn run<P: Plant>(plant: &mut P, crew: &mut Crew) -> Report<P::Fault> {
 }
 
 impl Crew {
-    /// Shows the start to the outside until it commands something.
-    fn wait_for_orders<P: Plant>(&mut self, plant: &P, start: &Arc<Packet>) {
-        if self.orders.is_waiting() {
+    fn greet(&self) {
+        if self.is_waiting() {
             self.progress.say(&"waiting for a first command");
         }
-        let mut shown_at = None;
-        let waiting = Pacer::start(false);
-        while self.orders.is_waiting() && !self.shutdown.is_requested() {
-            let now = waiting.wall_time_s();
-            if shown_at.is_none_or(|then| 1.0 <= (now - then) * f64::from(WAITING_RATE)) {
-                self.outlets.publish(&plant.view(&start.snapshot), start);
-                shown_at = Some(now);
-            }
-            pacer::pause();
+    }
+
+    /// True until something sets a run going that shall begin by command.
+    fn is_waiting(&self) -> bool {
+        self.front.as_ref().map_or(self.orders.is_waiting(), |it| it.simulator().is_waiting())
+    }
+
+    fn may_tick(&self) -> bool {
+        self.front.as_ref().map_or(!self.orders.is_waiting(), |it| it.simulator().may_tick())
+    }
+
+    /// Answers questions, and shows what they have changed.
+    fn attend<P: Plant>(
+        &mut self,
+        plant: &mut P,
+        seen: Arc<Packet>,
+        pacer: &mut Pacer,
+    ) -> Arc<Packet> {
+        let Some(front) = &mut self.front else { return seen };
+        if !self.orders.is_waiting() {
+            front.first_command();
         }
+        let changed = {
+            let mut world = World { subject: plant, seen: &seen.snapshot };
+            front.attend(&mut world, self.n_packets)
+        };
+        if !changed.is_changed {
+            return seen;
+        }
+        if changed.is_state_reset || changed.is_time_reset {
+            self.orders.restart();
+            self.judge = Judge::default();
+        }
+        if changed.is_time_reset {
+            pacer.restart();
+        }
+        let packet = Packet::new(plant.snapshot(Parts::ALL), None);
+        let packet = Arc::new(self.number(packet));
+        self.outlets.publish(&plant.view(&packet.snapshot), &packet);
+        packet
+    }
+
+    /// Time stands still: waits a moment for someone to change that. Who waits for a first command
+    /// is shown the start.
+    fn stand_still<P: Plant>(&mut self, plant: &P, seen: &Arc<Packet>, pacer: &mut Pacer) {
+        if self.is_waiting() && pacer.is_due(WAITING_RATE) {
+            self.outlets.publish(&plant.view(&seen.snapshot), seen);
+        }
+        match &mut self.front {
+            Some(front) => front.wait(pacer::PAUSE),
+            None => pacer::pause(),
+        }
+        pacer.stand_still();
+    }
+
+    fn commands(&mut self, seen: &Snapshot) -> Vec<Command> {
+        let mut commands = self.orders.drain(seen);
+        commands.extend(self.front.iter_mut().flat_map(Front::take_commands));
+        commands
+    }
+
+    /// Steps that someone waits for are not paced.
+    fn pace(&self, pacer: &mut Pacer, time_ns: u64) {
+        if self.front.as_ref().is_some_and(|it| it.simulator().is_stepping()) {
+            pacer.stand_still();
+        }
+        pacer.wait_until(time_ns);
+    }
+
+    fn ticked(&mut self, seen: &Packet) {
+        if let Some(front) = &mut self.front {
+            front.ticked(&seen.snapshot, self.n_packets);
+        }
+    }
+
+    fn number(&mut self, packet: Packet) -> Packet {
+        self.n_packets += 1;
+        packet.numbered(self.n_packets)
     }
 
     fn ending(&mut self, seen: &Snapshot) -> Option<Ending> {
         if self.shutdown.is_requested() {
             return Some(Ending::Interrupted);
+        }
+        if self.front.as_ref().is_some_and(|it| it.simulator().is_quitting()) {
+            return Some(Ending::Quit);
         }
         if self.orders.is_done() {
             return Some(Ending::Finished);
@@ -153,7 +240,7 @@ impl Crew {
     }
 
     /// Judges a snapshot, shows it, and adds statistics where they are due.
-    fn pack(&mut self, snapshot: Snapshot, pacer: &Pacer) -> Packet {
+    fn pack(&mut self, snapshot: Snapshot, pacer: &Pacer) -> Arc<Packet> {
         self.judge.look(&snapshot, Duration::from_nanos(self.tick_ns).as_secs_f64());
         let phase = self.orders.phase().map_or("", |phase| phase.name());
         self.progress.tick(&snapshot, phase, pacer);
@@ -166,7 +253,7 @@ impl Crew {
             sinks: self.outlets.counters(),
             ..self.about.clone()
         });
-        Packet::new(snapshot, run)
+        Arc::new(self.number(Packet::new(snapshot, run)))
     }
 }
 

@@ -4,14 +4,18 @@ use std::error::Error;
 
 use super::schedule::Parts;
 use crate::{
-    command::Command,
+    command::{
+        Command,
+        change::{Change, ChangeRefused},
+    },
     physics::health::Diverged,
     session::Session,
+    simulator::Subject,
     snapshot::{Snapshot, take, view::View},
 };
 
 /// Something that ticks and can be looked at.
-pub trait Plant {
+pub trait Plant: Subject {
     /// Why it cannot go on.
     type Fault: Error + Send + Sync + 'static;
 
@@ -41,5 +45,15 @@ impl Plant for Session {
 
     fn view<'a>(&'a self, seen: &'a Snapshot) -> View<'a> {
         take::view(self, seen)
+    }
+}
+
+impl Subject for Session {
+    fn look(&self) -> Snapshot {
+        take::snapshot(self, Parts::ALL)
+    }
+
+    fn change(&mut self, change: &Change) -> Result<(), ChangeRefused> {
+        Self::change(self, change)
     }
 }

@@ -7,6 +7,7 @@
 pub mod fault; // what can be wrong
 pub mod print; // scene to text
 pub mod quantity; // "2 mm"
+pub mod resource; // objects that others name
 pub mod text; // text to scene
 
 pub(crate) mod blank;
@@ -16,6 +17,7 @@ mod mesh_file;
 mod read;
 pub(crate) mod schema;
 mod tree;
+mod urdf;
 pub(crate) mod walk;
 mod yaml;
 

@@ -4,10 +4,11 @@
 //! out none of those that wait, costs the physics nothing, and is counted. Answers leave in order,
 //! each behind the messages of the tick that it speaks of.
 
-pub mod announced;
 pub mod queue;
 #[cfg(feature = "ros")]
 pub mod ros;
+
+use std::time::Duration;
 
 use crate::wire::{cdr::Cdr, messages::ServiceType};
 
@@ -77,6 +78,9 @@ pub struct BenchCounters {
 pub trait Bench: Send {
     /// At most `most` questions that wait, oldest first. Never waits.
     fn take(&mut self, most: usize) -> Vec<Call>;
+
+    /// Waits until a question is there, at most this long.
+    fn wait(&mut self, at_most: Duration);
 
     /// Sends something out, once the packet of this number has been published or is lost.
     fn send(&mut self, outgoing: Outgoing, after_packet: u64);

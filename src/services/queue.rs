@@ -32,6 +32,11 @@ impl Queue {
         self.calls.drain(..n).collect()
     }
 
+    /// True if nothing waits.
+    pub fn is_empty(&self) -> bool {
+        self.calls.is_empty()
+    }
+
     /// Counts a question that could not be read.
     pub fn complain(&mut self, fault: String) {
         self.counters.n_malformed += 1;

@@ -3,25 +3,27 @@
 //! before it. Which way a client goes is told by what it sends and by whose software it is.
 
 use std::{
-    sync::{Arc, Mutex, MutexGuard, PoisonError, mpsc},
+    collections::BTreeSet,
+    sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, mpsc},
     thread::JoinHandle,
     time::Duration,
 };
 
 use rustdds::{
-    DomainParticipant, GUID, QosPolicies, RepresentationIdentifier, SequenceNumber, TopicKind,
-    WriteOptionsBuilder,
+    DataReaderStatus, DataWriterStatus, DomainParticipant, GUID, QosPolicies,
+    RepresentationIdentifier, SequenceNumber, StatusEvented, TopicKind, WriteOptionsBuilder,
     bytes::Bytes,
     no_key::{self, DataWriter, SimpleDataReader},
     rpc::SampleIdentity,
 };
 use smol::{LocalExecutor, channel, future, stream::StreamExt};
 
-use super::{
-    Asker, Bench, BenchCounters, Call, Channel, Offer, Outgoing, announced::Announced, queue::Queue,
-};
+use super::{Asker, Bench, BenchCounters, Call, Channel, Offer, Outgoing, queue::Queue};
 use crate::{
-    sinks::ros::{RosError, RosNode, policies},
+    sinks::{
+        announced::Announced,
+        ros::{RosError, RosNode, policies},
+    },
     wire::{cdr::Cdr, topics::Qos},
 };
 
@@ -31,6 +33,10 @@ const CYCLONE: [u8; 2] = [0x01, 0x10];
 const PATIENCE: Duration = Duration::from_secs(1);
 /// Answers that wait for their turn; a client that does not read them loses them.
 const OUTBOX: usize = 4096;
+
+/// How often is looked for a client's ears, and how long between two looks.
+const HEARING_TRIES: usize = 100;
+const HEARING_NAP: Duration = Duration::from_millis(5);
 
 /// A body with its byte order.
 #[derive(Clone, Debug)]
@@ -91,9 +97,16 @@ impl no_key::SerializerAdapter<Raw> for RawCdr {
 type Reader = SimpleDataReader<Raw, RawCdr>;
 type Writer = DataWriter<Raw, RawCdr>;
 
+/// The queue, and news of it.
+#[derive(Default)]
+struct Waiting {
+    queue: Mutex<Queue>,
+    news: Condvar,
+}
+
 /// All services of a node.
 pub struct RosBench {
-    queue: Arc<Mutex<Queue>>,
+    waiting: Arc<Waiting>,
     outbox: Option<mpsc::SyncSender<(Outgoing, u64)>>,
     stop: channel::Sender<()>,
     threads: Vec<JoinHandle<()>>,
@@ -111,20 +124,23 @@ impl RosBench {
         announced: &Arc<Announced>,
     ) -> Result<Self, RosError> {
         let participant = &node.participant();
-        let queue = Arc::new(Mutex::new(Queue::default()));
-        let (mut readers, mut mouths) = (Vec::new(), Mouths::default());
+        let queue = Arc::new(Waiting::default());
+        let mut readers = Vec::new();
+        let (mut answers, mut mouths_of_channels) = (Vec::new(), Vec::new());
         for offer in offers {
             let (ask, answer) =
                 (format!("rq{}Request", offer.name), format!("rr{}Reply", offer.name));
             let of = offer.service_type;
             readers.push(reader(participant, &ask, of.request_dds_name)?);
-            mouths.answers.push(writer(participant, &answer, of.response_dds_name, SERVICE)?);
+            let mouth = writer(participant, &answer, of.response_dds_name, SERVICE)?;
+            answers.push((mouth, BTreeSet::new()));
         }
         for channel in channels {
             let qos = Qos { is_reliable: true, depth: 10, is_latched: channel.is_latched };
             let name = format!("rt{}", channel.name);
-            mouths.channels.push(writer(participant, &name, &channel.dds_name, qos)?);
+            mouths_of_channels.push(writer(participant, &name, &channel.dds_name, qos)?);
         }
+        let mut mouths = Mouths { answers, channels: mouths_of_channels };
         let (stop, stopped) = channel::bounded(1);
         let (outbox, waiting) = mpsc::sync_channel(OUTBOX);
         let (kept, announced) = (Arc::clone(&queue), Arc::clone(announced));
@@ -132,13 +148,20 @@ impl RosBench {
             thread("ros-questions", move || listen(readers, &kept, &stopped))?,
             thread("ros-answers", move || mouths.speak(&waiting, &announced))?,
         ];
-        Ok(Self { queue, outbox: Some(outbox), stop, threads })
+        Ok(Self { waiting: queue, outbox: Some(outbox), stop, threads })
     }
 }
 
 impl Bench for RosBench {
     fn take(&mut self, most: usize) -> Vec<Call> {
-        lock(&self.queue).take(most)
+        lock(&self.waiting.queue).take(most)
+    }
+
+    fn wait(&mut self, at_most: Duration) {
+        let queue = lock(&self.waiting.queue);
+        let is_empty = |queue: &mut Queue| queue.is_empty();
+        let waited = self.waiting.news.wait_timeout_while(queue, at_most, is_empty);
+        drop(waited.unwrap_or_else(PoisonError::into_inner));
     }
 
     fn send(&mut self, outgoing: Outgoing, after_packet: u64) {
@@ -149,11 +172,11 @@ impl Bench for RosBench {
     }
 
     fn complain(&mut self, fault: String) {
-        lock(&self.queue).complain(fault);
+        lock(&self.waiting.queue).complain(fault);
     }
 
     fn counters(&self) -> BenchCounters {
-        lock(&self.queue).counters()
+        lock(&self.waiting.queue).counters()
     }
 }
 
@@ -169,20 +192,42 @@ impl Drop for RosBench {
 }
 
 /// Everything that answers leave by.
-#[derive(Default)]
 struct Mouths {
-    answers: Vec<Writer>,
+    /// For each offer the writer of its answers and the readers that hear it.
+    answers: Vec<(Writer, BTreeSet<[u8; 16]>)>,
     channels: Vec<Writer>,
 }
 
 impl Mouths {
-    fn speak(&self, waiting: &mpsc::Receiver<(Outgoing, u64)>, announced: &Announced) {
+    /// Waits a moment until the one who asked can hear: an ear may be found later than a question.
+    fn find(&mut self, asker: &Asker) {
+        let (writer, ears) = &mut self.answers[asker.offer];
+        for _ in 0..HEARING_TRIES {
+            while let Some(status) = writer.try_recv_status() {
+                if let DataWriterStatus::PublicationMatched { current, reader, .. } = status {
+                    if 0 < current.count_change() {
+                        ears.insert(reader.to_bytes());
+                    } else {
+                        ears.remove(&reader.to_bytes());
+                    }
+                }
+            }
+            // Ears and mouth of a client are of one participant: twelve bytes are the same.
+            if ears.iter().any(|ear| ear[..12] == asker.writer[..12]) {
+                return;
+            }
+            std::thread::sleep(HEARING_NAP);
+        }
+    }
+
+    fn speak(&mut self, waiting: &mpsc::Receiver<(Outgoing, u64)>, announced: &Announced) {
         while let Ok((outgoing, after_packet)) = waiting.recv() {
             announced.wait_for(after_packet, PATIENCE);
             let said = match outgoing {
                 Outgoing::Answer(asker, body) => {
+                    self.find(&asker);
                     let (body, options) = addressed(&asker, body);
-                    self.answers[asker.offer].write_with_options(Raw(body), options).map(drop)
+                    self.answers[asker.offer].0.write_with_options(Raw(body), options).map(drop)
                 }
                 Outgoing::Message(channel, body) => self.channels[channel].write(Raw(body), None),
             };
@@ -207,17 +252,18 @@ fn addressed(asker: &Asker, body: Cdr) -> (Cdr, rustdds::with_key::WriteOptions)
 }
 
 /// Listens to all services until `stopped` closes.
-fn listen(readers: Vec<Reader>, queue: &Mutex<Queue>, stopped: &channel::Receiver<()>) {
+fn listen(readers: Vec<Reader>, waiting: &Waiting, stopped: &channel::Receiver<()>) {
     let executor = LocalExecutor::new();
     for (offer, reader) in readers.into_iter().enumerate() {
-        executor.spawn(attend(offer, reader, queue)).detach();
+        executor.spawn(attend(offer, reader, waiting)).detach();
     }
-    executor.spawn(tell_faults(queue)).detach();
+    executor.spawn(tell_faults(&waiting.queue)).detach();
     // The channel carries nothing: its only news is that it was closed.
     let _closed = smol::block_on(executor.run(stopped.recv()));
 }
 
-async fn attend(offer: usize, reader: Reader, queue: &Mutex<Queue>) {
+async fn attend(offer: usize, reader: Reader, waiting: &Waiting) {
+    let queue = &waiting.queue;
     let mut samples = std::pin::pin!(reader.as_async_stream());
     while let Some(sample) = samples.next().await {
         match sample {
@@ -226,7 +272,10 @@ async fn attend(offer: usize, reader: Reader, queue: &Mutex<Queue>) {
                 let related = sample.related_sample_identity();
                 let related = related.map(|it| (it.writer_guid, i64::from(it.sequence_number)));
                 match call(offer, id, related, sample.into_value().0) {
-                    Some(call) => lock(queue).offer(call),
+                    Some(call) => {
+                        lock(queue).offer(call);
+                        waiting.news.notify_all();
+                    }
                     None => lock(queue).complain("a request without a body".to_owned()),
                 }
             }
@@ -275,6 +324,8 @@ pub struct RosClient {
     answers: Reader,
     way: Way,
     n_asked: i64,
+    /// Servers that hear and that are heard.
+    n_matched: [i32; 2],
 }
 
 /// How a client names its requests.
@@ -300,7 +351,23 @@ impl RosClient {
             asks: writer(participant, &ask, of.request_dds_name, SERVICE)?,
             way,
             n_asked: 0,
+            n_matched: [0; 2],
         })
+    }
+
+    /// True once a server has been found that hears and is heard.
+    pub fn is_matched(&mut self) -> bool {
+        while let Some(status) = self.asks.try_recv_status() {
+            if let DataWriterStatus::PublicationMatched { current, .. } = status {
+                self.n_matched[0] = current.count();
+            }
+        }
+        while let Some(status) = self.answers.try_recv_status() {
+            if let DataReaderStatus::SubscriptionMatched { current, .. } = status {
+                self.n_matched[1] = current.count();
+            }
+        }
+        self.n_matched.iter().all(|it| 0 < *it)
     }
 
     /// Asks. Answers to questions before are not waited for any more.

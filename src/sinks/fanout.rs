@@ -16,8 +16,6 @@ use std::{
 
 use super::{Packet, Sink, SinkCounters};
 
-/// Time without packets after which a sink may tidy up.
-const IDLE: Duration = Duration::from_secs(1);
 /// Most faults kept until someone takes them; a sink that fails on and on says little new.
 const FAULTS_MAX: usize = 64;
 
@@ -194,7 +192,7 @@ impl Lane {
 fn serve(mut sink: Box<dyn Sink>, shared: &Shared) {
     let work = AssertUnwindSafe(|| {
         loop {
-            match shared.next() {
+            match shared.next(sink.idle_after()) {
                 Work::Packet(packet) => {
                     let outcome = sink.write(&packet);
                     drop(packet);
@@ -271,10 +269,11 @@ impl Shared {
         ignore_poison(self.queue.lock())
     }
 
-    fn next(&self) -> Work {
+    fn next(&self, patience: Duration) -> Work {
         let queue = self.lock();
         let is_empty = |queue: &mut Queue| queue.packets.is_empty() && !queue.is_closing;
-        let (mut queue, _) = ignore_poison(self.for_sink.wait_timeout_while(queue, IDLE, is_empty));
+        let waited = self.for_sink.wait_timeout_while(queue, patience, is_empty);
+        let (mut queue, _) = ignore_poison(waited);
         match queue.packets.pop_front() {
             Some(packet) => {
                 queue.in_hand = 1;

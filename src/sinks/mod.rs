@@ -3,6 +3,7 @@
 //! A sink runs on its own thread behind a bounded queue, so that a slow or dead reader never slows
 //! or stops the physics. The encoding to ROS 2 messages is made once, by whichever sink asks first.
 
+pub mod announced; // how far packets have been published
 #[cfg(feature = "bag")]
 pub mod bag; // rosbag2 recordings
 #[cfg(feature = "bag")]
@@ -16,7 +17,7 @@ pub mod ros;
 #[cfg(feature = "shm")]
 pub mod shm;
 
-use std::sync::OnceLock;
+use std::{sync::OnceLock, time::Duration};
 
 pub use crate::snapshot::run::{RunStatistics, SinkCounters};
 use crate::{
@@ -30,6 +31,8 @@ pub struct Packet {
     pub snapshot: Snapshot,
     /// How the run goes, in wall time; there when statistics are due.
     pub run: Option<RunStatistics>,
+    /// Number of the packet in its run; 0 if nobody counts.
+    pub number: u64,
     /// The messages, once someone has asked for them.
     messages: OnceLock<Vec<Message>>,
 }
@@ -37,7 +40,12 @@ pub struct Packet {
 impl Packet {
     /// A packet whose messages are not encoded yet.
     pub fn new(snapshot: Snapshot, run: Option<RunStatistics>) -> Self {
-        Self { snapshot, run, messages: OnceLock::new() }
+        Self { snapshot, run, number: 0, messages: OnceLock::new() }
+    }
+
+    /// The same packet with a number.
+    pub fn numbered(self, number: u64) -> Self {
+        Self { number, ..self }
     }
 
     /// The messages; `encoder` makes them if nobody has yet.
@@ -57,7 +65,12 @@ pub trait Sink: Send {
     /// Whatever the place says; the text names place, value, limit and remedy.
     fn write(&mut self, packet: &Packet) -> Result<(), Box<dyn std::error::Error + Send + Sync>>;
 
-    /// Called about once a second of wall time while no packets come.
+    /// Wall time without packets after which `idle` is called, again and again.
+    fn idle_after(&self) -> Duration {
+        Duration::from_secs(1)
+    }
+
+    /// Called while no packets come.
     ///
     /// # Errors
     /// As for `write`.
