@@ -5,11 +5,11 @@ use crate::{
     command::{
         Command, CommandRecord,
         apply::{Desk, Frames},
-        change::{Change, ChangeRefused, Scope},
+        change::{Change, ChangeRefused, Knob, Scope},
     },
     cosim::{
         Coupled, FLANGE, Inputs, Means,
-        compile::Compiled,
+        compile::{Compiled, retune},
         rapier_world::RapierWorld,
         saved_state::{self, SavedStateError},
     },
@@ -40,6 +40,8 @@ pub struct Session {
     desk: Desk,
     tick: Tick,
     means: Means,
+    /// What the wrist sensor takes for zero, flange axes.
+    sensor_zero: Wrench,
     records: Vec<CommandRecord>,
     digest: u64,
     normal_forces: Vec<f64>,
@@ -86,6 +88,7 @@ impl Session {
             desk,
             tick: Tick(0),
             means: no_forces(n_objects),
+            sensor_zero: Wrench::zero(),
             records: Vec::new(),
             digest: 0,
             // Nothing is known of forces before the first tick.
@@ -130,6 +133,18 @@ impl Session {
                 self.coupled.place_flange(&self.scene, pose)?;
                 self.desk.place_flange(*pose, self.time_ns());
             }
+            Change::ZeroForceSensor => {
+                self.sensor_zero = self.sensed();
+                return Ok(());
+            }
+            Change::Turn { knob, value } => {
+                knob.set(&mut self.scene, *value);
+                if *knob == Knob::ObjectFriction {
+                    self.start.objects.iter_mut().for_each(|it| it.friction = *value);
+                }
+                retune(&self.scene, &mut self.coupled.model);
+                return Ok(());
+            }
             Change::Insert(object) => self.insert(object)?,
             Change::Remove { object } => {
                 let i = self.find(object)?;
@@ -150,6 +165,7 @@ impl Session {
             self.scene.objects = self.start.objects.iter().chain(added).cloned().collect();
             self.coupled.start_anew(&self.scene, &self.start.state);
             self.desk.restart(&self.scene);
+            self.sensor_zero = Wrench::zero();
         } else if scope.spawned {
             let objects = self.scene.objects.iter().enumerate();
             let added: Vec<usize> = objects.filter(|(_, it)| !is_own(it)).map(|(i, _)| i).collect();
@@ -232,6 +248,20 @@ impl Session {
     /// The coupled system, to look at.
     pub fn coupled(&self) -> &Coupled {
         &self.coupled
+    }
+
+    /// What a wrist sensor feels that was never set to zero: the wrench of the whole gripper on its
+    /// mount about the flange's origin, flange axes, mean over the last tick.
+    fn sensed(&self) -> Wrench {
+        let to_flange = self.coupled.state.walls[FLANGE].pose.rotation.inverse();
+        let Wrench { force, torque } = self.means.gripper_on_mount;
+        Wrench { force: to_flange * force, torque: to_flange * torque }
+    }
+
+    /// What the wrist sensor reads: what it feels less what it takes for zero.
+    pub fn sensor(&self) -> Wrench {
+        let (felt, zero) = (self.sensed(), self.sensor_zero);
+        Wrench { force: felt.force - zero.force, torque: felt.torque - zero.torque }
     }
 
     /// Means over the last tick.

@@ -166,12 +166,13 @@ impl Doors<'_> {
                 ros::{RosNode, RosSink},
             },
             sources::ros::RosSource,
-            wire::topics::NODE,
+            wire::topics::full_name,
         };
 
         let reach = Reach::choose(&self.scene.outputs.ros, |name| std::env::var(name).ok());
         let reach = reach.map_err(|error| error.to_string())?;
-        let node = RosNode::join(&reach).map_err(|error| error.to_string())?;
+        let node = RosNode::join_as(&self.scene.outputs.ros.node, &reach);
+        let node = node.map_err(|error| error.to_string())?;
         let announced = Arc::new(Announced::default());
         let sink = RosSink::new(&node, self.encoder).map_err(|error| error.to_string())?;
         let sink = sink.announcing(&announced);
@@ -180,16 +181,24 @@ impl Doors<'_> {
         let delivery = Delivery::Latest { depth: 500 };
         outlets.fanout.add(Box::new(sink), delivery).map_err(|error| error.to_string())?;
         outside.sources.push(Box::new(source));
-        let (offers, asked) = asks::asked(NODE, None);
-        let channels = asks::channels(NODE, None);
+        let ros = &self.scene.outputs.ros;
+        let prefix = ros.interfaces_prefix.as_deref();
+        let (mut offers, asked) = asks::asked(&ros.node, prefix);
+        let mut channels = asks::channels(&ros.node, prefix);
+        offers.iter_mut().for_each(|it| it.name = full_name(ros, &it.name));
+        channels.iter_mut().for_each(|it| it.name = full_name(ros, &it.name));
         let bench = RosBench::open(&node, &offers, &channels, &announced);
         let bench = Box::new(bench.map_err(|error| error.to_string())?);
         let is_stopped = matches!(self.scene.controller, Controller::Topics { .. });
-        let distribution = std::env::var("ROS_DISTRO").unwrap_or_default();
+        let version = match self.scene.outputs.ros.interfaces_version {
+            Some(1) => Version::One,
+            Some(2) => Version::Two,
+            _ => Version::of_distribution(&std::env::var("ROS_DISTRO").unwrap_or_default()),
+        };
         let simulator = Simulator::new(self.scene, asked, is_stopped)
             .with_channels(channels.len())
             .beside(self.scene_file)
-            .speaking(Version::of_distribution(&distribution));
+            .speaking(version);
         outside.front = Some(Front::new(simulator, bench, announced));
         Ok(())
     }

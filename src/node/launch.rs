@@ -7,6 +7,7 @@ use super::{
     cache::Cache,
     doors::{Doors, Sizes},
     judge::Judge,
+    lockstep::Gate,
     orders::Orders,
     outlets::Closed,
     pacer::Pacer,
@@ -20,7 +21,7 @@ use super::{
 use crate::{
     cosim::compile::Compiled,
     physics::health::Diverged,
-    scene::{Controller, Scene},
+    scene::{Controller, Lockstep, Scene},
     sinks::RunStatistics,
     wire::to_ros::Encoder,
 };
@@ -95,6 +96,7 @@ pub fn launch(scene: &Scene, options: &Options) -> Result<Finished, RunError> {
     progress.running(end_ns);
     let mut crew = Crew {
         orders: Orders::new(scene, outside.sources),
+        gate: Gate::new(lockstep(scene)),
         front: outside.front,
         outlets,
         schedule: Schedule::new(&scene.outputs, scene.time.tick_ns),
@@ -105,6 +107,7 @@ pub fn launch(scene: &Scene, options: &Options) -> Result<Finished, RunError> {
         end_ns,
         is_real_time: scene.outputs.real_time,
         n_packets: 0,
+        has_missed: false,
         about: RunStatistics { substep_s, seed: scene.seed, ..RunStatistics::default() },
     };
     let start_time_s = since_start.wall_time_s();
@@ -123,11 +126,19 @@ struct Beginning {
 /// The earlier of the scene's and the command line's end [ns].
 fn end_ns(scene: &Scene, duration: Option<f64>) -> Option<u64> {
     let of_scene = match scene.controller {
-        Controller::Topics { duration } => duration,
+        Controller::Topics { duration, .. } => duration,
         Controller::Builtin(_) => None,
     };
     let ends = duration.into_iter().chain(of_scene).map(Duration::from_secs_f64);
     ends.min().map(|end| u64::try_from(end.as_nanos()).unwrap_or(u64::MAX))
+}
+
+/// Whether ticks wait for commands.
+fn lockstep(scene: &Scene) -> Lockstep {
+    match scene.controller {
+        Controller::Topics { lockstep, .. } => lockstep,
+        Controller::Builtin(_) => Lockstep::OFF,
+    }
 }
 
 fn finish(

@@ -159,7 +159,9 @@ fn crew(outside: Vec<Box<dyn Source>>) -> Crew {
     let scene = scene::parse(text, "x", std::path::Path::new(""), &[]).unwrap();
     Crew {
         front: None,
+        gate: Gate::new(scene::Lockstep::OFF),
         n_packets: 0,
+        has_missed: false,
         orders: Orders::new(&scene, outside),
         outlets: Outlets::default(),
         schedule: Schedule::new(&scene.outputs, TICK_NS),

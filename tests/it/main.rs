@@ -25,8 +25,13 @@ mod peers; // independent programs in Python
 #[cfg(feature = "ros")]
 mod private_network; // where tests may speak DDS
 mod rig; // a bare model by hand
+mod ros_layouts; // layouts for viewers name topics that there are
 #[cfg(feature = "ros")]
 mod ros_loop; // what goes out reaches others, what others say comes in
+#[cfg(feature = "ros")]
+mod ros_gripper; // what drivers of grippers offer, and ticks that wait for a controller
+#[cfg(feature = "ros")]
+mod ros_program; // the whole program, and clients of its services
 #[cfg(feature = "ros")]
 mod ros_simulator; // what ROS 2 users ask of a simulator
 mod scenes; // scenes that run, scenes that are refused
