@@ -17,7 +17,8 @@ fn names(text: &str) -> Vec<String> {
 #[test]
 fn layouts_name_what_there_is() {
     let topics = topics(&scene());
-    for (file, separator) in [("jamgrip.rviz", '.'), ("foxglove.json", '.'), ("plotjuggler.xml", '/')]
+    for (file, separator) in
+        [("jamgrip.rviz", '.'), ("foxglove.json", '.'), ("plotjuggler.xml", '/')]
     {
         let path = Path::new("launch_configs/ros").join(file);
         let names = names(&fs::read_to_string(&path).unwrap());
@@ -32,9 +33,11 @@ fn layouts_name_what_there_is() {
             let topic = topic.unwrap_or_else(|| panic!("{file}: no topic `{name}`"));
             let fields = name[topic.name.len()..].split(separator).filter(|it| !it.is_empty());
             for field in fields {
-                let is_there = topic.message_type.definition.lines().any(|line| {
-                    line.split_whitespace().nth(1).is_some_and(|it| it == field)
-                });
+                let is_there = topic
+                    .message_type
+                    .definition
+                    .lines()
+                    .any(|line| line.split_whitespace().nth(1).is_some_and(|it| it == field));
                 assert!(is_there, "{file}: `{}` has no `{field}`", topic.type_name);
             }
         }

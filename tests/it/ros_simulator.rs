@@ -40,9 +40,9 @@ use crate::{
     ros_program::{Client, Running, wait_until},
 };
 
-fn conformance(arguments: &[&str]) {
+fn conformance(changes: &[&str], arguments: &[&str]) {
     let folder = tempfile::tempdir().unwrap();
-    let _node = Running::start(folder.path(), &[]);
+    let _node = Running::start(folder.path(), changes);
     let output = Command::new(example("conformance"))
         .args(["--patience", "60"])
         .args(arguments)
@@ -60,7 +60,7 @@ fn conformance(arguments: &[&str]) {
 #[test]
 fn everything_advertised_passes_the_conformance_tool() {
     inside("ros_simulator::everything_advertised_passes_the_conformance_tool", || {
-        conformance(&[]);
+        conformance(&[], &[]);
     });
 }
 
@@ -68,7 +68,8 @@ fn everything_advertised_passes_the_conformance_tool() {
 #[test]
 fn clients_of_the_other_way_and_version_are_served_too() {
     inside("ros_simulator::clients_of_the_other_way_and_version_are_served_too", || {
-        conformance(&["--way", "cyclone", "--version", "1"]);
+        let version = ["outputs.ros.interfaces_version=1"];
+        conformance(&version, &["--way", "cyclone", "--version", "1"]);
     });
 }
 

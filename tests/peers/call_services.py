@@ -6,6 +6,7 @@ came of it as one JSON line.
 
 import json
 import time
+import types
 from dataclasses import dataclass, field
 
 from cyclonedds.idl import IdlStruct
@@ -40,7 +41,7 @@ def half(name, package, **fields):
     body = {"__annotations__": annotations, "client": 0, "number": 0}
     body |= {k: default for k, (_, default) in fields.items()}
     kind = "action" if "SendGoal" in name or "GetResult" in name else "srv"
-    made = type(IdlStruct)(name, (IdlStruct,), body, typename=part(package, name, kind))
+    made = types.new_class(name, (IdlStruct,), {"typename": part(package, name, kind)}, lambda it: it.update(body))
     return final(dataclass(made))
 
 
@@ -143,7 +144,7 @@ goal = [7] * 16
 accepted = Client(node, "simulate_steps/_action/send_goal").call(goal_id=goal, steps=5)
 ended = Client(node, "simulate_steps/_action/get_result").call(goal_id=goal)
 gripped = Client(node, "grip_cmd").call(data=True)
-types = Client(node, "get_parameter_types").call(names=["chamber.lag", "nothing", "seed"])
+kinds = Client(node, "get_parameter_types").call(names=["chamber.lag", "nothing", "seed"])
 time.sleep(0.3)
 after = {it.clock.seconds() for it in clock.take(N=1000)}
 told_steps = [(it.completed_steps, it.remaining_steps) for it in feedback.take(N=100)]
@@ -156,7 +157,7 @@ print(
             "status": ended.status,
             "ended": ended.result.result,
             "gripped": gripped.success,
-            "types": list(types.types),
+            "types": list(kinds.types),
             "n_ticks": len([it for it in after if it > before]),
             "feedback": told_steps,
         }
