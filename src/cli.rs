@@ -1,6 +1,6 @@
 //! The command line, as written by people.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, Parser, Subcommand};
 use jamgrip::{
@@ -37,6 +37,14 @@ pub(crate) struct Cli {
 pub(crate) enum Action {
     /// Runs a scene to its end
     Run(Run),
+    /// Plays a recording, proves it, or branches a new run off it
+    #[cfg(feature = "bag")]
+    #[command(after_help = crate::cli_bags::REPLAY_HELP)]
+    Replay(crate::cli_bags::Replay),
+    /// Looks into recordings, also those of others, and mends damaged ones
+    #[cfg(feature = "bag")]
+    #[command(subcommand)]
+    Bag(crate::cli_bags::Bag),
     /// Checks a scene and prints it with all defaults
     Check(SceneArgs),
     /// Runs an experiment and sets what it finds beside what its source shows
@@ -45,6 +53,9 @@ pub(crate) enum Action {
     /// Runs all quick experiments and prints one table of verdicts
     #[command(after_help = VALIDATE_HELP)]
     Validate(Validate),
+    /// Measures how fast the simulation is
+    #[command(after_help = BENCH_HELP)]
+    Bench(Bench),
     /// Writes kept results beside what their sources show, as Markdown with figures
     Report {
         /// Folder of result files, for example tests/golden/validation
@@ -70,6 +81,61 @@ measured, pass, reason; also oracle_source, relation, experiment, wall_s, left_v
 is none is null.\n\n\
 Exit codes: 0 all rows pass, 1 something could not run (a case that did not come to its end is also a \
 red row), 2 the command line is wrong, 3 a row is red, 130 interrupted.";
+
+const BENCH_HELP: &str = "\
+Each case starts from a state that is made once and kept (the first time takes minutes), and steps copies \
+of it in laps of the same work. The digest is that of the state at the end of a lap: it depends on neither \
+threads nor seconds.\n\n\
+Examples:\n  \
+jamgrip bench --case grains_3k_rest --case grains_3k_flow --threads 1\n  \
+jamgrip bench --json --seconds 1\n\n\
+Exit codes: 0 all cases were measured, 1 a case is not worth measuring or could not run, 2 the command line \
+is wrong.";
+
+/// Cases and how they are measured.
+#[derive(Debug, Args)]
+pub(crate) struct Bench {
+    /// Names all cases
+    #[arg(long)]
+    pub(crate) list: bool,
+    /// Measures this case; may be given more than once [default: all]
+    #[arg(long = "case", value_name = "NAME", conflicts_with = "list")]
+    pub(crate) cases: Vec<String>,
+    /// Solver threads [default: all processors]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+    /// Time on the clock for which the laps of a case are repeated; there are always three
+    #[arg(long, value_name = "S", default_value_t = 3.0, value_parser = seconds)]
+    pub(crate) seconds: f64,
+    /// Runs LAMMPS, LIGGGHTS and YADE, whichever is installed, on the same packings in turns with ours
+    #[arg(long)]
+    pub(crate) peers: bool,
+    /// Prints an array of cases, one a line, and nothing else
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Adds a row for each case to this CSV file, for example benches/results/desk.csv
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
+    /// Keeps states to start from in this folder [default: ~/.cache/jamgrip]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) cache: Option<PathBuf>,
+}
+
+impl Bench {
+    /// How many solver threads.
+    pub(crate) fn n_threads(&self) -> usize {
+        self.threads.map_or_else(n_processors, usize::from)
+    }
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    let seconds: f64 = text.parse().map_err(|error| format!("{error}"))?;
+    if (0.0..=86_400.0).contains(&seconds) {
+        Ok(seconds)
+    } else {
+        Err("write seconds from 0 to 86400, such as 0.5".to_owned())
+    }
+}
 
 /// An experiment and how it is run.
 #[derive(Debug, Args)]
@@ -187,6 +253,10 @@ pub(crate) struct Run {
     /// Ends the run after this simulated time, for example 2s
     #[arg(long = "for", value_name = "TIME", value_parser = time)]
     pub(crate) duration: Option<f64>,
+    /// Takes all commands from this recording, a rosbag2 folder or an .mcap file, whoever made it
+    #[cfg(feature = "bag")]
+    #[arg(long, value_name = "BAG")]
+    pub(crate) commands: Option<PathBuf>,
     /// Solver threads; the result is the same for any number [default: all processors]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
@@ -222,11 +292,7 @@ impl Run {
         let chosen = flags.into_iter().filter(|(is_set, _)| *is_set);
         overrides.extend(chosen.map(|(_, text)| text.to_owned()));
         overrides.extend(self.seed.map(|seed| format!("seed={seed}")));
-        overrides.extend(self.bag.as_ref().map(|folder| {
-            // A JSON string is a YAML string, whatever stands in it.
-            let folder = serde_json::Value::from(folder.to_string_lossy());
-            format!("outputs.bag.folder={folder}")
-        }));
+        overrides.extend(self.bag.as_deref().map(bag_folder));
         overrides
     }
 
@@ -236,7 +302,21 @@ impl Run {
     }
 }
 
-fn time(text: &str) -> Result<f64, String> {
+/// The change of a scene that records into a folder.
+pub(crate) fn bag_folder(folder: &Path) -> String {
+    // A JSON string is a YAML string, whatever stands in it.
+    let folder = serde_json::Value::from(folder.to_string_lossy());
+    format!("outputs.bag.folder={folder}")
+}
+
+/// A time of zero or more.
+pub(crate) fn time_or_zero(text: &str) -> Result<f64, String> {
     let seconds = jamgrip::scene::quantity::TIME.parse(text).map_err(|error| error.to_string())?;
+    if 0.0 <= seconds { Ok(seconds) } else { Err("write a time such as 2s".to_owned()) }
+}
+
+/// A time above zero.
+pub(crate) fn time(text: &str) -> Result<f64, String> {
+    let seconds = time_or_zero(text)?;
     if 0.0 < seconds { Ok(seconds) } else { Err("write a time above zero, such as 2s".to_owned()) }
 }

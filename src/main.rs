@@ -1,6 +1,11 @@
 //! Command line to run.
 
 mod cli;
+#[cfg(feature = "bag")]
+mod cli_bags;
+#[cfg(feature = "bag")]
+mod recordings;
+mod timing;
 mod trials;
 
 use std::{
@@ -12,13 +17,14 @@ use std::{
 use clap::Parser;
 use cli::{Action, Cli};
 use jamgrip::{
+    benchmarks::BenchError,
     lab::fault::LabError,
     node::{
         cache::Cache,
-        launch::{Options, launch},
+        launch::{Finished, Options, launch},
         ros_args::{self, RosArgs},
     },
-    scene::{self, SceneError},
+    scene::{self, Scene, SceneError},
 };
 
 /// The middleware crates log what is no fault of anyone's; `RUST_LOG` shows it.
@@ -45,9 +51,14 @@ fn main() -> ExitCode {
     env_logger::Builder::from_env(env_logger::Env::default().default_filter_or(filter)).init();
     let outcome = match cli.action {
         Action::Run(args) => run(&args, &ros_args),
+        #[cfg(feature = "bag")]
+        Action::Replay(args) => recordings::replay(&args),
+        #[cfg(feature = "bag")]
+        Action::Bag(action) => recordings::bag(&action),
         Action::Check(args) => check(&args),
         Action::Experiment(args) => trials::experiment(&args),
         Action::Validate(args) => trials::validate(&args),
+        Action::Bench(args) => timing::bench(&args),
         Action::Report { from, to } => trials::report(&from, &to),
     };
     outcome.unwrap_or_else(|error| {
@@ -55,6 +66,7 @@ fn main() -> ExitCode {
         drop(writeln!(io::stderr().lock(), "{error}"));
         let is_of_command_line = error.is::<SceneError>()
             || error.is::<ros_args::RosArgsError>()
+            || error.downcast_ref::<BenchError>().is_some_and(BenchError::is_of_command_line)
             || error.downcast_ref::<LabError>().is_some_and(LabError::is_of_command_line);
         ExitCode::from(if is_of_command_line { WRONG } else { FAILED })
     })
@@ -71,13 +83,27 @@ fn run(args: &cli::Run, ros_args: &RosArgs) -> Result<ExitCode, Box<dyn Error>> 
         scene_file: args.scene.scene.clone(),
         cache: args.cache.clone().map_or_else(Cache::of_user, Cache::new),
         is_quiet: args.json,
+        facts: Vec::new(),
     };
-    let finished = launch(&scene, &options)?;
+    let finished = start(&scene, args, &options)?;
     finished.summary.print(args.json)?;
     match finished.fault {
         Some(fault) => Err(fault.into()),
         None => Ok(ExitCode::SUCCESS),
     }
+}
+
+#[cfg(feature = "bag")]
+fn start(scene: &Scene, args: &cli::Run, options: &Options) -> Result<Finished, Box<dyn Error>> {
+    match &args.commands {
+        Some(commands) => recordings::run_by(commands, scene, options),
+        None => Ok(launch(scene, options)?),
+    }
+}
+
+#[cfg(not(feature = "bag"))]
+fn start(scene: &Scene, _: &cli::Run, options: &Options) -> Result<Finished, Box<dyn Error>> {
+    Ok(launch(scene, options)?)
 }
 
 fn check(args: &cli::SceneArgs) -> Result<ExitCode, Box<dyn Error>> {

@@ -20,7 +20,7 @@ pub mod triaxial; // grains under confining pressure
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    physics::health::Diverged,
+    physics::{System, health::Diverged},
     scene::{SceneError, text::Layers},
 };
 use findings::Findings;
@@ -130,6 +130,21 @@ pub trait Run: Send {
 
     /// What was recorded so far; complete once `advance` has said so.
     fn record(&self) -> Record;
+
+    /// What is being stepped, for those who measure how fast that goes; `None` where it is no single
+    /// system.
+    fn stepped(&self) -> Option<Stepped<'_>> {
+        None
+    }
+}
+
+/// A system and what its case does to it.
+#[derive(Clone, Copy)]
+pub struct Stepped<'a> {
+    /// The system.
+    pub system: &'a System,
+    /// What is done to it after each substep.
+    pub after: fn(&mut System),
 }
 
 /// How far a case is.

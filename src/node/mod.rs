@@ -18,7 +18,7 @@ pub mod shutdown; // Ctrl-C
 pub mod start; // a settled bag, from the cache or from scratch
 pub mod summary; // what is left at the end
 
-use std::{fmt, sync::Arc, time::Duration};
+use std::{fmt, mem, sync::Arc, time::Duration};
 
 use self::{
     front::Front,
@@ -35,7 +35,7 @@ use self::{
 use crate::{
     simulator::World,
     sinks::{Packet, RunStatistics},
-    snapshot::Snapshot,
+    snapshot::{Snapshot, checkpoint::Checkpoint},
 };
 
 /// While the run waits for a first command, its start is shown this many times a second.
@@ -118,7 +118,9 @@ pub struct Report<Fault> {
 /// Runs `plant` until there is a reason to end. What was recorded is still open afterwards.
 pub fn run<P: Plant>(plant: &mut P, crew: &mut Crew) -> Report<P::Fault> {
     let mut seen = Arc::new(Packet::new(plant.snapshot(Parts::ALL), None));
-    let mut pacer = Pacer::start(crew.is_real_time);
+    // The start is kept whatever the rate, at whatever time it is.
+    let mut checkpoints: Vec<_> = crew.checkpoint(plant, true).into_iter().collect();
+    let mut pacer = Pacer::start_at(seen.snapshot.time_ns, crew.is_real_time);
     crew.greet();
     let ending = loop {
         if let Some(ending) = crew.ending(&seen.snapshot) {
@@ -136,7 +138,10 @@ pub fn run<P: Plant>(plant: &mut P, crew: &mut Crew) -> Report<P::Fault> {
         let time_ns = seen.snapshot.time_ns + crew.tick_ns;
         let snapshot = plant.snapshot(crew.schedule.parts(time_ns)); // a copy
         crew.pace(&mut pacer, time_ns); // the only clock
-        seen = crew.pack(snapshot, &pacer);
+        let is_due = crew.schedule.checkpoint(time_ns);
+        checkpoints.extend(crew.checkpoint(plant, is_due));
+        let packet = crew.pack(snapshot, &pacer);
+        seen = Arc::new(packet.with_checkpoints(mem::take(&mut checkpoints)));
         crew.outlets.publish(&plant.view(&seen.snapshot), &seen); // never fails the run
         crew.ticked(&seen);
     };
@@ -253,6 +258,11 @@ impl Crew {
         packet.numbered(self.n_packets)
     }
 
+    /// All that is needed to go on, if it is due and someone keeps it.
+    fn checkpoint<P: Plant>(&self, plant: &P, is_due: bool) -> Option<Checkpoint> {
+        if is_due && self.outlets.bag.is_some() { plant.checkpoint() } else { None }
+    }
+
     fn ending(&mut self, seen: &Snapshot) -> Option<Ending> {
         if self.shutdown.is_requested() {
             return Some(Ending::Interrupted);
@@ -275,7 +285,7 @@ impl Crew {
     }
 
     /// Judges a snapshot, shows it, and adds statistics where they are due.
-    fn pack(&mut self, snapshot: Snapshot, pacer: &Pacer) -> Arc<Packet> {
+    fn pack(&mut self, snapshot: Snapshot, pacer: &Pacer) -> Packet {
         self.judge.look(&snapshot, Duration::from_nanos(self.tick_ns).as_secs_f64());
         let phase = self.orders.phase().map_or("", |phase| phase.name());
         self.progress.tick(&snapshot, phase, pacer);
@@ -288,7 +298,7 @@ impl Crew {
             sinks: self.outlets.counters(),
             ..self.about.clone()
         });
-        Arc::new(self.number(Packet::new(snapshot, run)))
+        self.number(Packet::new(snapshot, run))
     }
 }
 

@@ -11,7 +11,7 @@ use crate::{
     physics::health::Diverged,
     session::Session,
     simulator::Subject,
-    snapshot::{Snapshot, take, view::View},
+    snapshot::{Snapshot, checkpoint::Checkpoint, take, view::View},
 };
 
 /// Something that ticks and can be looked at.
@@ -28,6 +28,11 @@ pub trait Plant: Subject {
     /// A copy of what the outside may see, with the large parts asked for.
     fn snapshot(&self, parts: Parts) -> Snapshot;
 
+    /// All that is needed to go on from here, if it can be saved.
+    fn checkpoint(&self) -> Option<Checkpoint> {
+        None
+    }
+
     /// A borrowed look at everything. `seen` is the snapshot of the same tick.
     fn view<'a>(&'a self, seen: &'a Snapshot) -> View<'a>;
 }
@@ -41,6 +46,11 @@ impl Plant for Session {
 
     fn snapshot(&self, parts: Parts) -> Snapshot {
         take::snapshot(self, parts)
+    }
+
+    fn checkpoint(&self) -> Option<Checkpoint> {
+        let (tick, time_ns, digest) = (self.now(), self.time_ns(), self.digest());
+        Some(Checkpoint { tick, time_ns, digest, bytes: self.save() })
     }
 
     fn view<'a>(&'a self, seen: &'a Snapshot) -> View<'a> {

@@ -7,6 +7,7 @@ use super::{
     membrane::MembraneState,
     state::{Grains, Springs},
     substep,
+    substep::STAGES,
 };
 
 /// One system.
@@ -47,11 +48,22 @@ impl System {
 
     /// Advances by one substep; walls move on at their velocities.
     pub fn step(&mut self) {
-        let dt = self.model.substep;
-        for wall in &mut self.controls.walls {
-            wall.advance(dt);
-        }
+        self.move_walls();
         substep(&self.model, &self.controls, &mut self.state, &mut self.scratch);
+    }
+
+    /// The same, telling `after` the number of each stage of `STAGES` that is over.
+    pub fn step_by_stages(&mut self, mut after: impl FnMut(usize)) {
+        self.move_walls();
+        for (k, (_, stage)) in STAGES.iter().enumerate() {
+            stage(&self.model, &self.controls, &mut self.state, &mut self.scratch);
+            after(k);
+        }
+    }
+
+    fn move_walls(&mut self) {
+        let dt = self.model.substep;
+        self.controls.walls.iter_mut().for_each(|wall| wall.advance(dt));
     }
 
     /// Looks for what cannot go on; `tick` is only told in the fault.

@@ -5,11 +5,7 @@
 
 pub mod announced; // how far packets have been published
 #[cfg(feature = "bag")]
-pub mod bag; // rosbag2 recordings
-#[cfg(feature = "bag")]
-mod bag_metadata; // what a recording says about itself
-#[cfg(feature = "bag")]
-mod disk; // a file that can be completed on a full disk
+pub mod bag; // recordings while they are made
 pub mod fanout; // one thread and one queue per sink
 pub mod reach;
 #[cfg(feature = "ros")]
@@ -21,7 +17,7 @@ use std::{sync::OnceLock, time::Duration};
 
 pub use crate::snapshot::run::{RunStatistics, SinkCounters};
 use crate::{
-    snapshot::Snapshot,
+    snapshot::{Snapshot, checkpoint::Checkpoint},
     wire::{to_ros::Encoder, topics::Message},
 };
 
@@ -33,6 +29,8 @@ pub struct Packet {
     pub run: Option<RunStatistics>,
     /// Number of the packet in its run; 0 if nobody counts.
     pub number: u64,
+    /// All that is needed to go on, where it is due; the start's too with the first packet.
+    pub checkpoints: Vec<Checkpoint>,
     /// The messages, once someone has asked for them.
     messages: OnceLock<Vec<Message>>,
 }
@@ -40,12 +38,18 @@ pub struct Packet {
 impl Packet {
     /// A packet whose messages are not encoded yet.
     pub fn new(snapshot: Snapshot, run: Option<RunStatistics>) -> Self {
-        Self { snapshot, run, number: 0, messages: OnceLock::new() }
+        let (checkpoints, messages) = (Vec::new(), OnceLock::new());
+        Self { snapshot, run, number: 0, checkpoints, messages }
     }
 
     /// The same packet with a number.
     pub fn numbered(self, number: u64) -> Self {
         Self { number, ..self }
+    }
+
+    /// The same with checkpoints.
+    pub fn with_checkpoints(self, checkpoints: Vec<Checkpoint>) -> Self {
+        Self { checkpoints, ..self }
     }
 
     /// The messages; `encoder` makes them if nobody has yet.

@@ -14,6 +14,9 @@ use super::messages::{
 };
 use crate::scene::{Ros, Scene};
 
+/// Name of the ROS 2 node if the scene gives it no other.
+pub const NODE: &str = "/jamgrip";
+
 /// A ROS 2 topic.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Topic {

@@ -13,7 +13,7 @@ use super::{
 use crate::{
     base::Real,
     cosim::compile::CompileError,
-    experiments::{Progress, ResumeError, Run, kept, record::Record},
+    experiments::{Progress, ResumeError, Run, Stepped, kept, record::Record},
     physics::{
         Model, State, System,
         fill::{self, Filling},
@@ -291,5 +291,9 @@ impl Run for GripRun {
 
     fn record(&self) -> Record {
         self.record.clone()
+    }
+
+    fn stepped(&self) -> Option<Stepped<'_>> {
+        self.system.as_ref().map(|system| Stepped { system, after: |_| {} })
     }
 }

@@ -265,23 +265,10 @@ impl Test {
         }
     }
 
-    /// One substep of the system. A vertex that would pass a plate stays where it meets it: air presses
-    /// the sheet on the plates wherever no grain holds it off, and its friction there is high.
+    /// One substep of the system.
     fn advance(&mut self) {
         self.system.step();
-        let state = &mut self.system.state;
-        let [bottom, top] = [BOTTOM, TOP].map(|wall| {
-            let motion = &state.walls[wall as usize];
-            (motion.pose.translation.z, motion.twist.linear)
-        });
-        let sheet = &mut state.membrane;
-        for (position, velocity) in sheet.positions.iter_mut().zip(&mut sheet.velocities) {
-            if position.z < bottom.0 {
-                (position.z, *velocity) = bottom;
-            } else if position.z > top.0 {
-                (position.z, *velocity) = top;
-            }
-        }
+        keep_between_plates(&mut self.system);
     }
 
     /// Mean pressure on both plates in the last substep [Pa].
@@ -309,6 +296,24 @@ impl Test {
         self.course.logbook.count(self.course.stage.name(), self.course.n_in_stage);
         self.course.stage = stage;
         self.course.n_in_stage = 0;
+    }
+}
+
+/// A vertex that would pass a plate stays where it meets it: air presses the sheet on the plates
+/// wherever no grain holds it off, and its friction there is high.
+pub(super) fn keep_between_plates(system: &mut System) {
+    let state = &mut system.state;
+    let [bottom, top] = [BOTTOM, TOP].map(|wall| {
+        let motion = &state.walls[wall as usize];
+        (motion.pose.translation.z, motion.twist.linear)
+    });
+    let sheet = &mut state.membrane;
+    for (position, velocity) in sheet.positions.iter_mut().zip(&mut sheet.velocities) {
+        if position.z < bottom.0 {
+            (position.z, *velocity) = bottom;
+        } else if position.z > top.0 {
+            (position.z, *velocity) = top;
+        }
     }
 }
 

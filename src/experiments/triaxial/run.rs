@@ -2,13 +2,13 @@
 
 use super::{
     Variant,
-    course::{Course, Stage, Test},
+    course::{Course, Stage, Test, keep_between_plates},
     setup::Setup,
     specimen::{Choice, Kind, Recipe},
 };
 use crate::{
     base::Real,
-    experiments::{Progress, ResumeError, Run, kept, record::Record},
+    experiments::{Progress, ResumeError, Run, Stepped, kept, record::Record},
     physics::{health::Diverged, measure::real, membrane::mesh::MeshFault, state::State},
 };
 
@@ -83,6 +83,10 @@ impl Run for Sheared {
         let mut record = self.test.course.logbook.record(&self.name, seed);
         record.digest = kept::digest(&self.test.system.state);
         record
+    }
+
+    fn stepped(&self) -> Option<Stepped<'_>> {
+        Some(Stepped { system: &self.test.system, after: keep_between_plates })
     }
 }
 

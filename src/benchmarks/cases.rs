@@ -1,0 +1,192 @@
+//! What is measured. A closed list: a new case adds its line here.
+
+use super::{
+    laps::Work,
+    packing::{Boxed, Phase},
+    prepare::{Moment, Spot},
+    soundness::Limits,
+};
+
+/// One case.
+#[derive(Debug)]
+pub struct Case {
+    /// Its name on the command line.
+    pub name: &'static str,
+    /// One line: what it is.
+    pub about: &'static str,
+    /// How much is done in a lap.
+    pub(super) work: Work,
+    /// What must be true of it.
+    pub(super) limits: Limits,
+    /// How its first state is made.
+    pub(super) kind: Kind,
+}
+
+/// How the first state of a case is made.
+#[derive(Debug)]
+pub(super) enum Kind {
+    /// A box of grains.
+    Grains(Boxed),
+    /// An experiment at some moment.
+    Experiment(Spot),
+    /// The whole session that picks and lifts.
+    Lift,
+}
+
+/// Grains that lie in a closed box under pressure.
+const fn rest(
+    name: &'static str,
+    about: &'static str,
+    (n_grains, n_tiles): (usize, [usize; 3]),
+    (n_warm, n_steps): (u64, u64),
+) -> Case {
+    Case {
+        name,
+        about,
+        work: Work { n_warm, n_steps },
+        limits: Limits::PACKED_AT_REST,
+        kind: Kind::Grains(Boxed { n_grains, n_tiles, phase: Phase::Rest }),
+    }
+}
+
+/// Grains that slide down in an opened, tilted box.
+const fn flow(
+    name: &'static str,
+    about: &'static str,
+    (n_grains, n_tiles): (usize, [usize; 3]),
+    (n_warm, n_steps): (u64, u64),
+) -> Case {
+    Case {
+        name,
+        about,
+        work: Work { n_warm, n_steps },
+        limits: Limits::FLOWING,
+        kind: Kind::Grains(Boxed { n_grains, n_tiles, phase: Phase::Flow }),
+    }
+}
+
+const ONE: [usize; 3] = [1, 1, 1];
+
+const fn gripper(
+    name: &'static str,
+    about: &'static str,
+    case: &'static str,
+    moment: Moment,
+    limits: Limits,
+) -> Case {
+    let spot = Spot { experiment: "gripper", case, overrides: GRIPPER, moment };
+    let work = Work { n_warm: 200, n_steps: 1000 };
+    Case { name, about, work, limits, kind: Kind::Experiment(spot) }
+}
+
+/// The thesis' gripper with three of its moduli, the first filling of each. The way in is fast: where
+/// the grains end is not what is measured.
+const GRIPPER: &[&str] = &[
+    "grains.youngs_modulus=100 MPa",
+    "sweep.moduli=[5 MPa, 100 MPa, 10 GPa]",
+    "sweep.fillings=1",
+    "accelerations.insert_speed_factor=20",
+    "protocol.relax_time=10 ms",
+];
+const SOFT: &str = "modulus_5MPa_filling_0";
+const FIRM: &str = "modulus_100MPa_filling_0";
+const HARD: &str = "modulus_10GPa_filling_0";
+
+const fn triaxial(name: &'static str, about: &'static str, case: &'static str) -> Case {
+    let spot = Spot {
+        experiment: "triaxial",
+        case,
+        overrides: &["runs.case2=true", "time.rayleigh_share=0.4"],
+        moment: Moment::Shearing,
+    };
+    let work = Work { n_warm: 100, n_steps: 500 };
+    Case { name, about, work, limits: Limits::CONFINED, kind: Kind::Experiment(spot) }
+}
+
+/// All cases.
+pub static CASES: &[Case] = &[
+    rest("grains_3k_rest", "3 000 grains in a closed box", (3000, ONE), (200, 1000)),
+    flow("grains_3k_flow", "3 000 grains in an opened, tilted box", (3000, ONE), (200, 1000)),
+    rest("grains_30k_rest", "30 000 grains in a closed box", (30_000, ONE), (30, 200)),
+    flow("grains_30k_flow", "30 000 grains in an opened, tilted box", (30_000, ONE), (50, 400)),
+    rest("grains_300k_rest", "8 x 37 500 grains", (37_500, [2, 2, 2]), (5, 30)),
+    flow(
+        "grains_300k_flow",
+        "8 x 37 500 grains, opened and tilted",
+        (37_500, [2, 2, 2]),
+        (20, 100),
+    ),
+    rest("grains_1m_rest", "27 x 37 500 grains", (37_500, [3, 3, 3]), (3, 10)),
+    gripper(
+        "gripper_5mpa_free",
+        "4200 grains of 5 MPa, bag vented",
+        SOFT,
+        Moment::Free,
+        Limits::BAG,
+    ),
+    gripper(
+        "gripper_5mpa_jamming",
+        "the same, half evacuated around a sphere",
+        SOFT,
+        Moment::Jamming,
+        Limits::GRIPPING_SOFT,
+    ),
+    gripper(
+        "gripper_5mpa_holding",
+        "the same, at full vacuum",
+        SOFT,
+        Moment::Holding,
+        Limits::GRIPPING_SOFT,
+    ),
+    gripper(
+        "gripper_100mpa_free",
+        "4200 grains of 100 MPa, bag vented",
+        FIRM,
+        Moment::Free,
+        Limits::BAG,
+    ),
+    gripper(
+        "gripper_100mpa_jamming",
+        "the same, half evacuated around a sphere",
+        FIRM,
+        Moment::Jamming,
+        Limits::GRIPPING,
+    ),
+    gripper(
+        "gripper_100mpa_holding",
+        "the same, at full vacuum",
+        FIRM,
+        Moment::Holding,
+        Limits::GRIPPING,
+    ),
+    gripper(
+        "gripper_10gpa_free",
+        "4200 grains of 10 GPa, bag vented",
+        HARD,
+        Moment::Free,
+        Limits::BAG,
+    ),
+    gripper(
+        "gripper_10gpa_jamming",
+        "the same, half evacuated around a sphere",
+        HARD,
+        Moment::Jamming,
+        Limits::GRIPPING,
+    ),
+    gripper(
+        "gripper_10gpa_holding",
+        "the same, at full vacuum",
+        HARD,
+        Moment::Holding,
+        Limits::GRIPPING,
+    ),
+    triaxial("triaxial_case1", "1716 grains, 1131 vertices, shearing", "case1_triangles_A"),
+    triaxial("triaxial_case2", "4645 grains, 2214 vertices, shearing", "case2_triangles_A"),
+    Case {
+        name: "pick_and_lift",
+        about: "the default scene from the first tick to the last, without ROS and recordings",
+        work: Work { n_warm: 0, n_steps: 0 },
+        limits: Limits::LIFTED,
+        kind: Kind::Lift,
+    },
+];

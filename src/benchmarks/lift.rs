@@ -1,0 +1,175 @@
+//! A whole session: the default scene, commanded by its own controller, without anyone who listens.
+
+use std::{collections::BTreeMap, path::Path};
+
+use super::{
+    BenchError, Case, Figures, Options,
+    figures::{Stage, median, processor_share as share},
+    process,
+    soundness::{Seen, check_lift},
+};
+use crate::{
+    base::Real,
+    cosim::compile::Compiled,
+    node::{
+        judge::Judge,
+        orders::Orders,
+        pacer::Stopwatch,
+        progress::Progress,
+        schedule::Schedule,
+        start::{self, Started},
+    },
+    physics::{
+        measure::{real, real_of},
+        membrane::mesh::Mesh,
+    },
+    scene::{self, Scene},
+    session::Session,
+    snapshot::take,
+};
+
+/// The default scene.
+const SCENE: (&str, &str) =
+    ("launch_configs/pick_and_lift.yaml", include_str!("../../launch_configs/pick_and_lift.yaml"));
+
+/// One session from its first tick to its last.
+struct Lap {
+    session: Session,
+    /// Time on the clock [s].
+    wall_s: Real,
+    /// Processor time for it [s], if the system tells it.
+    processor_s: Option<Real>,
+    /// Of commands, ticks and snapshots [s].
+    parts: [Real; 3],
+    /// Wall and simulated time of each phase [s].
+    phases: BTreeMap<String, [Real; 2]>,
+    /// What came of it.
+    judge: Judge,
+    /// Sum over all ticks of the contacts between grains.
+    n_contact_ticks: Real,
+}
+
+/// Runs whole sessions, one at least.
+pub(super) fn run(case: &Case, options: &Options) -> Result<Figures, BenchError> {
+    let scene = scene::parse(SCENE.1, SCENE.0, Path::new("launch_configs"), &[])?;
+    let mut laps: Vec<Lap> = Vec::new();
+    let mut start_digest = 0;
+    while laps.is_empty() || laps.iter().map(|lap| lap.wall_s).sum::<Real>() < options.seconds {
+        let session = session(&scene, options)?;
+        start_digest = session.digest();
+        process::forget_peak();
+        let lap = lap(case, &scene, session)?;
+        let digests = (laps.first().map(|first| first.session.digest()), lap.session.digest());
+        if let (Some(expected), found) = digests
+            && expected != found
+        {
+            let (case, lap) = (case.name.to_owned(), laps.len() + 1);
+            return Err(BenchError::Unequal { case, lap, found, expected });
+        }
+        laps.push(lap);
+    }
+    figures(case, options, &laps, start_digest)
+}
+
+fn session(scene: &Scene, options: &Options) -> Result<Session, BenchError> {
+    let compiled = Compiled::new(scene, options.n_threads).map_err(start::StartError::from)?;
+    let progress = Progress::new(options.is_quiet);
+    let started = start::start(compiled, options.n_threads, &options.cache, &progress);
+    progress.end();
+    let Started { session, .. } = started?;
+    Ok(session)
+}
+
+/// The loop of `node::run`, with nobody outside.
+fn lap(case: &Case, scene: &Scene, mut session: Session) -> Result<Lap, BenchError> {
+    let mut orders = Orders::new(scene, Vec::new());
+    let schedule = Schedule::new(&scene.outputs, scene.time.tick_ns);
+    let tick_s = std::time::Duration::from_nanos(scene.time.tick_ns).as_secs_f64();
+    let mut seen = take::snapshot(&session, schedule.parts(0));
+    let (mut parts, mut phases) = ([0.0; 3], BTreeMap::<String, [Real; 2]>::new());
+    let (mut judge, mut n_contact_ticks) = (Judge::default(), 0.0);
+    let processor = process::processor_s();
+    let whole = Stopwatch::start();
+    let mut watch = Stopwatch::start();
+    while !orders.is_done() {
+        let commands = orders.drain(&seen);
+        let drained = watch.lap_s();
+        session
+            .tick(&commands)
+            .map_err(|fault| BenchError::Diverged { case: case.name.to_owned(), fault })?;
+        let ticked = watch.lap_s();
+        seen = take::snapshot(&session, schedule.parts(seen.time_ns + scene.time.tick_ns));
+        judge.look(&seen, tick_s);
+        n_contact_ticks += real(seen.jamming.n_grain_contacts);
+        let taken = watch.lap_s();
+        for (sum, time) in parts.iter_mut().zip([drained, ticked, taken]) {
+            *sum += time;
+        }
+        let name = orders.phase().map_or("none", |phase| phase.name());
+        let phase = phases.entry(name.to_owned()).or_default();
+        phase[0] += drained + ticked + taken;
+        phase[1] += tick_s;
+    }
+    let processor_s = process::processor_s().zip(processor).map(|(after, before)| after - before);
+    Ok(Lap { session, wall_s: whole.total_s(), processor_s, parts, phases, judge, n_contact_ticks })
+}
+
+fn figures(
+    case: &Case,
+    options: &Options,
+    laps: &[Lap],
+    start_digest: u64,
+) -> Result<Figures, BenchError> {
+    let last = laps.last().expect("there is one lap at least");
+    let coupled = last.session.coupled();
+    let seen = Seen::of(&coupled.model, &coupled.state, &coupled.scratch);
+    seen.check(&case.limits)
+        .and_then(|()| check_lift(&last.judge.verdict()))
+        .map_err(|fault| BenchError::Unsound { case: case.name.to_owned(), fault })?;
+    let mut times: Vec<Real> = laps.iter().map(|lap| lap.wall_s).collect();
+    times.sort_by(Real::total_cmp);
+    let n_ticks = last.session.now().0;
+    let n_steps = n_ticks * coupled.plan.n_substeps as u64;
+    let steps_per_s = real_of(n_steps) / median(&times);
+    let n_contacts = last.n_contact_ticks / real_of(n_ticks);
+    let contact_steps = n_contacts * steps_per_s / real(options.n_threads);
+    let whole: Real = last.parts.iter().sum();
+    let stage = |(name, time): (&str, &Real)| Stage {
+        name: name.to_owned(),
+        share: time / whole,
+        ns_per_step: 1e9 * time / real_of(n_steps),
+    };
+    let mesh: &Mesh = &coupled.model.membrane.mesh;
+    Ok(Figures {
+        case: case.name.to_owned(),
+        n_grains: coupled.state.grains.len(),
+        n_vertices: mesh.n_vertices(),
+        threads: options.n_threads,
+        substep_s: coupled.model.substep,
+        steps_per_s,
+        steps_per_s_best: real_of(n_steps) / times[0],
+        spread: times[times.len() - 1] / times[0] - 1.0,
+        processor_share: share(
+            laps.iter().map(|lap| (lap.wall_s, lap.processor_s)),
+            options.n_threads,
+        ),
+        contact_steps_per_s_per_core: contact_steps,
+        ns_per_contact_step: 1e9 / contact_steps,
+        digest: format!("{:016x}", last.session.digest()),
+        digest_after_steps: n_steps,
+        start_digest: format!("{start_digest:016x}"),
+        n_lap_steps: n_steps,
+        n_laps: laps.len(),
+        n_builds_per_lap: coupled.scratch.neighbours.n_builds,
+        peak_rss_bytes: process::peak(),
+        stages: ["commands", "ticks", "snapshots"]
+            .into_iter()
+            .zip(&last.parts)
+            .map(stage)
+            .collect(),
+        phases: last.phases.iter().map(|(name, it)| (name.clone(), it[1] / it[0])).collect(),
+        ..Figures::default()
+    }
+    .with_speed_of_time()
+    .seeing(&seen))
+}

@@ -1,0 +1,169 @@
+//! How fast it is: cases that anyone can repeat, measured in laps of the same work.
+//!
+//! A case starts from a state that was made ready before (and is kept in the cache of start states).
+//! Each lap steps a copy of it: first unmeasured, until lists and caches are warm, then measured. All
+//! laps of a case end in the same state, whatever the threads and however many laps there are, so
+//! the digest of that state stands beside the speed. Before a case is reported its contacts, overlaps and
+//! speeds are looked at: an empty, exploded or frozen system would look fast.
+
+mod cases; // what is measured
+pub mod figures; // what is told of a case
+mod laps; // stepping and timing
+mod lift; // a whole session
+mod packing; // grains in a box
+mod peers; // the same in other codes
+mod prepare; // states to start from
+mod process; // what the system tells
+pub mod sheet; // figures kept over time
+mod soundness; // is it worth measuring?
+
+pub use cases::{CASES, Case};
+pub use figures::Figures;
+pub use peers::{PeerError, PeerFigures};
+pub use soundness::Unsound;
+
+use crate::{
+    experiments, lab::fault::LabError, node, node::cache::Cache, physics::health::Diverged,
+    scene::SceneError,
+};
+
+/// How the cases are run.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// Solver threads.
+    pub n_threads: usize,
+    /// Time on the clock for which laps are repeated [s]; there are always a few.
+    pub seconds: f64,
+    /// Where states to start from are kept.
+    pub cache: Cache,
+    /// True runs other codes on the same packings, if they are installed.
+    pub with_peers: bool,
+    /// True tells nothing on standard error while a state is made ready.
+    pub is_quiet: bool,
+}
+
+/// Why there are no figures.
+#[derive(Debug, thiserror::Error)]
+pub enum BenchError {
+    /// There is no such case.
+    #[error("no case `{name}`; there are: {}", known())]
+    NoSuchCase {
+        /// What was asked for.
+        name: String,
+    },
+    /// The state is not worth measuring.
+    #[error("{case}: {fault}")]
+    Unsound {
+        /// The case.
+        case: String,
+        /// What is wrong.
+        fault: Unsound,
+    },
+    /// Two laps did not end in the same state.
+    #[error(
+        "{case}: lap {lap} ended with digest {found:016x}, the first with {expected:016x}; the same work \
+         must give the same bits"
+    )]
+    Unequal {
+        /// The case.
+        case: String,
+        /// Number of the lap.
+        lap: usize,
+        /// Its digest.
+        found: u64,
+        /// That of the first.
+        expected: u64,
+    },
+    /// The system cannot go on.
+    #[error("{case}: {fault}")]
+    Diverged {
+        /// The case.
+        case: String,
+        /// Why.
+        fault: Diverged,
+    },
+    /// The experiment ended before the state that is to be measured.
+    #[error("{case}: the experiment came to its end before there was anything to measure")]
+    NoMoment {
+        /// The case.
+        case: String,
+    },
+    /// The experiment cannot be set up.
+    #[error(transparent)]
+    Experiment(#[from] experiments::StartError),
+    /// There is no such experiment.
+    #[error(transparent)]
+    Lab(#[from] LabError),
+    /// Its scene is wrong.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// The session cannot be started.
+    #[error(transparent)]
+    Session(#[from] node::start::StartError),
+    /// The grains find no place to grow from.
+    #[error("packing: {0}")]
+    NoRoom(#[from] crate::physics::packing::scatter::NoRoom),
+    /// Another code does not do what it should.
+    #[error("{case}: {fault}")]
+    Peer {
+        /// The case.
+        case: String,
+        /// What is wrong.
+        fault: PeerError,
+    },
+    /// The operating system gives no threads.
+    #[error("solver threads: {0}; use fewer with --threads")]
+    Threads(#[from] rayon::ThreadPoolBuildError),
+}
+
+impl BenchError {
+    /// True if the command line asks for what there is not.
+    pub fn is_of_command_line(&self) -> bool {
+        matches!(self, Self::NoSuchCase { .. })
+    }
+}
+
+fn known() -> String {
+    let names: Vec<&str> = CASES.iter().map(|case| case.name).collect();
+    names.join(", ")
+}
+
+/// The cases of these names; all that are run by default if there are none.
+///
+/// # Errors
+/// If there is no case of a name.
+pub fn chosen(names: &[String]) -> Result<Vec<&'static Case>, BenchError> {
+    if names.is_empty() {
+        return Ok(CASES.iter().collect());
+    }
+    let by_name = |name: &String| {
+        let found = CASES.iter().find(|case| case.name == *name);
+        found.ok_or_else(|| BenchError::NoSuchCase { name: name.clone() })
+    };
+    names.iter().map(by_name).collect()
+}
+
+/// Measures one case.
+///
+/// # Errors
+/// If it cannot be started, or is not worth measuring.
+pub fn run(case: &Case, options: &Options) -> Result<Figures, BenchError> {
+    process::forget_peak();
+    match &case.kind {
+        cases::Kind::Lift => lift::run(case, options),
+        cases::Kind::Grains(..) | cases::Kind::Experiment(..) => {
+            let mut course = laps::Course::new(case, options)?;
+            let mut peers = course.peers()?;
+            while !course.is_over() {
+                course.lap()?;
+                // In turns, so that a busy minute of the machine hits both.
+                if let Some(peers) = &mut peers {
+                    peers
+                        .lap()
+                        .map_err(|fault| BenchError::Peer { case: case.name.to_owned(), fault })?;
+                }
+            }
+            course.figures(peers.as_ref())
+        }
+    }
+}

@@ -1,0 +1,260 @@
+//! Grains in a box of six walls, the common ground with other codes: frictional Hertz–Mindlin spheres,
+//! E = 100 MPa, ν = 0.25, μ = 0.5, ρ = 2500 kg/m³, R = 1.8–2.2 mm, grown under 50 kPa.
+//!
+//! Large boxes are put together of mirrored copies of a small one. A grain that touches a smooth wall
+//! with overlap ξ meets its own mirror image, of half the effective modulus and radius, with 2 ξ: the
+//! force is the same, 4/3 E*/2 √(R/2 · 2ξ) 2ξ = 4/3 E* √(R ξ) ξ. So the copies hold each other as
+//! the walls did, and only weight and friction have to settle.
+
+use crate::{
+    base::{
+        Pose, Real, Vec3,
+        random::{Random, Stream},
+        real::Twist,
+    },
+    physics::{
+        Model, System,
+        boundary::{
+            body::BodyMotion,
+            wall::{WallModel, WallShape},
+        },
+        contact::law::{PairLaw, Surface},
+        packing::{
+            Grown, Growth, Recipe, Room, first_scale, scatter, scatter::NoRoom, sphere_volume,
+        },
+        state::{Grains, State},
+    },
+    scene::Material,
+};
+
+/// The grains' material.
+pub(super) const MATERIAL: Material =
+    Material { youngs_modulus: 1e8, poisson_ratio: 0.25, density: 2500.0 };
+/// What the other codes call the dissipation.
+pub(super) const RESTITUTION: Real = 0.5;
+/// Dissipation as of a restitution of about one half.
+pub(super) const SURFACE: Surface =
+    Surface { friction: 0.5, dissipation_time: 3e-5, tangential_damping: 0.3 };
+/// Smallest and largest radius [m].
+const RADII: [Real; 2] = [1.8e-3, 2.2e-3];
+/// Solid fraction of the box at these radii; grains grow a little beyond or stay a little below.
+const SOLID_FRACTION: Real = 0.61;
+/// Of grains while they grow: with none they would be denser than any that are poured, with their own
+/// looser.
+const GROWTH_FRICTION: Real = 0.1;
+/// Pressure of the grown grains [Pa].
+const PRESSURE: Real = 5e4;
+/// Solid fraction of the scattered grains.
+const THIN: Real = 0.25;
+/// Substep that is measured [s]: a tenth of the Rayleigh time.
+pub(super) const SUBSTEP: Real = 5e-6;
+/// Substep until then [s].
+const COARSE_SUBSTEP: Real = 1e-5;
+/// Neighbours are listed this share of the largest radius beyond contact.
+const SKIN_SHARE: Real = 0.25;
+/// Share of its velocity that a grain keeps in a substep while it comes to rest: first what pushes each
+/// other, then what is loose and falls on its neighbours.
+const DRAG: [Real; 2] = [0.98, 0.998];
+/// Substeps with each drag: of a grown box, of a box of copies, of an opened one.
+const N_REST: [[u64; 2]; 3] = [[1000, 3000], [200, 400], [500, 4000]];
+/// Substeps of 10 us from tilting to the state that is measured.
+const N_FLOW: u64 = 2000;
+/// Height of the opened box over that of the closed one.
+const OPENED: Real = 1.5;
+/// Standard gravity [m/s²].
+const GRAVITY: Real = 9.81;
+/// Changes whenever the same box would be filled otherwise.
+const VERSION: u64 = 3;
+
+/// Grains in a box.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Boxed {
+    /// Grains of one copy.
+    pub(super) n_grains: usize,
+    /// Copies along each edge.
+    pub(super) n_tiles: [usize; 3],
+    /// What they do.
+    pub(super) phase: Phase,
+}
+
+/// What the grains do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Phase {
+    /// They lie in the closed box.
+    Rest,
+    /// They slide down in the opened box, tilted by 45°.
+    Flow,
+}
+
+impl Boxed {
+    /// Names the state in the cache.
+    pub(super) fn key(&self) -> String {
+        format!("box {VERSION} {} {:?} {:?}", self.n_grains, self.n_tiles, self.phase)
+    }
+
+    /// Names the closed box of one copy, of which the others are made.
+    pub(super) fn tile_key(&self) -> String {
+        self.closed_tile().key()
+    }
+
+    /// The closed box of one copy.
+    pub(super) fn closed_tile(&self) -> Self {
+        Self { n_tiles: [1; 3], phase: Phase::Rest, ..*self }
+    }
+
+    /// True if it is such a box.
+    pub(super) fn is_tile(&self) -> bool {
+        self.n_tiles == [1; 3] && self.phase == Phase::Rest
+    }
+
+    /// Edge of the box of one copy [m].
+    fn edge(&self) -> Real {
+        let solid: Real = self.final_radii().iter().map(|&r| sphere_volume(r)).sum();
+        (solid / SOLID_FRACTION).cbrt()
+    }
+
+    /// Edges of the box [m]; it goes from the origin to there.
+    pub(super) fn size(&self) -> Vec3 {
+        let edge = self.edge();
+        let lid = if self.phase == Phase::Flow { OPENED } else { 1.0 };
+        let n = self.n_tiles.map(crate::physics::measure::real);
+        Vec3::new(n[0] * edge, n[1] * edge, n[2] * edge * lid)
+    }
+
+    fn final_radii(&self) -> Vec<Real> {
+        let mut random = Random::new(1, Stream::Radius);
+        (0..self.n_grains).map(|_| random.between(RADII[0], RADII[1])).collect()
+    }
+
+    /// The system that is measured, from its saved state.
+    pub(super) fn system(&self, state: State) -> System {
+        let mut system = system(state.grains.clone(), &self.size());
+        system.model.substep = SUBSTEP;
+        system.model.gravity = self.gravity();
+        system.controls.walls.clone_from(&state.walls);
+        system.state = state;
+        system
+    }
+
+    /// Gravity [m/s²].
+    pub(super) fn gravity(&self) -> Vec3 {
+        match self.phase {
+            Phase::Rest => Vec3::new(0.0, 0.0, -GRAVITY),
+            Phase::Flow => Vec3::new(1.0, 0.0, -1.0) * (GRAVITY * 0.5_f64.sqrt()),
+        }
+    }
+
+    /// One copy in its closed box, at rest, from nothing.
+    pub(super) fn grow(&self) -> Result<State, NoRoom> {
+        let (last, size) = (self.final_radii(), self.size());
+        let room = Room::Box { low: Vec3::zeros(), high: size };
+        let scale = first_scale(&last, THIN, room.volume());
+        let small: Vec<Real> = last.iter().map(|r| scale * r).collect();
+        let mut random = Random::new(1, Stream::Position);
+        let places = scatter(&small, None, &mut random, |it| room.place(RADII[1], it))?;
+        let masses = masses(&last);
+        let mut system = system(Grains::at_rest(places, small, masses), &size);
+        let radius = 0.5 * (RADII[0] + RADII[1]);
+        let mass = sphere_volume(radius) * MATERIAL.density;
+        let mut recipe = Recipe::new(&system.model, room.volume(), PRESSURE, mass, radius);
+        recipe.laws.grains.friction = GROWTH_FRICTION;
+        recipe.scale_last = 1.2;
+        let mut growth = Growth::new(recipe, last, scale);
+        while growth.step(&mut system) == Grown::Growing {
+            drag(&mut system, DRAG[0]);
+        }
+        system.state.grains.masses = masses_of(&system.state.grains);
+        come_to_rest(&mut system, N_REST[0]);
+        Ok(system.state)
+    }
+
+    /// This box, made of a closed one of one copy.
+    pub(super) fn of_tile(&self, tile: &State) -> State {
+        let closed = Self { phase: Phase::Rest, ..*self };
+        let mut state = if self.n_tiles == [1; 3] {
+            tile.clone()
+        } else {
+            let grains = self.mirrored(&tile.grains);
+            let mut system = system(grains, &closed.size());
+            come_to_rest(&mut system, N_REST[1]);
+            system.state
+        };
+        if self.phase == Phase::Flow {
+            // The lid goes up at once, and its springs go with it.
+            let mut system = system(state.grains.clone(), &self.size());
+            system.state.pair_ids.clone_from(&state.pair_ids);
+            system.state.springs.pairs.clone_from(&state.springs.pairs);
+            come_to_rest(&mut system, N_REST[2]);
+            system.model.gravity = self.gravity();
+            (0..N_FLOW).for_each(|_| system.step());
+            state = system.state;
+        }
+        state
+    }
+
+    /// Copies side by side, each the mirror image of its neighbours.
+    fn mirrored(&self, tile: &Grains) -> Grains {
+        let (edge, [nx, ny, nz]) = (self.edge(), self.n_tiles);
+        let along = |k: usize, x: Real| {
+            let from = crate::physics::measure::real(k) * edge;
+            if k.is_multiple_of(2) { from + x } else { from + edge - x }
+        };
+        let mut positions = Vec::with_capacity(tile.len() * nx * ny * nz);
+        for k in 0..nx * ny * nz {
+            let (a, b, c) = (k % nx, k / nx % ny, k / (nx * ny));
+            positions.extend(
+                tile.positions
+                    .iter()
+                    .map(|p| Vec3::new(along(a, p.x), along(b, p.y), along(c, p.z))),
+            );
+        }
+        let n = nx * ny * nz;
+        Grains::at_rest(positions, tile.radii.repeat(n), tile.masses.repeat(n))
+    }
+}
+
+/// Grains in the box from the origin to `size` [m], gravity downwards.
+fn system(grains: Grains, size: &Vec3) -> System {
+    let law = PairLaw::between(&MATERIAL, &MATERIAL, SURFACE);
+    let largest = grains.radii.iter().copied().fold(RADII[1], Real::max);
+    let mut model = Model::of_grains(law, COARSE_SUBSTEP, largest, 0.5 * (RADII[0] + RADII[1]));
+    model.gravity = Vec3::new(0.0, 0.0, -GRAVITY);
+    model.skin = SKIN_SHARE * largest;
+    let mut walls = Vec::new();
+    for axis in 0..3 {
+        let mut far = Vec3::zeros();
+        far[axis] = size[axis];
+        for (place, sign) in [(Vec3::zeros(), 1.0), (far, -1.0)] {
+            let mut normal = Vec3::zeros();
+            normal[axis] = sign;
+            let law = PairLaw::against_rigid(&MATERIAL, SURFACE);
+            model.walls.push(WallModel { shape: WallShape::Plane { normal }, law });
+            let pose = Pose::translation(place.x, place.y, place.z);
+            walls.push(BodyMotion { pose, twist: Twist::zero() });
+        }
+    }
+    System::at_rest(model, walls, grains)
+}
+
+fn masses(radii: &[Real]) -> Vec<Real> {
+    radii.iter().map(|&r| sphere_volume(r) * MATERIAL.density).collect()
+}
+
+fn masses_of(grains: &Grains) -> Vec<Real> {
+    masses(&grains.radii)
+}
+
+fn come_to_rest(system: &mut System, n_steps: [u64; 2]) {
+    for (share, n) in DRAG.into_iter().zip(n_steps) {
+        for _ in 0..n {
+            system.step();
+            drag(system, share);
+        }
+    }
+}
+
+/// Lets each grain keep a share of its velocities.
+fn drag(system: &mut System, share: Real) {
+    let grains = &mut system.state.grains;
+    grains.velocities.iter_mut().chain(&mut grains.spins).for_each(|it| *it *= share);
+}

@@ -1,0 +1,50 @@
+//! Command line to benchmarks.
+
+use std::{
+    error::Error,
+    io::{self, Write},
+    process::ExitCode,
+};
+
+use jamgrip::{
+    benchmarks::{self, CASES, Options, sheet},
+    node::cache::Cache,
+};
+
+use crate::cli::Bench;
+
+pub(crate) fn bench(args: &Bench) -> Result<ExitCode, Box<dyn Error>> {
+    let mut stdout = io::stdout().lock();
+    if args.list {
+        for case in CASES {
+            writeln!(stdout, "{:<24} {}", case.name, case.about)?;
+        }
+        return Ok(ExitCode::SUCCESS);
+    }
+    let options = Options {
+        n_threads: args.n_threads(),
+        seconds: args.seconds,
+        cache: args.cache.clone().map_or_else(Cache::of_user, Cache::new),
+        with_peers: args.peers,
+        is_quiet: args.json,
+    };
+    let cases = benchmarks::chosen(&args.cases)?;
+    let mut lines = Vec::new();
+    for case in cases {
+        let figures = benchmarks::run(case, &options)?;
+        if args.json {
+            lines.push(serde_json::to_string(&figures)?);
+        } else {
+            write!(stdout, "{}", figures.to_text())?;
+            stdout.flush()?;
+        }
+        if let Some(out) = &args.out {
+            // Row by row: an interrupted evening keeps what was measured.
+            sheet::add(out, &[figures])?;
+        }
+    }
+    if args.json {
+        writeln!(stdout, "[\n{}\n]", lines.join(",\n"))?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
