@@ -289,7 +289,10 @@ async fn attend(offer: usize, reader: Reader, waiting: &Waiting) {
 /// Makes a call of what arrived: `id` is the sample's own writer and number, `related` what its
 /// sender wrote beside it.
 fn call(offer: usize, id: (GUID, i64), related: Option<(GUID, i64)>, body: Cdr) -> Option<Call> {
-    let is_headed = related.is_none() && id.0.to_bytes()[..2] == CYCLONE;
+    let writer = id.0.to_bytes();
+    // Others that go Cyclone's way put half of their writer's identity first.
+    let is_headed =
+        related.is_none() && (writer[..2] == CYCLONE || body.bytes.starts_with(&writer[8..]));
     let (header, body) = if is_headed {
         let (header, rest) = body.bytes.split_first_chunk::<16>()?;
         (Some(*header), Cdr { bytes: rest.to_vec(), ..body })
