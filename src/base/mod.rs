@@ -1,6 +1,7 @@
 //! Words that everything shares: numbers, ticks, ids, random streams, digests, threads.
 
 pub mod digest;
+pub mod lanes;
 pub mod parallel;
 pub mod random;
 pub mod real;

@@ -250,6 +250,18 @@ impl<T> Shared<T> {
         // SAFETY: as the caller promises.
         unsafe { &mut *self.0.add(i) }
     }
+
+    /// Elements `range`.
+    ///
+    /// # Safety
+    /// The range is inside the slice, the slice is still borrowed, and nobody else has any of them.
+    #[expect(unsafe_code, reason = "disjoint parts of one slice for several threads")]
+    #[expect(clippy::mut_from_ref, reason = "each part is given out once")]
+    #[inline(always)]
+    unsafe fn part(&self, range: &Range<usize>) -> &mut [T] {
+        // SAFETY: as the caller promises.
+        unsafe { std::slice::from_raw_parts_mut(self.0.add(range.start), range.len()) }
+    }
 }
 
 /// `write(i, &mut out[i])` for every element.
@@ -263,6 +275,41 @@ pub fn for_each<T: Send>(out: &mut [T], write: impl Fn(usize, &mut T) + Sync) {
             let element = unsafe { out.element(i) };
             write(i, element);
         }
+    });
+}
+
+/// Parts of this many elements keep the widest registers full.
+pub const PART: usize = 64;
+
+/// `write(start, part of out)` for parts that cover a slice; they begin at multiples of `PART`.
+pub fn for_parts<T: Send>(out: &mut [T], write: impl Fn(usize, &mut [T]) + Sync) {
+    let n = out.len();
+    let out = Shared::new(out);
+    split(n.div_ceil(PART), &|parts| {
+        let range = parts.start * PART..n.min(parts.end * PART);
+        #[expect(unsafe_code, reason = "see `Shared`")]
+        // SAFETY: `split` gives out each part once, while `out` is borrowed.
+        let part = unsafe { out.part(&range) };
+        write(range.start, part);
+    });
+}
+
+/// `write(start, part of a, part of b)` for parts that cover two slices of the same length; they begin
+/// at multiples of `PART`.
+pub fn for_parts_of_two<A: Send, B: Send>(
+    a: &mut [A],
+    b: &mut [B],
+    write: impl Fn(usize, &mut [A], &mut [B]) + Sync,
+) {
+    assert_eq!(a.len(), b.len(), "the slices belong together");
+    let n = a.len();
+    let (a, b) = (Shared::new(a), Shared::new(b));
+    split(n.div_ceil(PART), &|parts| {
+        let range = parts.start * PART..n.min(parts.end * PART);
+        #[expect(unsafe_code, reason = "see `Shared`")]
+        // SAFETY: `split` gives out each part once, while both are borrowed.
+        let (a, b) = unsafe { (a.part(&range), b.part(&range)) };
+        write(range.start, a, b);
     });
 }
 
@@ -285,30 +332,59 @@ pub fn for_each_of_two<A: Send, B: Send>(
     });
 }
 
-/// `write(i, &mut a[i], &mut b[i], &mut c[i])` for every element of three slices of the same length;
-/// returns the largest of the non-negative numbers that it gives, or 0.
-pub fn largest_of_three<A: Send, B: Send, C: Send>(
+/// `write(k, &mut a[i], &mut b[i])` for the `k`-th index `i` of an ascending list.
+pub fn for_listed_of_two<A: Send, B: Send>(
+    list: &[u32],
+    a: &mut [A],
+    b: &mut [B],
+    write: impl Fn(usize, &mut A, &mut B) + Sync,
+) {
+    assert_eq!(a.len(), b.len(), "the slices belong together");
+    assert!(list.is_sorted_by(|i, j| i < j), "each index once");
+    assert!(list.last().is_none_or(|&i| (i as usize) < a.len()), "indices of elements");
+    let (a, b) = (Shared::new(a), Shared::new(b));
+    split(list.len(), &|range| {
+        for k in range {
+            let i = list[k] as usize;
+            #[expect(unsafe_code, reason = "see `Shared`")]
+            // SAFETY: `split` gives out each `k` once, the list has each index once and below the
+            // slices' length, and both are borrowed.
+            let (a, b) = unsafe { (a.element(i), b.element(i)) };
+            write(k, a, b);
+        }
+    });
+}
+
+/// `write(start, part of a, part of b, part of c)` for parts, of at most `PART` elements, that cover
+/// three slices of the same length; returns the largest of each of the non-negative numbers that it
+/// gives, or 0.
+pub fn largest_of_three<A: Send, B: Send, C: Send, const N: usize>(
     a: &mut [A],
     b: &mut [B],
     c: &mut [C],
-    write: impl Fn(usize, &mut A, &mut B, &mut C) -> f64 + Sync,
-) -> f64 {
+    write: impl Fn(usize, &mut [A], &mut [B], &mut [C]) -> [f64; N] + Sync,
+) -> [f64; N] {
     // The bits of non-negative doubles are ordered like the numbers; NaN is larger than all.
-    let largest = AtomicU64::new(0);
+    let largest = [const { AtomicU64::new(0) }; N];
     assert!(a.len() == b.len() && b.len() == c.len(), "the slices belong together");
     let n = a.len();
     let (a, b, c) = (Shared::new(a), Shared::new(b), Shared::new(c));
-    split(n, &|range| {
-        let mut here = 0;
-        for i in range {
+    split(n.div_ceil(PART), &|parts| {
+        let mut here = [0; N];
+        for part in parts {
+            let range = part * PART..n.min((part + 1) * PART);
             #[expect(unsafe_code, reason = "see `Shared`")]
-            // SAFETY: `split` gives out each index below `n` once, while all are borrowed.
-            let (a, b, c) = unsafe { (a.element(i), b.element(i), c.element(i)) };
-            here = here.max(write(i, a, b, c).to_bits());
+            // SAFETY: `split` gives out each part once, while all are borrowed.
+            let (a, b, c) = unsafe { (a.part(&range), b.part(&range), c.part(&range)) };
+            for (here, found) in here.iter_mut().zip(write(range.start, a, b, c)) {
+                *here = found.to_bits().max(*here);
+            }
         }
-        largest.fetch_max(here, Ordering::Relaxed);
+        for (largest, here) in largest.iter().zip(here) {
+            largest.fetch_max(here, Ordering::Relaxed);
+        }
     });
-    f64::from_bits(largest.into_inner())
+    largest.map(|it| f64::from_bits(it.into_inner()))
 }
 
 #[cfg(test)]
@@ -326,9 +402,9 @@ mod tests {
                     let mut b = vec![0_usize; n];
                     for_each(&mut a, |i, a| *a += i + 1);
                     let mut c = vec![(); n];
-                    let largest = largest_of_three(&mut a, &mut b, &mut c, |i, a, b, ()| {
-                        *b = *a;
-                        f64::from(u32::try_from(i).unwrap())
+                    let [largest] = largest_of_three(&mut a, &mut b, &mut c, |start, a, b, _| {
+                        b.copy_from_slice(a);
+                        [f64::from(u32::try_from(start + a.len() - 1).unwrap())]
                     });
                     assert!((0..n).all(|i| a[i] == i + 1 && b[i] == i + 1), "{n_threads} {n}");
                     let last = f64::from(u32::try_from(n.max(1) - 1).unwrap());

@@ -21,6 +21,17 @@ pub fn count(value: Real) -> usize {
     value.ceil().max(1.0) as usize
 }
 
+/// A number that is a small whole one as an index.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "the number is a small whole one"
+)]
+#[inline(always)]
+pub fn whole(value: Real) -> usize {
+    value as usize
+}
+
 /// Linear and angular velocity of a body, world axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Twist {

@@ -3,17 +3,27 @@
 use super::{
     Controls, Model, Scratch, State,
     boundary::wall::CARRIER,
-    contact::sums,
+    contact::sums::{self, PairSums},
     membrane::{FREE, MembraneState},
 };
-use crate::base::{Real, Vec3, parallel};
+use crate::base::{
+    Real, Vec3, lanes,
+    parallel::{self, PART},
+};
 
 /// Moves grains and membrane on by one substep.
 pub fn advance(model: &Model, controls: &Controls, scratch: &mut Scratch, state: &mut State) {
-    let carried = carried_to(controls) - scratch.neighbours.carrier_position;
+    let to = carried_to(controls);
+    let carried = Carried {
+        step: to - state.carrier_position(),
+        since_build: to - scratch.neighbours.carrier_position,
+    };
     let grains = advance_grains(model, scratch, state, &carried);
     let vertices = advance_membrane(model, controls, scratch, state, &carried);
-    scratch.neighbours.displacement_squared_max = grains.max(vertices);
+    let lists = &mut scratch.neighbours;
+    lists.displacement_squared_max = grains[0].max(vertices[0]);
+    lists.travel += grains[1].sqrt() + vertices[1].sqrt();
+    lists.vertex_travel += vertices[1].sqrt();
     state.walls.clone_from(&controls.walls);
 }
 
@@ -22,8 +32,35 @@ fn carried_to(controls: &Controls) -> Vec3 {
     controls.walls.get(CARRIER).map_or_else(Vec3::zeros, |it| it.pose.translation.vector)
 }
 
-/// Returns the largest squared displacement since the lists were built [m²].
-fn advance_grains(model: &Model, scratch: &Scratch, state: &mut State, carried: &Vec3) -> Real {
+/// How far the carrier goes.
+struct Carried {
+    /// In this substep [m].
+    step: Vec3,
+    /// Since the lists were built [m].
+    since_build: Vec3,
+}
+
+impl Carried {
+    /// Squared displacements relative to the carrier [m²], since the lists were built and in this
+    /// substep, added to the largest ones. What is no number is the largest.
+    #[inline(always)]
+    fn apart(&self, built: &Vec3, before: &Vec3, now: &Vec3, furthest: &mut [Real; 2]) {
+        let since_build = (now - built - self.since_build).norm_squared();
+        let step = (now - before - self.step).norm_squared();
+        // The bits of non-negative doubles are ordered like the numbers.
+        for (furthest, new) in furthest.iter_mut().zip([since_build, step]) {
+            *furthest = Real::from_bits(furthest.to_bits().max(new.to_bits()));
+        }
+    }
+}
+
+/// Returns the largest squared displacements [m²].
+fn advance_grains(
+    model: &Model,
+    scratch: &Scratch,
+    state: &mut State,
+    carried: &Carried,
+) -> [Real; 2] {
     let dt = model.substep;
     let mut positions = std::mem::take(&mut state.grains.positions);
     let mut velocities = std::mem::take(&mut state.grains.velocities);
@@ -33,13 +70,23 @@ fn advance_grains(model: &Model, scratch: &Scratch, state: &mut State, carried: 
         &mut positions,
         &mut velocities,
         &mut spins,
-        |i, position, velocity, spin| {
-            let (force, torque) = sums::on_grain(grains, scratch, i);
-            let (mass, radius) = (grains.masses[i], grains.radii[i]);
-            *velocity += force * (dt / mass) + model.gravity * dt;
-            *spin += torque * (dt / (0.4 * mass * radius * radius));
-            *position += *velocity * dt;
-            (*position - scratch.neighbours.grain_positions[i] - carried).norm_squared()
+        |start, positions, velocities, spins| {
+            let mut sums = [[0.0; 8]; PART];
+            let sums = &mut sums[..positions.len()];
+            lanes::widest(PairSums { scratch, radii: &grains.radii, first: start, sums });
+            let mut furthest = [0.0; 2];
+            for (k, of_pairs) in sums.iter().enumerate() {
+                let i = start + k;
+                let (force, torque) = sums::with_others(scratch, i, of_pairs);
+                let (mass, radius) = (grains.masses[i], grains.radii[i]);
+                let (before, velocity) = (positions[k], &mut velocities[k]);
+                *velocity += force * (dt / mass) + model.gravity * dt;
+                spins[k] += torque * (dt / (0.4 * mass * radius * radius));
+                positions[k] += *velocity * dt;
+                let built = &scratch.neighbours.grain_positions[i];
+                carried.apart(built, &before, &positions[k], &mut furthest);
+            }
+            furthest
         },
     );
     state.grains.positions = positions;
@@ -48,28 +95,34 @@ fn advance_grains(model: &Model, scratch: &Scratch, state: &mut State, carried: 
     furthest
 }
 
-/// Returns the largest squared displacement since the lists were built [m²].
+/// Returns the largest squared displacements [m²].
 fn advance_membrane(
     model: &Model,
     controls: &Controls,
     scratch: &Scratch,
     state: &mut State,
-    carried: &Vec3,
-) -> Real {
+    carried: &Carried,
+) -> [Real; 2] {
     let dt = model.substep;
     let MembraneState { positions, velocities } = &mut state.membrane;
     let mut unused = vec![(); positions.len()];
-    parallel::largest_of_three(positions, velocities, &mut unused, |v, position, velocity, ()| {
-        let holder = model.membrane.holders[v];
-        if holder != FREE {
-            let wall = &controls.walls[holder as usize];
-            *position = sums::held_position(model, wall, v);
-            *velocity = sums::wall_velocity(wall, position);
-        } else {
-            let force = scratch.membrane.forces[v] + scratch.vertex_forces[v];
-            *velocity += force * (dt / model.membrane.masses[v]) + model.gravity * dt;
-            *position += *velocity * dt;
+    parallel::largest_of_three(positions, velocities, &mut unused, |start, positions, velocities, _| {
+        let mut furthest = [0.0; 2];
+        for (k, (position, velocity)) in positions.iter_mut().zip(velocities).enumerate() {
+            let (v, before) = (start + k, *position);
+            let holder = model.membrane.holders[v];
+            if holder != FREE {
+                let wall = &controls.walls[holder as usize];
+                *position = sums::held_position(model, wall, v);
+                *velocity = sums::wall_velocity(wall, position);
+            } else {
+                let force = scratch.membrane.forces[v] + scratch.vertex_forces[v];
+                *velocity += force * (dt / model.membrane.masses[v]) + model.gravity * dt;
+                *position += *velocity * dt;
+            }
+            let built = &scratch.neighbours.vertex_positions[v];
+            carried.apart(built, &before, position, &mut furthest);
         }
-        (*position - scratch.neighbours.vertex_positions[v] - carried).norm_squared()
+        furthest
     })
 }

@@ -1,6 +1,6 @@
 //! Scratch: what can be recomputed. Never saved.
 
-use super::{Model, membrane::MembraneScratch, state::N_PATCHES};
+use super::{Model, boundary::body::BodyMotion, membrane::MembraneScratch, state::N_PATCHES};
 use crate::base::{Real, Vec3, real::Wrench};
 
 /// Working memory of the substep.
@@ -8,15 +8,20 @@ use crate::base::{Real, Vec3, real::Wrench};
 pub struct Scratch {
     /// Who may touch whom. Written by `neighbours`.
     pub neighbours: Neighbours,
+    /// What pairs need of the grains. Written by `contact::grains`.
+    pub grain_rows: Vec<GrainRow>,
     /// Force of each pair of grains. Written by `contact::grains`.
     pub pair_forces: Vec<PairForce>,
+    /// Closest points of candidate triangles. Written by `contact::membrane`.
+    pub candidates: CandidateScratch,
     /// What the membrane does to each grain. Written by `contact::membrane`.
     pub patch_forces: Vec<PatchForces>,
     /// Force of each listed vertex sphere on its grain. Written by `contact::spheres`.
     pub sphere_forces: Vec<SphereForce>,
-    /// What walls do to each grain, wall by wall. Written by `contact::walls`.
+    /// What walls do to each grain, wall by wall; none but the listed ones touch. Written by `contact::walls`.
     pub wall_forces: Vec<WallForce>,
-    /// What bodies do to samples of the membrane. Written by `contact::bodies`.
+    /// What bodies do to samples of the membrane, body by body: all vertices, then all facets; none but the
+    /// listed ones touch. Written by `contact::bodies`.
     pub sample_forces: Vec<SampleForce>,
     /// Contact force on each vertex of the membrane [N]. Written by `contact::on_membrane`.
     pub vertex_forces: Vec<Vec3>,
@@ -38,7 +43,9 @@ impl Scratch {
     pub fn new(model: &Model) -> Self {
         Self {
             neighbours: Neighbours::default(),
+            grain_rows: Vec::new(),
             pair_forces: Vec::new(),
+            candidates: CandidateScratch::default(),
             patch_forces: Vec::new(),
             sphere_forces: Vec::new(),
             wall_forces: Vec::new(),
@@ -63,8 +70,10 @@ pub struct Neighbours {
     pub vertex_positions: Vec<Vec3>,
     /// Position of the carrier, the first wall, at the last build [m].
     pub carrier_position: Vec3,
-    /// What each pair needs of its grains' sizes.
-    pub pair_sizes: Vec<PairSize>,
+    /// Effective radius R* of each pair [m].
+    pub pair_radii: Vec<Real>,
+    /// Effective mass m* of each pair [kg].
+    pub pair_masses: Vec<Real>,
     /// Pairs in which grain i is first are `first_starts[i] .. first_starts[i + 1]`.
     pub first_starts: Vec<u32>,
     /// Where the pairs in which grain i is second begin in `second_pairs`.
@@ -75,25 +84,94 @@ pub struct Neighbours {
     pub triangle_starts: Vec<u32>,
     /// Triangles that a grain may touch, by grain.
     pub triangles: Vec<u32>,
+    /// Whose candidate each one is.
+    pub candidate_grains: Vec<u32>,
+    /// Grains with candidates, ascending.
+    pub sheet_grains: Vec<u32>,
+    /// The travel at which each candidate must be looked at again [m].
+    pub wake_at: Vec<Real>,
+    /// Sum of the largest steps of any grain and any vertex since the last build, relative to the
+    /// carrier [m]. Written by `integrate`.
+    pub travel: Real,
+    /// Sum of the largest steps of any vertex, relative to the carrier [m]. Written by `integrate`.
+    pub vertex_travel: Real,
+    /// Samples of the membrane near bodies; they have a time of their own.
+    pub bodies: BodyLists,
     /// Contacts of grain i with vertex spheres are `sphere_starts[i] .. sphere_starts[i + 1]`.
     pub sphere_starts: Vec<u32>,
+    /// Where the walls near grain i begin in `walls`.
+    pub wall_starts: Vec<u32>,
+    /// Walls that a grain may touch, by grain: their places in `Scratch::wall_forces`.
+    pub walls: Vec<u32>,
+    /// The walls at the last build.
+    pub walls_at_build: Vec<BodyMotion>,
+    /// No grain was further than this, and the skin, from the origin of each wall [m].
+    pub wall_extents: Vec<Real>,
+    /// Radii of the grains at the last build [m].
+    pub radii: Vec<Real>,
+    /// The most that a radius has grown since the last build [m].
+    pub growth_max: Real,
     /// Largest squared displacement since the last build, relative to the carrier [m²].
     pub displacement_squared_max: Real,
     /// How often the lists were built.
     pub n_builds: u64,
 }
 
-/// Effective radius and mass of a pair of grains.
-#[derive(Clone, Copy)]
-pub struct PairSize {
-    /// R* [m].
-    pub radius: Real,
-    /// m* [kg].
-    pub mass: Real,
+/// Samples of the membrane that bodies may touch, valid until one of both has moved by the skin.
+#[derive(Clone, Default)]
+pub struct BodyLists {
+    /// False before the first build.
+    pub is_built: bool,
+    /// By body.
+    pub near: Vec<NearSamples>,
+    /// The bodies at the last build.
+    pub bodies_at_build: Vec<BodyMotion>,
+    /// No near sample was further than this from the origin of each body [m].
+    pub extents: Vec<Real>,
+    /// Position of the carrier at the last build [m].
+    pub carrier_position: Vec3,
+    /// `Neighbours::vertex_travel` at the last build [m].
+    pub travel_at_build: Real,
+}
+
+/// Samples of the membrane near one body.
+#[derive(Clone, Default)]
+pub struct NearSamples {
+    /// Vertices, ascending.
+    pub vertices: Vec<u32>,
+    /// Facets, ascending.
+    pub facets: Vec<u32>,
+}
+
+/// Closest points of the candidate triangles that are awake.
+#[derive(Clone, Default)]
+pub struct CandidateScratch {
+    /// Position of each vertex [m], and nothing.
+    pub vertices: Vec<[Real; 4]>,
+    /// Candidates that are awake, ascending: their places in `Neighbours::triangles`.
+    pub awake: Vec<u32>,
+    /// Where those of each grain of `Neighbours::sheet_grains` begin.
+    pub awake_starts: Vec<usize>,
+    /// Of each: squared distance [m²], weights of the closest point, the vector from there to the
+    /// grain's centre [m], the number of the feature.
+    pub found: Vec<[Real; 8]>,
+}
+
+/// What pairs need of a grain.
+#[derive(Clone, Copy, Default)]
+#[repr(C, align(32))]
+pub struct GrainRow {
+    /// Position and radius [m].
+    pub place: [Real; 4],
+    /// Velocity [m/s], and nothing.
+    pub velocity: [Real; 4],
+    /// Angular velocity [rad/s], and nothing.
+    pub spin: [Real; 4],
 }
 
 /// Force between two grains.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy, Default, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
 pub struct PairForce {
     /// Force on the first grain [N].
     pub force: Vec3,
@@ -186,7 +264,7 @@ pub struct SampleForce {
     pub normal: Vec3,
     /// Position of the sample [m].
     pub point: Vec3,
-    /// Overlap [m]; no contact if not positive.
+    /// Overlap [m]; no contact if not positive, and then a lower bound.
     pub overlap: Real,
 }
 

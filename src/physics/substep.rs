@@ -12,17 +12,19 @@ pub type Stage = fn(&Model, &Controls, &mut State, &mut Scratch);
 /// All stages of a substep in order, by the names under which their time is told.
 pub static STAGES: &[(&str, Stage)] = &[
     ("chamber", |model, controls, state, _| chamber::advance(&model.chamber, controls, state)),
-    ("neighbours", |model, _, state, scratch| neighbours::refresh(model, state, scratch)),
+    ("neighbours", |model, controls, state, scratch| {
+        neighbours::refresh(model, controls, state, scratch);
+    }),
     ("contact_grains", |model, _, state, scratch| {
         let mut springs = std::mem::take(&mut state.springs.pairs);
-        let Scratch { neighbours, pair_forces, .. } = scratch;
-        grains::forces(model, state, &mut springs, neighbours, pair_forces);
+        let Scratch { neighbours, grain_rows, pair_forces, .. } = scratch;
+        grains::forces(model, state, &mut springs, neighbours, (grain_rows, pair_forces));
         state.springs.pairs = springs;
     }),
     ("contact_membrane", |model, _, state, scratch| {
         let mut springs = std::mem::take(&mut state.springs.patches);
-        let Scratch { neighbours, patch_forces, .. } = scratch;
-        sheet::forces(model, state, neighbours, &mut springs, patch_forces);
+        let Scratch { neighbours, grain_rows, candidates, patch_forces, .. } = scratch;
+        sheet::forces(model, state, &mut springs, neighbours, (grain_rows, candidates, patch_forces));
         state.springs.patches = springs;
     }),
     ("contact_spheres", |model, _, state, scratch| {
@@ -32,12 +34,14 @@ pub static STAGES: &[(&str, Stage)] = &[
     }),
     ("contact_walls", |model, _, state, scratch| {
         let mut springs = std::mem::take(&mut state.springs.walls);
-        walls::forces(model, state, &mut springs, &mut scratch.wall_forces);
+        let Scratch { neighbours, wall_forces, .. } = scratch;
+        walls::forces(model, state, &mut springs, neighbours, wall_forces);
         state.springs.walls = springs;
     }),
     ("contact_bodies", |model, controls, state, scratch| {
         let mut springs = std::mem::take(&mut state.springs.bodies);
-        bodies::forces(model, controls, state, &mut springs, &mut scratch.sample_forces);
+        let Scratch { neighbours, sample_forces, .. } = scratch;
+        bodies::forces(model, controls, state, &mut springs, (&neighbours.bodies, sample_forces));
         state.springs.bodies = springs;
     }),
     ("membrane", |model, _, state, scratch| {

@@ -177,11 +177,7 @@ impl Path {
         grains.positions[0] = place;
         grains.velocities[0] = Vec3::zeros();
         // The lists are told of motion by the integrator alone.
-        let lists = &mut self.bench.system.scratch.neighbours;
-        let moved = lists.grain_positions.first().map_or(0.0, |built| (place - built).norm());
-        if moved > 0.4 * self.bench.system.model.skin {
-            lists.is_built = false;
-        }
+        self.bench.system.scratch.neighbours.is_built = false;
         self.bench.step();
         let patches = &self.bench.system.scratch.patch_forces[0];
         patches.contacts[..patches.n].iter().map(|it| it.force).sum()
@@ -199,6 +195,7 @@ impl Path {
             grains.positions[0] = here;
             grains.velocities[0] = (next - here) / dt;
             grains.spins[0] = Vec3::zeros();
+            self.bench.system.scratch.neighbours.is_built = false;
             self.bench.step();
             let patches = &self.bench.system.scratch.patch_forces[0];
             let force: Vec3 = patches.contacts[..patches.n].iter().map(|it| it.force).sum();

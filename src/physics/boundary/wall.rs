@@ -70,6 +70,29 @@ impl WallShape {
     }
 }
 
+impl WallShape {
+    /// No point within `extent` [m] of the wall's origin has come nearer to its surface by more than
+    /// this [m] while the wall went from one motion to another, seen from something that went by
+    /// `carried` [m].
+    pub fn displacement(
+        &self,
+        from: &BodyMotion,
+        to: &BodyMotion,
+        carried: &Vec3,
+        extent: Real,
+    ) -> Real {
+        let origin = |it: &BodyMotion| it.pose.translation.vector;
+        let shifted = (origin(to) - origin(from) - carried).norm();
+        let turned = |axis: &Vec3| (to.pose.rotation * axis - from.pose.rotation * axis).norm();
+        match self {
+            Self::Plane { normal } => shifted + turned(normal) * extent,
+            Self::Tube { .. } => shifted + turned(&Vec3::z()) * extent,
+            Self::Bowl { .. } | Self::Ball { .. } => shifted,
+            Self::Frame => 0.0,
+        }
+    }
+}
+
 /// From the axis or the centre there is no nearest point of the wall.
 #[inline(always)]
 fn inside(radius: Real, outward: Vec3) -> Option<(Real, Vec3)> {

@@ -16,47 +16,41 @@ use crate::{
         boundary::body::BodyMotion,
         membrane::MembraneState,
         model::{BodyModel, BodySurface},
-        scratch::SampleForce,
+        scratch::{BodyLists, NearSamples, SampleForce},
         state::State,
     },
 };
 
-/// A sample this far from a body is not looked at again until it may have come nearer [m].
-const AWAY: Real = 1e-4;
-/// What a step of the rigid world may move a body beyond its velocity, per substep [m].
-const SLACK: Real = 1e-6;
-
-/// Forces of all bodies on all samples; carries their springs on by one substep.
+/// Forces of all bodies on the samples near them; carries their springs on by one substep.
 pub fn forces(
     model: &Model,
     controls: &Controls,
     state: &State,
     springs: &mut [Vec3],
-    samples: &mut Vec<SampleForce>,
+    (lists, samples): (&BodyLists, &mut [SampleForce]),
 ) {
     let mesh = &model.membrane.mesh;
     let n_samples = mesh.n_vertices() + mesh.triangles.len();
-    samples.resize(n_samples * model.bodies.len(), SampleForce::NONE);
     if samples.is_empty() {
         return;
     }
     let of_bodies = samples.chunks_mut(n_samples).zip(springs.chunks_mut(n_samples));
-    for ((body, motion), (samples, springs)) in
-        model.bodies.iter().zip(&controls.bodies).zip(of_bodies)
-    {
+    let bodies = model.bodies.iter().zip(&controls.bodies).zip(&lists.near);
+    for (((body, motion), near), (samples, springs)) in bodies.zip(of_bodies) {
         let contact = Contact { body, motion, dt: model.substep };
         let (of_vertices, of_facets) = samples.split_at_mut(mesh.n_vertices());
         let (vertex_springs, facet_springs) = springs.split_at_mut(mesh.n_vertices());
-        parallel::for_each_of_two(of_vertices, vertex_springs, |v, sample, spring| {
-            let point = SheetPoint::vertex(model, &state.membrane, v);
-            contact.touch(&point, sample, spring);
+        let NearSamples { vertices, facets } = near;
+        parallel::for_listed_of_two(vertices, of_vertices, vertex_springs, |k, sample, spring| {
+            let point = SheetPoint::vertex(model, &state.membrane, vertices[k] as usize);
+            *sample = contact.force(&point, spring);
         });
         let of_vertices = &*of_vertices;
-        parallel::for_each_of_two(of_facets, facet_springs, |t, sample, spring| {
-            let corners = mesh.triangles[t].map(|v| v as usize);
+        parallel::for_listed_of_two(facets, of_facets, facet_springs, |k, sample, spring| {
+            let corners = mesh.triangles[facets[k] as usize].map(|v| v as usize);
             let overlaps = corners.map(|v| of_vertices[v].overlap);
             let point = SheetPoint::facet(model, &state.membrane, corners, overlaps);
-            contact.touch(&point, sample, spring);
+            *sample = contact.force(&point, spring);
         });
     }
 }
@@ -104,40 +98,15 @@ struct Contact<'a> {
 }
 
 impl Contact<'_> {
-    /// Force on a sample, or a cheaper proof that it is still away.
-    #[inline(always)]
-    fn touch(&self, sheet: &SheetPoint, sample: &mut SampleForce, spring: &mut Vec3) {
-        match self.nearer(sheet, sample) {
-            Some(overlap) => sample.overlap = overlap,
-            None => *sample = self.force(sheet, spring),
-        }
-    }
-
-    /// How near a sample that was away may have come in the last substep: its overlap then, and
-    /// all that it and the surface moved towards each other. `None` if that is not far enough away
-    /// to be sure.
-    #[inline(always)]
-    fn nearer(&self, sheet: &SheetPoint, sample: &SampleForce) -> Option<Real> {
-        if sample.overlap > -AWAY {
-            return None;
-        }
-        let arm = sheet.position - self.motion.pose.translation.vector;
-        let closing = (sheet.velocity - self.motion.twist.at(&arm)).norm();
-        // The nearest point of the surface turns about the sample.
-        let turning = self.motion.twist.angular.norm() * sample.overlap.abs();
-        let overlap = sample.overlap + (closing + turning) * self.dt + SLACK;
-        (overlap < -AWAY).then_some(overlap)
-    }
-
     #[inline(always)]
     fn force(&self, sheet: &SheetPoint, spring: &mut Vec3) -> SampleForce {
         let arm = sheet.position - self.motion.pose.translation.vector;
         let beyond = arm.norm() - self.body.bounding_radius;
-        if beyond > AWAY {
+        if beyond > 0.0 {
             *spring = Vec3::zeros();
             return SampleForce { overlap: -beyond, ..SampleForce::NONE };
         }
-        let (distance, normal) = self.distance(&arm);
+        let (distance, normal) = signed_distance(self.body, self.motion, &arm);
         let overlap = -distance - sheet.known_overlap;
         if overlap <= 0.0 {
             *spring = Vec3::zeros();
@@ -145,13 +114,13 @@ impl Contact<'_> {
         }
         let touch = Touch {
             overlap,
-            normal,
-            velocity: sheet.velocity - self.motion.twist.at(&arm),
+            normal: normal.into(),
+            velocity: (sheet.velocity - self.motion.twist.at(&arm)).into(),
             radius: self.body.contact_radius,
             mass: sheet.mass,
         };
         let law: &PairLaw = &self.body.law;
-        let force = law::force(law, &touch, self.dt, spring);
+        let force = law::single(law, &touch, self.dt, spring);
         SampleForce {
             force: normal * force.normal + force.tangential,
             normal,
@@ -159,20 +128,21 @@ impl Contact<'_> {
             overlap,
         }
     }
+}
 
-    /// Signed distance and outward normal in world axes.
-    #[inline]
-    fn distance(&self, arm: &Vec3) -> (Real, Vec3) {
-        match &self.body.surface {
-            BodySurface::HalfSpace => {
-                let normal = self.motion.pose.rotation * Vec3::z();
-                (normal.dot(arm), normal)
-            }
-            BodySurface::Shape(surface) => {
-                let local = self.motion.pose.rotation.inverse_transform_vector(arm);
-                let signed = surface.distance(&local);
-                (signed.distance, self.motion.pose.rotation * signed.normal)
-            }
+/// Signed distance [m] from `body` to the point at `arm` [m] from its origin, and the outward normal, in
+/// world axes.
+#[inline]
+pub fn signed_distance(body: &BodyModel, motion: &BodyMotion, arm: &Vec3) -> (Real, Vec3) {
+    match &body.surface {
+        BodySurface::HalfSpace => {
+            let normal = motion.pose.rotation * Vec3::z();
+            (normal.dot(arm), normal)
+        }
+        BodySurface::Shape(surface) => {
+            let local = motion.pose.rotation.inverse_transform_vector(arm);
+            let signed = surface.distance(&local);
+            (signed.distance, motion.pose.rotation * signed.normal)
         }
     }
 }

@@ -28,7 +28,10 @@
 //! not turned, as in the source.
 
 use crate::{
-    base::{Real, Vec3},
+    base::{
+        Real, Vec3,
+        lanes::{Lanes, Mask, Vector},
+    },
     scene::{self, Material},
 };
 
@@ -101,24 +104,82 @@ impl Surface {
     }
 }
 
-/// Where and how fast two bodies touch.
+/// Where and how fast two bodies touch, in each lane.
 #[derive(Clone, Copy, Debug)]
-pub struct Touch {
+pub struct Touch<L> {
     /// Overlap ξ [m], positive.
-    pub overlap: Real,
+    pub overlap: L,
     /// Unit normal, from the second body to the first.
-    pub normal: Vec3,
+    pub normal: Vector<L>,
     /// Velocity of the first body relative to the second at the contact point [m/s].
-    pub velocity: Vec3,
+    pub velocity: Vector<L>,
     /// Effective radius R* [m].
-    pub radius: Real,
+    pub radius: L,
     /// Effective mass m* [kg].
-    pub mass: Real,
+    pub mass: L,
 }
 
-/// Force on the first body.
+/// Force on the first body, in each lane.
 #[derive(Clone, Copy, Debug)]
-pub struct Force {
+pub struct Force<L, M> {
+    /// Normal force F_n [N], at least zero.
+    pub normal: L,
+    /// Tangential force [N].
+    pub tangential: Vector<L>,
+    /// True while the contact slides.
+    pub slides: M,
+}
+
+/// Force on the first body; `spring` ξ_t [m] is carried on by one substep of `dt` [s].
+#[inline(always)]
+pub fn force<L: Lanes>(
+    law: &PairLaw,
+    touch: &Touch<L>,
+    dt: Real,
+    spring: &mut Vector<L>,
+) -> Force<L, L::Mask> {
+    let contact_radius = (touch.radius * touch.overlap).sqrt();
+    let v_n = touch.normal.dot(touch.velocity);
+    let v_t = touch.velocity - touch.normal * v_n;
+    let elastic_and_viscous = touch.overlap - L::splat(1.5 * law.dissipation_time) * v_n;
+    let hertz = L::splat(4.0 / 3.0 * law.modulus) * contact_radius * elastic_and_viscous;
+    let normal = hertz.max(L::splat(0.0));
+
+    let mut xi_t = into_tangent_plane(*spring, touch.normal) + v_t * L::splat(dt);
+    let k_t = L::splat(8.0 * law.shear_modulus) * contact_radius;
+    let k = L::splat(2.0 / 3.0) * k_t;
+    let limit = L::splat(law.friction) * normal;
+    // Squares are compared: most contacts stick, and then no root is needed.
+    let stretch_squared = xi_t.dot(xi_t);
+    let slides = (limit * limit).le(k * k * stretch_squared);
+    let damping = L::splat(law.tangential_damping) * (touch.mass * k_t).sqrt();
+    let mut tangential = -xi_t * k - v_t * damping;
+    let squared = tangential.dot(tangential);
+    let is_clipped = (limit * limit).lt(squared).and(slides.not());
+    if is_clipped.any() {
+        tangential = (tangential * (limit / squared.sqrt())).or_where(is_clipped, tangential);
+    }
+    if slides.any() {
+        let is_stretched = slides.and(L::splat(0.0).lt(stretch_squared));
+        xi_t = (xi_t * (limit / (k * stretch_squared.sqrt()))).or_where(is_stretched, xi_t);
+        tangential = (-xi_t * k).or_where(slides, tangential);
+    }
+    *spring = xi_t;
+    Force { normal, tangential, slides }
+}
+
+/// The same for a single contact.
+#[inline(always)]
+pub fn single(law: &PairLaw, touch: &Touch<Real>, dt: Real, spring: &mut Vec3) -> Single {
+    let mut xi_t = Vector::from(*spring);
+    let force = force(law, touch, dt, &mut xi_t);
+    *spring = xi_t.into();
+    Single { normal: force.normal, tangential: force.tangential.into(), slides: force.slides }
+}
+
+/// Force on the first body of a single contact.
+#[derive(Clone, Copy, Debug)]
+pub struct Single {
     /// Normal force F_n [N], at least zero.
     pub normal: Real,
     /// Tangential force [N].
@@ -127,48 +188,20 @@ pub struct Force {
     pub slides: bool,
 }
 
-/// Force on the first body; `spring` ξ_t [m] is carried on by one substep of `dt` [s].
-#[inline(always)]
-pub fn force(law: &PairLaw, touch: &Touch, dt: Real, spring: &mut Vec3) -> Force {
-    let contact_radius = (touch.radius * touch.overlap).sqrt();
-    let v_n = touch.normal.dot(&touch.velocity);
-    let v_t = touch.velocity - touch.normal * v_n;
-    let elastic_and_viscous = touch.overlap - 1.5 * law.dissipation_time * v_n;
-    let normal = (4.0 / 3.0 * law.modulus * contact_radius * elastic_and_viscous).max(0.0);
-
-    let mut xi_t = into_tangent_plane(spring, &touch.normal) + v_t * dt;
-    let k_t = 8.0 * law.shear_modulus * contact_radius;
-    let k = 2.0 / 3.0 * k_t;
-    let limit = law.friction * normal;
-    // Squares are compared: most contacts stick, and then no root is needed.
-    let stretch_squared = xi_t.norm_squared();
-    let slides = k * k * stretch_squared >= limit * limit;
-    let tangential = if slides {
-        if stretch_squared > 0.0 {
-            xi_t *= limit / (k * stretch_squared.sqrt());
-        }
-        -xi_t * k
-    } else {
-        let trial = -xi_t * k - v_t * (law.tangential_damping * (touch.mass * k_t).sqrt());
-        let squared = trial.norm_squared();
-        if squared > limit * limit { trial * (limit / squared.sqrt()) } else { trial }
-    };
-    *spring = xi_t;
-    Force { normal, tangential, slides }
-}
-
 /// The spring turned into the tangent plane, its length kept.
 #[inline(always)]
-fn into_tangent_plane(spring: &Vec3, normal: &Vec3) -> Vec3 {
-    let before = spring.norm_squared();
-    if before == 0.0 {
-        return *spring;
+fn into_tangent_plane<L: Lanes>(spring: Vector<L>, normal: Vector<L>) -> Vector<L> {
+    let before = spring.dot(spring);
+    let is_loaded = L::splat(0.0).lt(before);
+    if !is_loaded.any() {
+        return spring;
     }
-    let out_of_plane = spring.dot(normal);
-    let flat = spring - normal * out_of_plane;
-    let after = flat.norm_squared();
+    let flat = spring - normal * spring.dot(normal);
+    let after = flat.dot(flat);
     // Below this the direction is lost; the spring is then as good as zero.
-    if after > 1e-12 * before { flat * (before / after).sqrt() } else { Vec3::zeros() }
+    let keeps_direction = (L::splat(1e-12) * before).lt(after);
+    let turned = flat * (before / after).sqrt();
+    turned.or_where(keeps_direction, Vector::zero()).or_where(is_loaded, spring)
 }
 
 #[cfg(test)]
@@ -194,12 +227,12 @@ mod tests {
             let force_at = |overlap: Real, closing: Real, spring: &mut Vec3| {
                 let touch = Touch {
                     overlap: overlap.max(1e-300),
-                    normal: Vec3::z(),
-                    velocity: Vec3::z() * -closing,
+                    normal: Vec3::z().into(),
+                    velocity: (Vec3::z() * -closing).into(),
                     radius: radius / 2.0,
                     mass: mass / 2.0,
                 };
-                force(law, &touch, dt, spring).normal
+                single(law, &touch, dt, spring).normal
             };
             let a = force_at(overlap, closing, &mut spring) / (mass / 2.0);
             let half = closing - a * dt / 2.0;
@@ -248,20 +281,21 @@ mod tests {
         // Oracle: |F_t| ≤ μ F_n, exact up to rounding; sliding force points against the slip.
         let law = law(7e-6, 0.25);
         let mut spring = Vec3::zeros();
+        let velocity = Vec3::new(0.05, 0.02, 0.0);
         for step in 0..1000 {
             let touch = Touch {
                 overlap: 1e-5,
-                normal: Vec3::z(),
-                velocity: Vec3::new(0.05, 0.02, 0.0),
+                normal: Vec3::z().into(),
+                velocity: velocity.into(),
                 radius: 1e-3,
                 mass: 3e-5,
             };
-            let f = force(&law, &touch, 1e-6, &mut spring);
+            let f = single(&law, &touch, 1e-6, &mut spring);
             assert!(f.tangential.norm() <= 0.25 * f.normal * (1.0 + 1e-12));
             if step > 900 {
                 assert!(f.slides);
                 let direction = f.tangential.normalize();
-                assert!((direction + touch.velocity.normalize()).norm() < 1e-12);
+                assert!((direction + velocity.normalize()).norm() < 1e-12);
             }
         }
     }
@@ -271,19 +305,20 @@ mod tests {
         // Oracle: objectivity. Tolerance: rounding of a few operations.
         let law = law(7e-6, 0.25);
         let turn = nalgebra::Rotation3::from_euler_angles(0.3, -1.1, 2.0);
+        let (normal, velocity) = (Vec3::new(0.0, 0.6, 0.8), Vec3::new(0.05, 0.02, -0.1));
         let touch = Touch {
             overlap: 1e-5,
-            normal: Vec3::new(0.0, 0.6, 0.8),
-            velocity: Vec3::new(0.05, 0.02, -0.1),
+            normal: normal.into(),
+            velocity: velocity.into(),
             radius: 1e-3,
             mass: 3e-5,
         };
         let turned =
-            Touch { normal: turn * touch.normal, velocity: turn * touch.velocity, ..touch };
+            Touch { normal: (turn * normal).into(), velocity: (turn * velocity).into(), ..touch };
         let mut spring = Vec3::new(1e-7, 2e-7, -1.5e-7);
         let mut spring_turned = turn * spring;
-        let f = force(&law, &touch, 1e-6, &mut spring);
-        let g = force(&law, &turned, 1e-6, &mut spring_turned);
+        let f = single(&law, &touch, 1e-6, &mut spring);
+        let g = single(&law, &turned, 1e-6, &mut spring_turned);
         assert!((turn * f.tangential - g.tangential).norm() < 1e-12 * f.normal);
         assert!((f.normal - g.normal).abs() < 1e-12 * f.normal);
         assert!((turn * spring - spring_turned).norm() < 1e-18);

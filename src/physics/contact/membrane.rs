@@ -14,6 +14,7 @@
 use arrayvec::ArrayVec;
 
 use super::{
+    candidates,
     law::{self, Touch},
     sharing::{self, Minimum, N_TOUCHED, Passes},
 };
@@ -21,8 +22,8 @@ use crate::{
     base::{Real, Vec3, parallel},
     physics::{
         Model,
-        membrane::contact_geometry::{Feature, closest_on_triangle},
-        scratch::{Neighbours, PatchForce, PatchForces},
+        membrane::contact_geometry::Feature,
+        scratch::{CandidateScratch, GrainRow, Neighbours, PatchForce, PatchForces},
         state::{N_PATCHES, Patch, Patches, State},
     },
 };
@@ -39,120 +40,212 @@ const NUMBER: [u8; 3] = [0, 1, 2];
 struct Touched {
     triangle: u32,
     feature: Feature,
-    weights: [Real; 3],
-    from_membrane: Vec3,
     distance_squared: Real,
+    /// Its place in `CandidateScratch::found`.
+    place: usize,
 }
 
-/// Forces of the membrane on all grains; carries their springs on by one substep.
+/// Where a grain touches the sheet.
+struct Contact {
+    triangle: u32,
+    weights: [Real; 3],
+    from_membrane: Vec3,
+    overlap: Real,
+}
+
+/// Forces of the membrane on all grains near it; carries their springs on by one substep.
 pub fn forces(
     model: &Model,
     state: &State,
-    lists: &Neighbours,
     springs: &mut [Patches],
-    patch_forces: &mut Vec<PatchForces>,
+    lists: &mut Neighbours,
+    (rows, candidates, patch_forces): (&[GrainRow], &mut CandidateScratch, &mut Vec<PatchForces>),
 ) {
     patch_forces.resize(springs.len(), PatchForces::NONE);
-    parallel::for_each_of_two(patch_forces, springs, |i, force, patches| {
-        let range = lists.triangle_starts[i] as usize..lists.triangle_starts[i + 1] as usize;
-        if range.is_empty() {
-            // Most grains are inside the packing: nothing but the counts is touched.
-            (force.n, patches.n) = (0, 0);
-        } else {
-            on_grain(model, state, i, &lists.triangles[range], patches, force);
-        }
+    if lists.sheet_grains.is_empty() {
+        return;
+    }
+    candidates::look(model, state, lists, rows, candidates);
+    let (lists, candidates) = (&*lists, &*candidates);
+    parallel::for_listed_of_two(&lists.sheet_grains, patch_forces, springs, |s, force, patches| {
+        let mut touched = ArrayVec::new();
+        touching(state, lists, candidates, s, &mut touched);
+        let grain = Grain { model, state, i: lists.sheet_grains[s] as usize, found: &candidates.found };
+        grain.meet(&touched, patches, force);
     });
 }
 
-fn on_grain(
-    model: &Model,
-    state: &State,
+/// A grain near the sheet.
+struct Grain<'a> {
+    model: &'a Model,
+    state: &'a State,
     i: usize,
-    candidates: &[u32],
-    patches: &mut Patches,
-    result: &mut PatchForces,
-) {
-    let touched = touching(model, state, i, candidates);
-    let mut minima = ArrayVec::<Minimum, N_PATCHES>::new();
-    for (place, contact) in touched.iter().enumerate() {
-        if !minima.is_full() && is_local_minimum(model, contact, &touched) {
-            minima.push(contact.minimum(place, state.grains.radii[i]));
-        }
-    }
-    let mut shares = [1.0; N_PATCHES];
-    if minima.len() > 1 {
-        let mut passes = passes(model, state, i, &touched);
-        shares = sharing::shares(&minima, &mut passes, state.grains.radii[i]);
-    }
-    let (before, n_before) = (patches.slots, patches.n);
-    patches.n = minima.len();
-    result.n = minima.len();
-    result.torque = Vec3::zeros();
-    result.is_outside = false;
-    for (slot, minimum) in minima.iter().enumerate() {
-        let (contact, share) = (&touched[minimum.place], shares[slot]);
-        let spring = spring_of(&before[..n_before], &minimum.normal);
-        let mut patch = Patch { spring, normal: minimum.normal };
-        let (force, torque) = of_patch(model, state, i, (contact, minimum.overlap), &mut patch);
-        result.is_outside |= contact.is_outside(model, state, &touched);
-        result.contacts[slot] =
-            PatchForce { force: force.force * share, normal: force.normal * share, ..force };
-        result.torque += torque * share;
-        patches.slots[slot] = patch;
-    }
+    /// Closest points of candidates.
+    found: &'a [[Real; 8]],
 }
 
-/// The edges between the triangles that grain `i` overlaps.
-fn passes(model: &Model, state: &State, i: usize, touched: &[Touched]) -> Passes {
-    let mesh = &model.membrane.mesh;
-    let centre = &state.grains.positions[i];
-    let ids: ArrayVec<u32, N_TOUCHED> = touched.iter().map(|it| it.triangle).collect();
-    let mut passes = Passes::new();
-    for (place, contact) in touched.iter().enumerate() {
-        let triangle = contact.triangle as usize;
-        for (k, neighbour) in mesh.neighbours_of_triangle[triangle].into_iter().enumerate() {
-            let later = ids[place + 1..].iter().position(|&it| it == neighbour);
-            let Some(later) = later else { continue };
-            let height_squared = if contact.feature == Feature::Edge(NUMBER[k]) {
-                contact.distance_squared
-            } else {
-                let [from, to] = [k, (k + 1) % 3].map(|corner| {
-                    &state.membrane.positions[mesh.triangles[triangle][corner] as usize]
-                });
-                let (side, arm) = (to - from, centre - from);
-                let share = (arm.dot(&side) / side.norm_squared()).clamp(0.0, 1.0);
-                (arm - side * share).norm_squared()
+impl Grain<'_> {
+    fn radius(&self) -> Real {
+        self.state.grains.radii[self.i]
+    }
+
+    /// From the sheet to the centre [m].
+    fn from_membrane(&self, contact: &Touched) -> Vec3 {
+        let [.., x, y, z, _] = self.found[contact.place];
+        Vec3::new(x, y, z)
+    }
+
+    /// Forces of the patches among the triangles that are touched.
+    fn meet(&self, touched: &[Touched], patches: &mut Patches, result: &mut PatchForces) {
+        let mut minima = ArrayVec::<Minimum, N_PATCHES>::new();
+        for (place, contact) in touched.iter().enumerate() {
+            if !minima.is_full() && is_local_minimum(self.model, contact, touched) {
+                minima.push(self.minimum(place, contact));
+            }
+        }
+        let mut shares = [1.0; N_PATCHES];
+        if minima.len() > 1 {
+            let mut passes = Passes::new();
+            self.passes(touched, &mut passes);
+            shares = sharing::shares(&minima, &mut passes, self.radius());
+        }
+        let before: ArrayVec<Patch, N_PATCHES> = patches.slots[..patches.n].iter().copied().collect();
+        patches.n = minima.len();
+        result.n = minima.len();
+        result.torque = Vec3::zeros();
+        result.is_outside = false;
+        for (slot, minimum) in minima.iter().enumerate() {
+            let (it, share) = (&touched[minimum.place], shares[slot]);
+            let [_, w0, w1, w2, ..] = self.found[it.place];
+            let contact = Contact {
+                triangle: it.triangle,
+                weights: [w0, w1, w2],
+                from_membrane: self.from_membrane(it),
+                overlap: minimum.overlap,
             };
-            passes.add([place, place + 1 + later], height_squared);
+            let spring = spring_of(&before, &minimum.normal);
+            let mut patch = Patch { spring, normal: minimum.normal };
+            let (force, torque) = self.of_patch(&contact, &mut patch);
+            result.is_outside |= self.is_outside(it, &contact.from_membrane, touched);
+            result.contacts[slot] =
+                PatchForce { force: force.force * share, normal: force.normal * share, ..force };
+            result.torque += torque * share;
+            patches.slots[slot] = patch;
         }
     }
-    passes
+
+    /// A contact as a local minimum; `place` is its place among those that are touched.
+    fn minimum(&self, place: usize, contact: &Touched) -> Minimum {
+        let distance = contact.distance_squared.sqrt();
+        Minimum {
+            place,
+            normal: self.from_membrane(contact) * distance.recip(),
+            overlap: self.radius() - distance,
+            distance_squared: contact.distance_squared,
+        }
+    }
+
+    /// Adds the edges between the triangles that the grain overlaps.
+    fn passes(&self, touched: &[Touched], passes: &mut Passes) {
+        let mesh = &self.model.membrane.mesh;
+        let centre = &self.state.grains.positions[self.i];
+        for (place, contact) in touched.iter().enumerate() {
+            let triangle = contact.triangle as usize;
+            for (k, neighbour) in mesh.neighbours_of_triangle[triangle].into_iter().enumerate() {
+                let later = touched[place + 1..].iter().position(|it| it.triangle == neighbour);
+                let Some(later) = later else { continue };
+                let height_squared = if contact.feature == Feature::Edge(NUMBER[k]) {
+                    contact.distance_squared
+                } else {
+                    let [from, to] = [k, (k + 1) % 3].map(|corner| {
+                        &self.state.membrane.positions[mesh.triangles[triangle][corner] as usize]
+                    });
+                    let (side, arm) = (to - from, centre - from);
+                    let share = (arm.dot(&side) / side.norm_squared()).clamp(0.0, 1.0);
+                    (arm - side * share).norm_squared()
+                };
+                passes.add([place, place + 1 + later], height_squared);
+            }
+        }
+    }
+
+    /// Force on the grain, and torque [N m].
+    fn of_patch(&self, contact: &Contact, patch: &mut Patch) -> (PatchForce, Vec3) {
+        let Self { model, state, i, .. } = *self;
+        let grains = &state.grains;
+        let vertices = model.membrane.mesh.triangles[contact.triangle as usize];
+        let mut sheet_velocity = Vec3::zeros();
+        let mut mass = 0.0;
+        for (vertex, &weight) in vertices.map(|v| v as usize).into_iter().zip(&contact.weights) {
+            sheet_velocity += state.membrane.velocities[vertex] * weight;
+            mass += model.membrane.masses[vertex] * weight;
+        }
+        // The contact point lies on the sheet, so that both sides have the same lever.
+        let arm = -contact.from_membrane;
+        let velocity = grains.velocities[i] + grains.spins[i].cross(&arm) - sheet_velocity;
+        let touch = Touch {
+            overlap: contact.overlap,
+            normal: patch.normal.into(),
+            velocity: velocity.into(),
+            radius: self.radius(),
+            mass,
+        };
+        let force = law::single(&model.membrane_law, &touch, model.substep, &mut patch.spring);
+        let result = PatchForce {
+            triangle: contact.triangle,
+            weights: contact.weights,
+            force: patch.normal * force.normal + force.tangential,
+            overlap: contact.overlap,
+            normal: force.normal,
+        };
+        (result, arm.cross(&force.tangential))
+    }
+
+    /// True if the centre is on the outer side of the triangles that share the feature it touches. All
+    /// of them must agree, since around a saddle's vertex some always see the centre on their outer
+    /// side.
+    fn is_outside(&self, contact: &Touched, from_membrane: &Vec3, touched: &[Touched]) -> bool {
+        let triangles = &self.model.membrane.mesh.triangles;
+        let sees_outside = |triangle: u32| {
+            let [a, b, c] = triangles[triangle as usize]
+                .map(|vertex| self.state.membrane.positions[vertex as usize]);
+            (b - a).cross(&(c - a)).dot(from_membrane) > 0.0
+        };
+        // Most contacts are inside: one look at their own triangle is enough.
+        if !sees_outside(contact.triangle) {
+            return false;
+        }
+        let shared = contact.shared_vertices(self.model);
+        touched
+            .iter()
+            .filter(|other| {
+                let theirs = triangles[other.triangle as usize];
+                contact.feature != Feature::Face
+                    && shared.iter().flatten().all(|vertex| theirs.contains(vertex))
+            })
+            .all(|other| sees_outside(other.triangle))
+    }
 }
 
-/// Triangles that grain `i` overlaps, deepest first.
+/// Triangles that the `s`-th grain near the sheet overlaps, deepest first.
 fn touching(
-    model: &Model,
     state: &State,
-    i: usize,
-    candidates: &[u32],
-) -> ArrayVec<Touched, N_TOUCHED> {
-    let (position, radius) = (state.grains.positions[i], state.grains.radii[i]);
-    let mut touched = ArrayVec::<Touched, N_TOUCHED>::new();
-    for &triangle in candidates {
-        let corners = model.membrane.mesh.triangles[triangle as usize]
-            .map(|vertex| &state.membrane.positions[vertex as usize]);
-        let closest = closest_on_triangle(&position, corners);
-        let from_membrane = position - closest.point;
-        let distance_squared = from_membrane.norm_squared();
+    lists: &Neighbours,
+    candidates: &CandidateScratch,
+    s: usize,
+    touched: &mut ArrayVec<Touched, N_TOUCHED>,
+) {
+    let radius = state.grains.radii[lists.sheet_grains[s] as usize];
+    for a in candidates.awake_starts[s]..candidates.awake_starts[s + 1] {
+        let [distance_squared, .., feature] = candidates.found[a];
         if distance_squared >= radius * radius || distance_squared == 0.0 {
             continue;
         }
         let contact = Touched {
-            triangle,
-            feature: closest.feature,
-            weights: closest.weights,
-            from_membrane,
+            triangle: lists.triangles[candidates.awake[a] as usize],
+            feature: Feature::of_number(feature),
             distance_squared,
+            place: a,
         };
         let is_deeper = |other: &Touched| distance_squared < other.distance_squared;
         let place = touched.iter().position(is_deeper).unwrap_or(touched.len());
@@ -164,7 +257,6 @@ fn touching(
         }
         touched.insert(place, contact);
     }
-    touched
 }
 
 /// True if no triangle that shares the contact's edge or vertex has a closer point, or holds the
@@ -202,37 +294,6 @@ fn spring_of(before: &[Patch], normal: &Vec3) -> Vec3 {
     best.1
 }
 
-fn of_patch(
-    model: &Model,
-    state: &State,
-    i: usize,
-    (contact, overlap): (&Touched, Real),
-    patch: &mut Patch,
-) -> (PatchForce, Vec3) {
-    let grains = &state.grains;
-    let vertices = model.membrane.mesh.triangles[contact.triangle as usize].map(|v| v as usize);
-    let mut sheet_velocity = Vec3::zeros();
-    let mut mass = 0.0;
-    for (&vertex, &weight) in vertices.iter().zip(&contact.weights) {
-        sheet_velocity += state.membrane.velocities[vertex] * weight;
-        mass += model.membrane.masses[vertex] * weight;
-    }
-    let radius = grains.radii[i];
-    // The contact point lies on the sheet, so that both sides have the same lever.
-    let arm = -contact.from_membrane;
-    let velocity = grains.velocities[i] + grains.spins[i].cross(&arm) - sheet_velocity;
-    let touch = Touch { overlap, normal: patch.normal, velocity, radius, mass };
-    let force = law::force(&model.membrane_law, &touch, model.substep, &mut patch.spring);
-    let result = PatchForce {
-        triangle: contact.triangle,
-        weights: contact.weights,
-        force: patch.normal * force.normal + force.tangential,
-        overlap,
-        normal: force.normal,
-    };
-    (result, arm.cross(&force.tangential))
-}
-
 impl Touched {
     /// True if this contact of a neighbour is closer than `other`, or holds the same point with
     /// higher priority.
@@ -243,41 +304,6 @@ impl Touched {
         difference < -tolerance
             || (difference <= tolerance
                 && (mine > yours || (mine == yours && self.triangle < other.triangle)))
-    }
-
-    /// As a local minimum of a grain of `radius` [m].
-    fn minimum(&self, place: usize, radius: Real) -> Minimum {
-        let distance = self.distance_squared.sqrt();
-        Minimum {
-            place,
-            normal: self.from_membrane * distance.recip(),
-            overlap: radius - distance,
-            distance_squared: self.distance_squared,
-        }
-    }
-
-    /// True if the grain's centre is on the outer side of the triangles that share the feature it
-    /// touches. All of them must agree, since around a saddle's vertex some always see the centre
-    /// on their outer side.
-    fn is_outside(&self, model: &Model, state: &State, touched: &[Self]) -> bool {
-        let sees_outside = |triangle: u32| {
-            let [a, b, c] = model.membrane.mesh.triangles[triangle as usize]
-                .map(|vertex| state.membrane.positions[vertex as usize]);
-            (b - a).cross(&(c - a)).dot(&self.from_membrane) > 0.0
-        };
-        // Most contacts are inside: one look at their own triangle is enough.
-        if !sees_outside(self.triangle) {
-            return false;
-        }
-        let shared = self.shared_vertices(model);
-        touched
-            .iter()
-            .filter(|other| {
-                let theirs = model.membrane.mesh.triangles[other.triangle as usize];
-                self.feature != Feature::Face
-                    && shared.iter().flatten().all(|vertex| theirs.contains(vertex))
-            })
-            .all(|other| sees_outside(other.triangle))
     }
 
     /// The ends of the edge, or the vertex, that the contact lies on; none on a face.

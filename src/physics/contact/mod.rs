@@ -3,6 +3,7 @@
 //! the number of threads.
 
 pub mod bodies;
+mod candidates; // where a grain is closest to the sheet
 pub mod grains;
 pub mod law;
 pub mod membrane;

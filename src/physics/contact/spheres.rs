@@ -77,12 +77,12 @@ fn touch(model: &Model, state: &State, pair: &Pair, result: &mut SphereForce, sp
     let parallel = |a: Real, b: Real| a * b / (a + b);
     let touch = Touch {
         overlap,
-        normal,
-        velocity,
+        normal: normal.into(),
+        velocity: velocity.into(),
         radius: parallel(grains.radii[grain], radius),
         mass: parallel(grains.masses[grain], model.membrane.masses[vertex]),
     };
-    let force = law::force(&model.membrane_law, &touch, model.substep, spring);
+    let force = law::single(&model.membrane_law, &touch, model.substep, spring);
     result.force = normal * force.normal + force.tangential;
     result.torque = arm.cross(&force.tangential);
     result.overlap = overlap;

@@ -2,43 +2,82 @@
 //! wall. Every sum has a fixed order.
 
 use crate::{
-    base::{Vec3, real::Wrench},
+    base::{
+        Real, Vec3,
+        lanes::{self, Kernel, Lanes},
+        real::Wrench,
+    },
     physics::{
         Controls, Model, Scratch,
         boundary::body::BodyMotion,
         membrane::{FREE, pressure},
-        scratch::PairForce,
+        scratch::SampleForce,
         state::{Grains, State},
     },
 };
 
 /// Force [N] and torque [N m] of all contacts on grain `i`.
-#[inline]
 pub fn on_grain(grains: &Grains, scratch: &Scratch, i: usize) -> (Vec3, Vec3) {
+    let mut sum = [[0.0; 8]];
+    lanes::widest(PairSums { scratch, radii: &grains.radii, first: i, sums: &mut sum });
+    with_others(scratch, i, &sum[0])
+}
+
+/// Sums of the pairs of each grain from `first` on: force, torque, and two numbers without meaning.
+pub struct PairSums<'a> {
+    /// Where the forces are.
+    pub scratch: &'a Scratch,
+    /// Radii of all grains [m].
+    pub radii: &'a [Real],
+    /// The first grain.
+    pub first: usize,
+    /// One row per grain [N], [N m].
+    pub sums: &'a mut [[Real; 8]],
+}
+
+impl Kernel for PairSums<'_> {
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let lists = &self.scratch.neighbours;
+        let rows: &[[Real; 8]] = bytemuck::cast_slice(&self.scratch.pair_forces);
+        for (i, written) in (self.first..).zip(self.sums) {
+            let mut sum = [0.0; 8];
+            let radius = self.radii[i];
+            // A pair without contact has rows of zeros, which is cheaper than asking.
+            let first = lists.first_starts[i] as usize..lists.first_starts[i + 1] as usize;
+            for row in &rows[first] {
+                sum = with_row(sum, row, 1.0, radius);
+            }
+            let second = lists.second_starts[i] as usize..lists.second_starts[i + 1] as usize;
+            for &k in &lists.second_pairs[second] {
+                sum = with_row(sum, &rows[k as usize], -1.0, radius);
+            }
+            *written = sum;
+        }
+    }
+}
+
+/// Force and torque of a grain of `radius` [m] with a row of `PairForce` added.
+#[inline(always)]
+fn with_row(sum: [Real; 8], row: &[Real; 8], sign: Real, radius: Real) -> [Real; 8] {
+    let lever = row[6] / 2.0 - radius;
+    let factors = [sign, sign, sign, lever, lever, lever, 0.0, 0.0];
+    std::array::from_fn(|c| sum[c] + row[c] * factors[c])
+}
+
+/// What sheet, spheres and walls add to the sum of the pairs of grain `i`.
+#[inline(always)]
+pub fn with_others(scratch: &Scratch, i: usize, of_pairs: &[Real; 8]) -> (Vec3, Vec3) {
     let lists = &scratch.neighbours;
-    let radius = grains.radii[i];
-    let mut force = Vec3::zeros();
-    let mut torque = Vec3::zeros();
-    let lever = |pair: &PairForce| radius - pair.overlap / 2.0;
-    for k in lists.first_starts[i] as usize..lists.first_starts[i + 1] as usize {
-        let pair = &scratch.pair_forces[k];
-        if pair.overlap > 0.0 {
-            force += pair.force;
-            torque -= pair.couple * lever(pair);
+    let mut force = Vec3::new(of_pairs[0], of_pairs[1], of_pairs[2]);
+    let mut torque = Vec3::new(of_pairs[3], of_pairs[4], of_pairs[5]);
+    if lists.triangle_starts[i] < lists.triangle_starts[i + 1] {
+        let patches = &scratch.patch_forces[i];
+        for patch in &patches.contacts[..patches.n] {
+            force += patch.force;
         }
+        torque += patches.torque;
     }
-    for s in lists.second_starts[i] as usize..lists.second_starts[i + 1] as usize {
-        let pair = &scratch.pair_forces[lists.second_pairs[s] as usize];
-        if pair.overlap > 0.0 {
-            force -= pair.force;
-            torque -= pair.couple * lever(pair);
-        }
-    }
-    let patches = &scratch.patch_forces[i];
-    for patch in &patches.contacts[..patches.n] {
-        force += patch.force;
-    }
-    torque += patches.torque;
     let spheres = lists.sphere_starts[i] as usize..lists.sphere_starts[i + 1] as usize;
     for sphere in &scratch.sphere_forces[spheres] {
         if sphere.overlap > 0.0 {
@@ -46,9 +85,9 @@ pub fn on_grain(grains: &Grains, scratch: &Scratch, i: usize) -> (Vec3, Vec3) {
             torque += sphere.torque;
         }
     }
-    // Not by positions: `integrate` has them out while it moves the grains.
-    let n_grains = grains.radii.len();
-    for wall in scratch.wall_forces.iter().skip(i).step_by(n_grains) {
+    let walls = lists.wall_starts[i] as usize..lists.wall_starts[i + 1] as usize;
+    for &place in &lists.walls[walls] {
+        let wall = &scratch.wall_forces[place as usize];
         if wall.normal > 0.0 {
             force += wall.force;
             torque += wall.arm.cross(&wall.force);
@@ -61,17 +100,16 @@ pub fn on_grain(grains: &Grains, scratch: &Scratch, i: usize) -> (Vec3, Vec3) {
 pub fn on_membrane(model: &Model, controls: &Controls, scratch: &mut Scratch) {
     let mesh = &model.membrane.mesh;
     let n_vertices = mesh.n_vertices();
-    let Scratch { vertex_forces, patch_forces, sphere_forces, .. } = scratch;
+    let Scratch { neighbours, vertex_forces, patch_forces, sphere_forces, .. } = scratch;
     let Scratch { sample_forces, body_wrenches, leaked, .. } = scratch;
     vertex_forces.clear();
     vertex_forces.resize(n_vertices, Vec3::zeros());
     for sphere in sphere_forces.iter().filter(|it| it.overlap > 0.0) {
         vertex_forces[sphere.vertex as usize] -= sphere.force;
     }
-    for (grain, patches) in patch_forces.iter().enumerate() {
-        if patches.n == 0 {
-            continue;
-        }
+    for &grain in &neighbours.sheet_grains {
+        let grain = grain as usize;
+        let patches = &patch_forces[grain];
         if patches.is_outside && leaked.is_none() {
             *leaked = Some(grain);
         }
@@ -85,21 +123,29 @@ pub fn on_membrane(model: &Model, controls: &Controls, scratch: &mut Scratch) {
     let n_samples = n_vertices + mesh.triangles.len();
     body_wrenches.clear();
     body_wrenches.resize(model.bodies.len(), Wrench::zero());
-    for (s, sample) in sample_forces.iter().enumerate() {
-        if sample.overlap <= 0.0 {
-            continue;
-        }
-        let (body, sample_of_sheet) = (s / n_samples, s % n_samples);
-        if sample_of_sheet < n_vertices {
-            vertex_forces[sample_of_sheet] += sample.force;
-        } else {
-            for vertex in mesh.triangles[sample_of_sheet - n_vertices] {
-                vertex_forces[vertex as usize] += sample.force / 3.0;
+    for (body, near) in neighbours.bodies.near.iter().enumerate() {
+        let origin = controls.bodies[body].pose.translation.vector;
+        let samples = &sample_forces[body * n_samples..(body + 1) * n_samples];
+        let mut react = |sample: &SampleForce| {
+            body_wrenches[body].force -= sample.force;
+            body_wrenches[body].torque -= (sample.point - origin).cross(&sample.force);
+        };
+        for &v in &near.vertices {
+            let sample = &samples[v as usize];
+            if sample.overlap > 0.0 {
+                vertex_forces[v as usize] += sample.force;
+                react(sample);
             }
         }
-        let arm = sample.point - controls.bodies[body].pose.translation.vector;
-        body_wrenches[body].force -= sample.force;
-        body_wrenches[body].torque -= arm.cross(&sample.force);
+        for &t in &near.facets {
+            let sample = &samples[n_vertices + t as usize];
+            if sample.overlap > 0.0 {
+                for vertex in mesh.triangles[t as usize] {
+                    vertex_forces[vertex as usize] += sample.force / 3.0;
+                }
+                react(sample);
+            }
+        }
     }
 }
 
@@ -107,7 +153,7 @@ pub fn on_membrane(model: &Model, controls: &Controls, scratch: &mut Scratch) {
 /// and weight less what accelerates them, and the pressure on the lids of the rims it holds.
 pub fn on_walls(model: &Model, controls: &Controls, state: &State, scratch: &mut Scratch) {
     let mesh = &model.membrane.mesh;
-    let Scratch { wall_wrenches, wall_forces, membrane, vertex_forces, .. } = scratch;
+    let Scratch { neighbours, wall_wrenches, wall_forces, membrane, vertex_forces, .. } = scratch;
     wall_wrenches.clear();
     wall_wrenches.resize(model.walls.len(), Wrench::zero());
     let mut add = |wall: usize, point: &Vec3, force: Vec3| {
@@ -116,7 +162,9 @@ pub fn on_walls(model: &Model, controls: &Controls, state: &State, scratch: &mut
         wall_wrenches[wall].torque += arm.cross(&force);
     };
     let n_grains = state.grains.len();
-    for (k, contact) in wall_forces.iter().enumerate() {
+    for &place in &neighbours.walls {
+        let k = place as usize;
+        let contact = &wall_forces[k];
         if contact.normal > 0.0 {
             let position = &state.grains.positions[k % n_grains];
             add(k / n_grains, &(position + contact.arm), -contact.force);

@@ -2,33 +2,31 @@
 
 use super::law::{self, Touch};
 use crate::{
-    base::{Vec3, parallel},
+    base::Vec3,
     physics::{
         Model,
         boundary::{body::BodyMotion, wall::WallModel},
-        scratch::WallForce,
+        scratch::{Neighbours, WallForce},
         state::{Grains, State},
     },
 };
 
-/// Forces of all walls on all grains; carries their springs on by one substep.
+/// Forces of all walls on the grains near them; carries their springs on by one substep. They are few,
+/// so one thread does it.
 pub fn forces(
     model: &Model,
     state: &State,
     springs: &mut [Vec3],
+    lists: &Neighbours,
     wall_forces: &mut Vec<WallForce>,
 ) {
-    let n_grains = state.grains.len();
     wall_forces.resize(springs.len(), WallForce::default());
-    if n_grains == 0 {
-        return;
-    }
-    let of_walls = wall_forces.chunks_mut(n_grains).zip(springs.chunks_mut(n_grains));
-    for ((wall, motion), (forces, springs)) in model.walls.iter().zip(&state.walls).zip(of_walls) {
-        let contact = Contact { wall, motion, dt: model.substep };
-        parallel::for_each_of_two(forces, springs, |i, wall_force, spring| {
-            *wall_force = contact.force(&state.grains, i, spring);
-        });
+    let n_grains = state.grains.len();
+    for &place in &lists.walls {
+        let place = place as usize;
+        let (w, i) = (place / n_grains, place % n_grains);
+        let contact = Contact { wall: &model.walls[w], motion: &state.walls[w], dt: model.substep };
+        wall_forces[place] = contact.force(&state.grains, i, &mut springs[place]);
     }
 }
 
@@ -52,8 +50,8 @@ impl Contact<'_> {
         let arm = normal * -(radius - overlap / 2.0);
         let velocity = grains.velocities[i] + grains.spins[i].cross(&arm)
             - self.motion.twist.at(&(from_wall + arm));
-        let touch = Touch { overlap, normal, velocity, radius, mass: grains.masses[i] };
-        let force = law::force(&self.wall.law, &touch, self.dt, spring);
+        let touch = Touch { overlap, normal: normal.into(), velocity: velocity.into(), radius, mass: grains.masses[i] };
+        let force = law::single(&self.wall.law, &touch, self.dt, spring);
         WallForce {
             force: normal * force.normal + force.tangential,
             arm,

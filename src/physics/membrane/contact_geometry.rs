@@ -13,7 +13,11 @@
 //! there is counted once. A point outside one edge only is closest to that edge; outside two, to
 //! the nearer of both. The closest point is continuous across all regions.
 
-use crate::base::{Real, Vec3};
+use crate::base::{
+    Real, Vec3,
+    lanes::{Lanes, Mask, Vector},
+    real::whole,
+};
 
 /// Where a weight counts as zero: far above rounding, far below anything that can be seen.
 const ZERO_WEIGHT: Real = 1e-12;
@@ -30,6 +34,21 @@ pub enum Feature {
 }
 
 impl Feature {
+    /// The feature that `closest` numbers so.
+    #[inline(always)]
+    pub fn of_number(number: Real) -> Self {
+        const ALL: [Feature; 7] = [
+            Feature::Vertex(0),
+            Feature::Vertex(1),
+            Feature::Vertex(2),
+            Feature::Edge(0),
+            Feature::Edge(1),
+            Feature::Edge(2),
+            Feature::Face,
+        ];
+        ALL[whole(number)]
+    }
+
     /// Face 3, edge 2, vertex 1: of contacts with neighbouring triangles the highest stands.
     pub fn priority(self) -> u8 {
         match self {
@@ -51,58 +70,85 @@ pub struct Closest {
     pub feature: Feature,
 }
 
+/// The closest points of a triangle in each lane.
+#[derive(Clone, Copy)]
+pub struct ClosestLanes<L> {
+    /// From the closest point to the given one [m].
+    pub to_given: Vector<L>,
+    /// Squared length of that [m²].
+    pub distance_squared: L,
+    /// Barycentric weights of the closest point.
+    pub weights: [L; 3],
+    /// `Feature` by its number.
+    pub feature: L,
+}
+
 /// The point of `triangle` closest to `p`.
 #[inline(always)]
 pub fn closest_on_triangle(p: &Vec3, triangle: [&Vec3; 3]) -> Closest {
+    let found = closest(Vector::from(*p), triangle.map(|corner| Vector::from(*corner)));
+    Closest {
+        point: p - Vec3::from(found.to_given),
+        weights: found.weights,
+        feature: Feature::of_number(found.feature),
+    }
+}
+
+/// The points of triangles closest to points `p`.
+#[inline(always)]
+pub fn closest<L: Lanes>(p: Vector<L>, triangle: [Vector<L>; 3]) -> ClosestLanes<L> {
     let [a, b, c] = triangle;
+    let (zero, one, zero_weight) = (L::splat(0.0), L::splat(1.0), L::splat(ZERO_WEIGHT));
     let (ab, ac, ap) = (b - a, c - a, p - a);
-    let (bb, bc, cc) = (ab.dot(&ab), ab.dot(&ac), ac.dot(&ac));
-    let (pb, pc) = (ap.dot(&ab), ap.dot(&ac));
-    let inverse = 1.0 / (bb * cc - bc * bc);
+    let (bb, bc, cc) = (ab.dot(ab), ab.dot(ac), ac.dot(ac));
+    let (pb, pc) = (ap.dot(ab), ap.dot(ac));
+    let inverse = one / (bb * cc - bc * bc);
     let w1 = (cc * pb - bc * pc) * inverse;
     let w2 = (bb * pc - bc * pb) * inverse;
-    let w0 = 1.0 - w1 - w2;
-    if w0.min(w1).min(w2) > ZERO_WEIGHT {
-        return Closest {
-            point: a + ab * w1 + ac * w2,
-            weights: [w0, w1, w2],
-            feature: Feature::Face,
-        };
-    }
-    // Vertex k faces edge k + 1.
-    outside_edges(p, triangle, [w2 <= ZERO_WEIGHT, w0 <= ZERO_WEIGHT, w1 <= ZERO_WEIGHT])
-}
-
-/// The nearest of the edges that have `p` on their outer side.
-fn outside_edges(p: &Vec3, triangle: [&Vec3; 3], is_outside: [bool; 3]) -> Closest {
-    let mut nearest = (Real::INFINITY, 0, 0.0);
-    for edge in (0..3).filter(|&edge| is_outside[edge]) {
-        let (from, to) = (triangle[edge], triangle[(edge + 1) % 3]);
-        let side = to - from;
-        let share = ((p - from).dot(&side) / side.norm_squared()).clamp(0.0, 1.0);
-        let distance = (p - (from + side * share)).norm_squared();
-        if distance < nearest.0 {
-            nearest = (distance, edge, share);
+    let w0 = one - w1 - w2;
+    let mut weights = [w0, w1, w2];
+    let mut point = a + ab * w1 + ac * w2;
+    let mut feature = L::splat(FACE);
+    let is_face = zero_weight.lt(w0).and(zero_weight.lt(w1)).and(zero_weight.lt(w2));
+    if is_face.not().any() {
+        // Vertex k faces edge k + 1. The nearest of the edges that have `p` on their outer side.
+        let faces = [w2, w0, w1];
+        let mut nearest = L::splat(Real::INFINITY);
+        for edge in 0..3 {
+            let next = (edge + 1) % 3;
+            let is_outside = is_face.not().and(zero_weight.lt(faces[edge]).not());
+            if !is_outside.any() {
+                continue;
+            }
+            let (from, to) = (triangle[edge], triangle[next]);
+            let side = to - from;
+            let share = ((p - from).dot(side) / side.dot(side)).max(zero).min(one);
+            let off = p - (from + side * share);
+            let distance_squared = off.dot(off);
+            let is_nearer = is_outside.and(distance_squared.lt(nearest));
+            nearest = distance_squared.or_where(is_nearer, nearest);
+            // Within rounding of an end it is the end.
+            let (at_from, at_to) = (share.le(zero_weight), (L::splat(1.0 - ZERO_WEIGHT)).le(share));
+            let share = zero.or_where(at_from, one.or_where(at_to, share));
+            let number = L::splat(VERTEX[edge])
+                .or_where(at_from, L::splat(VERTEX[next]).or_where(at_to, L::splat(EDGE[edge])));
+            let on_edge = from * (one - share) + to * share;
+            point = on_edge.or_where(is_nearer, point);
+            feature = number.or_where(is_nearer, feature);
+            weights[edge] = (one - share).or_where(is_nearer, weights[edge]);
+            weights[next] = share.or_where(is_nearer, weights[next]);
+            let opposite = (edge + 2) % 3;
+            weights[opposite] = zero.or_where(is_nearer, weights[opposite]);
         }
     }
-    let (_, edge, share) = nearest;
-    let next = (edge + 1) % 3;
-    let mut weights = [0.0; 3];
-    let (share, feature) = if share <= ZERO_WEIGHT {
-        (0.0, Feature::Vertex(NUMBER[edge]))
-    } else if share >= 1.0 - ZERO_WEIGHT {
-        (1.0, Feature::Vertex(NUMBER[next]))
-    } else {
-        (share, Feature::Edge(NUMBER[edge]))
-    };
-    weights[edge] = 1.0 - share;
-    weights[next] = share;
-    let point = triangle[edge] * weights[edge] + triangle[next] * share;
-    Closest { point, weights, feature }
+    let to_given = p - point;
+    ClosestLanes { to_given, distance_squared: to_given.dot(to_given), weights, feature }
 }
 
-/// Vertices and edges by their short numbers.
-const NUMBER: [u8; 3] = [0, 1, 2];
+/// Numbers of the features: vertices, edges, the face.
+const VERTEX: [Real; 3] = [0.0, 1.0, 2.0];
+const EDGE: [Real; 3] = [3.0, 4.0, 5.0];
+const FACE: Real = 6.0;
 
 #[cfg(test)]
 mod tests {

@@ -1,26 +1,36 @@
 //! Who may touch whom: lists with a skin, built anew only when something has moved far enough.
 //!
 //! Distances are taken relative to the carrier, the first wall, so that carrying the whole gripper through the
-//! room costs no rebuild. History outlives rebuilds: pairs stay sorted, and springs move by merge.
+//! room costs no rebuild. Who moves grains, vertices or walls otherwise than `integrate` does, or puts
+//! other bodies in, sets `Neighbours::is_built` to false. History outlives rebuilds: pairs stay sorted, and springs move by merge.
 
+mod body_list;
 mod cell_grid;
 mod crossings;
 mod sphere_list;
 mod triangle_list;
 mod verlet_list;
+mod wall_list;
 
 use super::{
-    Model, Scratch, State,
+    Controls, Model, Scratch, State,
     membrane::SheetContact,
-    scratch::{Neighbours, PairSize},
+    scratch::{Neighbours, PatchForces},
+    state::Patches,
 };
 
 /// Builds the lists anew if they may have become incomplete.
-pub fn refresh(model: &Model, state: &mut State, scratch: &mut Scratch) {
-    let reach = model.skin / 2.0;
-    // The factor keeps the last substep's motion, which is not measured yet, inside the skin.
-    let limit = (0.9 * reach).powi(2);
-    if scratch.neighbours.is_built && scratch.neighbours.displacement_squared_max < limit {
+pub fn refresh(model: &Model, controls: &Controls, state: &mut State, scratch: &mut Scratch) {
+    let Scratch { neighbours: lists, sample_forces, .. } = scratch;
+    lists.bodies.is_built &= lists.is_built;
+    let of_bodies = (&mut lists.bodies, sample_forces);
+    body_list::refresh(model, controls, state, lists.vertex_travel, of_bodies);
+    refresh_grains(model, state, scratch);
+}
+
+/// The same for all that has to do with grains.
+fn refresh_grains(model: &Model, state: &mut State, scratch: &mut Scratch) {
+    if is_complete(model, state, &scratch.neighbours) {
         return;
     }
     let lists = &mut scratch.neighbours;
@@ -42,22 +52,50 @@ pub fn refresh(model: &Model, state: &mut State, scratch: &mut Scratch) {
             scratch.leaked = scratch.leaked.or_else(|| crossings::first(model, &grid, state));
         }
     }
+    forget_patches(lists, &mut state.springs.patches, &mut scratch.patch_forces);
+    wall_list::build(model, state, lists, &mut scratch.wall_forces);
     weigh_pairs(state, lists);
     lists.grain_positions.clone_from(&state.grains.positions);
     lists.vertex_positions.clone_from(&state.membrane.positions);
     lists.carrier_position = state.carrier_position();
+    lists.radii.clone_from(&state.grains.radii);
+    lists.growth_max = 0.0;
     lists.displacement_squared_max = 0.0;
     lists.is_built = true;
     lists.n_builds += 1;
 }
 
+/// True while nobody has come or grown so far that a contact could be missing.
+fn is_complete(model: &Model, state: &State, lists: &Neighbours) -> bool {
+    let reach = model.skin / 2.0;
+    // The factor keeps the last substep's motion, which is not measured yet, inside the skin.
+    let limit = 0.9 * reach - lists.growth_max;
+    lists.is_built
+        && limit > 0.0
+        && lists.displacement_squared_max < limit * limit
+        && wall_list::displacement(model, state, lists) < limit
+}
+
+/// Grains without candidates have no patches: nobody looks at them until the next build.
+fn forget_patches(lists: &Neighbours, springs: &mut [Patches], forces: &mut Vec<PatchForces>) {
+    forces.resize(springs.len(), PatchForces::NONE);
+    for (i, (patches, forces)) in springs.iter_mut().zip(forces).enumerate() {
+        if lists.triangle_starts[i] == lists.triangle_starts[i + 1] {
+            (patches.n, forces.n) = (0, 0);
+        }
+    }
+}
+
 /// Effective radii and masses of the listed pairs; to be called again whenever grains grow.
 pub fn weigh_pairs(state: &State, lists: &mut Neighbours) {
-    let (radii, masses) = (&state.grains.radii, &state.grains.masses);
     let parallel = |a: f64, b: f64| a * b / (a + b);
-    lists.pair_sizes.clear();
-    lists.pair_sizes.extend(state.pair_ids.iter().map(|ids| {
-        let [i, j] = ids.map(|id| id as usize);
-        PairSize { radius: parallel(radii[i], radii[j]), mass: parallel(masses[i], masses[j]) }
-    }));
+    let of_pairs = |quantity: &[f64]| {
+        let ids = state.pair_ids.iter().map(|ids| ids.map(|id| id as usize));
+        ids.map(|[i, j]| parallel(quantity[i], quantity[j])).collect()
+    };
+    lists.pair_radii = of_pairs(&state.grains.radii);
+    lists.pair_masses = of_pairs(&state.grains.masses);
+    let grown = state.grains.radii.iter().zip(&lists.radii).map(|(now, then)| now - then);
+    lists.wake_at.fill(0.0);
+    lists.growth_max = grown.fold(0.0, f64::max);
 }

@@ -28,18 +28,26 @@ pub(super) fn build(model: &Model, grid: &CellGrid, state: &State, lists: &mut N
     }
     let mut next = starts.clone();
     lists.triangles = vec![0; starts[n_grains] as usize];
+    lists.candidate_grains = lists.triangles.clone();
     // The chunks are in order of triangles, so every grain's triangles come out ascending.
     for [grain, triangle] in chunks.iter().flatten() {
         let slot = &mut next[*grain as usize];
         lists.triangles[*slot as usize] = *triangle;
+        lists.candidate_grains[*slot as usize] = *grain;
         *slot += 1;
     }
+    lists.sheet_grains = (0..n_grains).filter(|&i| starts[i] < starts[i + 1]).map(id).collect();
+    lists.wake_at = vec![0.0; lists.triangles.len()];
+    lists.travel = 0.0;
     lists.triangle_starts = starts;
 }
 
 /// No triangle for any grain.
 pub(super) fn clear(state: &State, lists: &mut Neighbours) {
     lists.triangles.clear();
+    lists.candidate_grains.clear();
+    lists.sheet_grains.clear();
+    lists.wake_at.clear();
     lists.triangle_starts = vec![0; state.grains.len() + 1];
 }
 

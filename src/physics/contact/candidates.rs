@@ -1,0 +1,130 @@
+//! Which triangles a grain overlaps, and where it is closest to them.
+//!
+//! A candidate that was found `gap` away cannot touch before grain and triangle have come that far
+//! together. So it sleeps until `travel`, a sum of the largest steps of any grain and of any vertex, has
+//! grown by the gap. The others are looked at side by side.
+
+use crate::{
+    base::{
+        Real,
+        lanes::{self, Kernel, Lanes, Vector},
+        parallel,
+    },
+    physics::{
+        Model,
+        membrane::{contact_geometry::closest, mesh::Mesh},
+        scratch::{CandidateScratch, GrainRow, Neighbours},
+        state::State,
+    },
+};
+
+/// Finds the closest points of all candidates that are awake.
+pub(super) fn look(
+    model: &Model,
+    state: &State,
+    lists: &mut Neighbours,
+    rows: &[GrainRow],
+    scratch: &mut CandidateScratch,
+) {
+    line_up(state, &mut scratch.vertices);
+    wake(lists, scratch);
+    let CandidateScratch { vertices, awake, found, .. } = scratch;
+    found.resize(awake.len(), [0.0; 8]);
+    let view = View { mesh: &model.membrane.mesh, lists, rows, vertices };
+    parallel::for_parts_of_two(found, awake, |_, found, awake| {
+        lanes::widest(Pass { view: &view, awake, found });
+    });
+    for (&k, found) in scratch.awake.iter().zip(&scratch.found) {
+        let radius = rows[lists.candidate_grains[k as usize] as usize].place[3];
+        if found[0] >= radius * radius {
+            // A trifle less, for the rounding of sums.
+            lists.wake_at[k as usize] = lists.travel + (found[0].sqrt() - radius) * (1.0 - 1e-9);
+        }
+    }
+}
+
+/// Positions of the vertices as rows of four.
+fn line_up(state: &State, vertices: &mut Vec<[Real; 4]>) {
+    vertices.clear();
+    vertices.extend(state.membrane.positions.iter().map(|it| [it.x, it.y, it.z, 0.0]));
+}
+
+/// Lists the candidates that are awake, grain by grain.
+fn wake(lists: &Neighbours, scratch: &mut CandidateScratch) {
+    let CandidateScratch { awake, awake_starts, .. } = scratch;
+    awake.clear();
+    awake.resize(lists.triangles.len(), 0);
+    awake_starts.clear();
+    awake_starts.push(0);
+    let mut n_awake = 0;
+    // The grains with candidates, and these, follow each other in all lists.
+    let mut k = 0;
+    for &grain in &lists.sheet_grains {
+        let end = lists.triangle_starts[grain as usize + 1];
+        for (place, wake_at) in (k..end).zip(&lists.wake_at[k as usize..end as usize]) {
+            awake[n_awake] = place;
+            // Without a branch, and so that a travel that is no number wakes all.
+            n_awake += usize::from(!is_more(*wake_at, lists.travel));
+        }
+        k = end;
+        awake_starts.push(n_awake);
+    }
+    awake.truncate(n_awake);
+}
+
+fn is_more(a: Real, b: Real) -> bool {
+    a > b
+}
+
+/// What is looked at.
+struct View<'a> {
+    mesh: &'a Mesh,
+    lists: &'a Neighbours,
+    rows: &'a [GrainRow],
+    vertices: &'a [[Real; 4]],
+}
+
+/// Closest points of candidates.
+struct Pass<'a> {
+    view: &'a View<'a>,
+    awake: &'a [u32],
+    found: &'a mut [[Real; 8]],
+}
+
+impl Kernel for Pass<'_> {
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let Self { view, awake, found } = self;
+        let n_whole = awake.len() / L::N * L::N;
+        let (awake, last_awake) = awake.split_at(n_whole);
+        let (found, last_found) = found.split_at_mut(n_whole);
+        for (awake, found) in awake.chunks_exact(L::N).zip(found.chunks_exact_mut(L::N)) {
+            view.block::<L>(awake, found);
+        }
+        for (awake, found) in last_awake.chunks_exact(1).zip(last_found.chunks_exact_mut(1)) {
+            view.block::<f64>(awake, found);
+        }
+    }
+}
+
+impl View<'_> {
+    #[inline(always)]
+    fn block<L: Lanes>(&self, awake: &[u32], found: &mut [[Real; 8]]) {
+        let grain = |lane: usize| {
+            &self.rows[self.lists.candidate_grains[awake[lane] as usize] as usize].place
+        };
+        let triangle =
+            |lane: usize| &self.mesh.triangles[self.lists.triangles[awake[lane] as usize] as usize];
+        let corner = |lane: usize, k: usize| &self.vertices[triangle(lane)[k] as usize];
+        let vector = |[x, y, z, _]: [L; 4]| Vector::new(x, y, z);
+        let corners = [
+            vector(L::from_rows_of_4(|lane| corner(lane, 0))),
+            vector(L::from_rows_of_4(|lane| corner(lane, 1))),
+            vector(L::from_rows_of_4(|lane| corner(lane, 2))),
+        ];
+        let it = closest(vector(L::from_rows_of_4(grain)), corners);
+        let [w0, w1, w2] = it.weights;
+        let Vector { x, y, z } = it.to_given;
+        L::to_rows_of_8([it.distance_squared, w0, w1, w2, x, y, z, it.feature], found);
+    }
+}
