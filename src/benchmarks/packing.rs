@@ -258,3 +258,54 @@ fn drag(system: &mut System, share: Real) {
     let grains = &mut system.state.grains;
     grains.velocities.iter_mut().chain(&mut grains.spins).for_each(|it| *it *= share);
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::physics::{
+        contact::law::{self, Touch},
+        measure::{packing, rest::unbalanced_force},
+    };
+
+    /// Oracle: the head of this file; to rounding of a few operations.
+    #[test]
+    fn a_grain_meets_its_mirror_image_as_it_met_the_wall() {
+        let at = |overlap: Real, radius: Real| Touch {
+            overlap,
+            normal: Vec3::z(),
+            velocity: Vec3::zeros(),
+            radius,
+            mass: 1e-4,
+        };
+        let (on_wall, between) = (
+            PairLaw::against_rigid(&MATERIAL, SURFACE),
+            PairLaw::between(&MATERIAL, &MATERIAL, SURFACE),
+        );
+        let (radius, overlap) = (2e-3, 3e-5);
+        let mut spring = Vec3::zeros();
+        let wall = law::force(&on_wall, &at(overlap, radius), SUBSTEP, &mut spring).normal;
+        let twin = at(2.0 * overlap, 0.5 * radius);
+        let image = law::force(&between, &twin, SUBSTEP, &mut spring).normal;
+        assert!((image / wall - 1.0).abs() < 1e-14, "{image} {wall}");
+    }
+
+    /// Oracle: forces balance in the copies as in what they are copies of, but for weight, which now hangs on
+    /// the copy below, and for springs of friction that were cut off: a fifth of a mean contact force before they settle,
+    /// a hundredth after.
+    #[test]
+    fn copies_hold_each_other() {
+        let two = Boxed { n_grains: 300, n_tiles: [2, 1, 1], phase: Phase::Rest };
+        let tile = two.closed_tile().grow().unwrap();
+        let unrest = |grains: Grains| {
+            let mut system = system(grains, &two.size());
+            system.step();
+            let System { model, state, scratch, .. } = &system;
+            (unbalanced_force(model, state, scratch), packing(state, scratch).n_grain_contacts)
+        };
+        let (first, n_first) = unrest(two.mirrored(&tile.grains));
+        let (last, n_last) = unrest(two.of_tile(&tile).grains);
+        assert!(first < 0.2 && last < 0.05, "{first} {last}");
+        // Each copy has 300 grains with 2.5 contacts each or more, and about 40 lie between the copies.
+        assert!(1500 < n_first && 1500 < n_last, "{n_first} {n_last}");
+    }
+}

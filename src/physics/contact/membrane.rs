@@ -70,7 +70,8 @@ pub fn forces(
     parallel::for_listed_of_two(&lists.sheet_grains, patch_forces, springs, |s, force, patches| {
         let mut touched = ArrayVec::new();
         touching(state, lists, candidates, s, &mut touched);
-        let grain = Grain { model, state, i: lists.sheet_grains[s] as usize, found: &candidates.found };
+        let grain =
+            Grain { model, state, i: lists.sheet_grains[s] as usize, found: &candidates.found };
         grain.meet(&touched, patches, force);
     });
 }
@@ -109,7 +110,8 @@ impl Grain<'_> {
             self.passes(touched, &mut passes);
             shares = sharing::shares(&minima, &mut passes, self.radius());
         }
-        let before: ArrayVec<Patch, N_PATCHES> = patches.slots[..patches.n].iter().copied().collect();
+        let before: ArrayVec<Patch, N_PATCHES> =
+            patches.slots[..patches.n].iter().copied().collect();
         patches.n = minima.len();
         result.n = minima.len();
         result.torque = Vec3::zeros();

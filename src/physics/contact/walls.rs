@@ -50,7 +50,13 @@ impl Contact<'_> {
         let arm = normal * -(radius - overlap / 2.0);
         let velocity = grains.velocities[i] + grains.spins[i].cross(&arm)
             - self.motion.twist.at(&(from_wall + arm));
-        let touch = Touch { overlap, normal: normal.into(), velocity: velocity.into(), radius, mass: grains.masses[i] };
+        let touch = Touch {
+            overlap,
+            normal: normal.into(),
+            velocity: velocity.into(),
+            radius,
+            mass: grains.masses[i],
+        };
         let force = law::single(&self.wall.law, &touch, self.dt, spring);
         WallForce {
             force: normal * force.normal + force.tangential,

@@ -71,7 +71,8 @@ impl Kernel for Face<'_> {
         for (triangles, facets) in triangles.chunks_exact(L::N).zip(whole.chunks_exact_mut(L::N)) {
             face::<L>(vertices, triangles, facets);
         }
-        for (triangle, facet) in triangles[n_whole..].chunks_exact(1).zip(rest.chunks_exact_mut(1)) {
+        for (triangle, facet) in triangles[n_whole..].chunks_exact(1).zip(rest.chunks_exact_mut(1))
+        {
             face::<Real>(vertices, triangle, facet);
         }
     }
@@ -155,9 +156,9 @@ impl PullAndFold<'_> {
         let rate = along.dot(velocity[3] - velocity[2]);
         let pull = along * stretch::tension([rest_length, stiffness, damping], length, rate);
         let mut fold = Fold::new(place, sides, edge, [length, inverse]);
-        if let [Some(first), Some(second)] = [0, 1].map(|side| {
-            self.model.first_areas[side].get(first..first + L::N)
-        }) {
+        if let [Some(first), Some(second)] =
+            [0, 1].map(|side| self.model.first_areas[side].get(first..first + L::N))
+        {
             fold = fold.with_areas([L::load(first), L::load(second)], sides, length);
         }
         let sheet = &self.model.sheet;

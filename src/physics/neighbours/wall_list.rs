@@ -3,7 +3,10 @@
 use super::cell_grid::id;
 use crate::{
     base::Real,
-    physics::{Model, State, scratch::{Neighbours, WallForce}},
+    physics::{
+        Model, State,
+        scratch::{Neighbours, WallForce},
+    },
 };
 
 /// Lists the walls that each grain is closer to than contact plus skin.
