@@ -1,6 +1,6 @@
 //! The command line, as written by people.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, Parser, Subcommand};
 use jamgrip::{
@@ -37,6 +37,14 @@ pub(crate) struct Cli {
 pub(crate) enum Action {
     /// Runs a scene to its end
     Run(Run),
+    /// Plays a recording, proves it, or branches a new run off it
+    #[cfg(feature = "bag")]
+    #[command(after_help = crate::cli_bags::REPLAY_HELP)]
+    Replay(crate::cli_bags::Replay),
+    /// Looks into recordings, also those of others, and mends damaged ones
+    #[cfg(feature = "bag")]
+    #[command(subcommand)]
+    Bag(crate::cli_bags::Bag),
     /// Checks a scene and prints it with all defaults
     Check(SceneArgs),
     /// Runs an experiment and sets what it finds beside what its source shows
@@ -254,6 +262,10 @@ pub(crate) struct Run {
     /// Ends the run after this simulated time, for example 2s
     #[arg(long = "for", value_name = "TIME", value_parser = time)]
     pub(crate) duration: Option<f64>,
+    /// Takes all commands from this recording, a rosbag2 folder or an .mcap file, whoever made it
+    #[cfg(feature = "bag")]
+    #[arg(long, value_name = "BAG")]
+    pub(crate) commands: Option<PathBuf>,
     /// Solver threads; the result is the same for any number [default: all processors]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
@@ -289,11 +301,7 @@ impl Run {
         let chosen = flags.into_iter().filter(|(is_set, _)| *is_set);
         overrides.extend(chosen.map(|(_, text)| text.to_owned()));
         overrides.extend(self.seed.map(|seed| format!("seed={seed}")));
-        overrides.extend(self.bag.as_ref().map(|folder| {
-            // A JSON string is a YAML string, whatever stands in it.
-            let folder = serde_json::Value::from(folder.to_string_lossy());
-            format!("outputs.bag.folder={folder}")
-        }));
+        overrides.extend(self.bag.as_deref().map(bag_folder));
         overrides
     }
 
@@ -303,7 +311,21 @@ impl Run {
     }
 }
 
-fn time(text: &str) -> Result<f64, String> {
+/// The change of a scene that records into a folder.
+pub(crate) fn bag_folder(folder: &Path) -> String {
+    // A JSON string is a YAML string, whatever stands in it.
+    let folder = serde_json::Value::from(folder.to_string_lossy());
+    format!("outputs.bag.folder={folder}")
+}
+
+/// A time of zero or more.
+pub(crate) fn time_or_zero(text: &str) -> Result<f64, String> {
     let seconds = jamgrip::scene::quantity::TIME.parse(text).map_err(|error| error.to_string())?;
+    if 0.0 <= seconds { Ok(seconds) } else { Err("write a time such as 2s".to_owned()) }
+}
+
+/// A time above zero.
+pub(crate) fn time(text: &str) -> Result<f64, String> {
+    let seconds = time_or_zero(text)?;
     if 0.0 < seconds { Ok(seconds) } else { Err("write a time above zero, such as 2s".to_owned()) }
 }

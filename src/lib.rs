@@ -12,8 +12,12 @@ pub mod snapshot; // what the outside may see
 pub mod controller; // who asks, if nobody outside does
 pub mod experiments; // validated experiments, cut into cases
 pub mod wire; // bytes for the outside
+#[cfg(feature = "bag")]
+pub mod bag; // what a recording is, written and read
 pub mod sinks; // where snapshots go
 pub mod sources; // where commands come from
 pub mod node; // the running thing
+#[cfg(feature = "bag")]
+pub mod replay; // recordings, run again
 pub mod lab; // runs experiments: threads, files, reports
 pub mod benchmarks; // how fast it is

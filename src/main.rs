@@ -1,6 +1,10 @@
 //! Command line to run.
 
 mod cli;
+#[cfg(feature = "bag")]
+mod cli_bags;
+#[cfg(feature = "bag")]
+mod recordings;
 mod timing;
 mod trials;
 
@@ -17,9 +21,9 @@ use jamgrip::{
     lab::fault::LabError,
     node::{
         cache::Cache,
-        launch::{Options, launch},
+        launch::{Finished, Options, launch},
     },
-    scene::{self, SceneError},
+    scene::{self, Scene, SceneError},
 };
 
 /// The middleware crates log what is no fault of anyone's; `RUST_LOG` shows it.
@@ -35,6 +39,10 @@ fn main() -> ExitCode {
     env_logger::Builder::from_env(env_logger::Env::default().default_filter_or(LOG_FILTER)).init();
     let outcome = match cli.action {
         Action::Run(args) => run(&args),
+        #[cfg(feature = "bag")]
+        Action::Replay(args) => recordings::replay(&args),
+        #[cfg(feature = "bag")]
+        Action::Bag(action) => recordings::bag(&action),
         Action::Check(args) => check(&args),
         Action::Experiment(args) => trials::experiment(&args),
         Action::Validate(args) => trials::validate(&args),
@@ -60,13 +68,27 @@ fn run(args: &cli::Run) -> Result<ExitCode, Box<dyn Error>> {
         duration: args.duration,
         cache: args.cache.clone().map_or_else(Cache::of_user, Cache::new),
         is_quiet: args.json,
+        facts: Vec::new(),
     };
-    let finished = launch(&scene, &options)?;
+    let finished = start(&scene, args, &options)?;
     finished.summary.print(args.json)?;
     match finished.fault {
         Some(fault) => Err(fault.into()),
         None => Ok(ExitCode::SUCCESS),
     }
+}
+
+#[cfg(feature = "bag")]
+fn start(scene: &Scene, args: &cli::Run, options: &Options) -> Result<Finished, Box<dyn Error>> {
+    match &args.commands {
+        Some(commands) => recordings::run_by(commands, scene, options),
+        None => Ok(launch(scene, options)?),
+    }
+}
+
+#[cfg(not(feature = "bag"))]
+fn start(scene: &Scene, _: &cli::Run, options: &Options) -> Result<Finished, Box<dyn Error>> {
+    Ok(launch(scene, options)?)
 }
 
 fn check(args: &cli::SceneArgs) -> Result<ExitCode, Box<dyn Error>> {

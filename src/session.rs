@@ -1,5 +1,7 @@
 //! One run in memory: tick, look, save, resume.
 
+use serde::{Deserialize, Serialize};
+
 use crate::{
     base::{Tick, Vec3, digest::Digest, parallel, real::Wrench},
     command::{
@@ -34,6 +36,15 @@ pub struct Session {
     pool: rayon::ThreadPool,
 }
 
+/// A run that has stopped between two ticks.
+#[derive(Serialize, Deserialize)]
+struct Saved<'a> {
+    tick: u64,
+    state: &'a [u8],
+    world: &'a [u8],
+    desk: &'a [u8],
+}
+
 impl Session {
     /// Fills the bag of a compiled scene; this takes a while, so `on_progress` is told.
     ///
@@ -57,10 +68,39 @@ impl Session {
         Ok(Self::start(compiled, state))
     }
 
+    /// Goes on from what `save` wrote, as if it had never stopped: the same bits from here on if
+    /// the scene is the same. Values of the scene that no saved number depends on may differ.
+    ///
+    /// # Errors
+    /// If the bytes are damaged or of a scene with other grains, meshes or objects.
+    pub fn resume(compiled: Compiled, bytes: &[u8]) -> Result<Self, SavedStateError> {
+        let corrupt = SavedStateError::Corrupt { n_bytes: bytes.len() };
+        let saved: Saved<'_> =
+            postcard::from_bytes(saved_state::unsealed(bytes)?).map_err(|_| corrupt)?;
+        let state = compiled.read_state(saved.state)?;
+        let mut session = Self::assemble(compiled, state);
+        session.coupled.world.restore(saved.world)?;
+        session.desk.restore(saved.desk)?;
+        session.tick = Tick(saved.tick);
+        session.digest = session.take_digest();
+        Ok(session)
+    }
+
+    /// Everything that is needed to go on, as bytes.
+    pub fn save(&self) -> Vec<u8> {
+        let (state, world) = (saved_state::write(&self.coupled.state), self.coupled.world.save());
+        let desk = self.desk.save();
+        let saved = Saved { tick: self.tick.0, state: &state, world: &world, desk: &desk };
+        saved_state::sealed(postcard::to_stdvec(&saved).expect("bytes always serialise"))
+    }
+
     fn start(compiled: Compiled, mut state: State) -> Self {
+        state.springs.bodies = vec![Vec3::zeros(); compiled.n_samples()];
+        Self::assemble(compiled, state)
+    }
+
+    fn assemble(compiled: Compiled, state: State) -> Self {
         let Compiled { scene, model, plan, bulks, limits, pool, .. } = compiled;
-        let n_samples = model.membrane.mesh.n_vertices() + model.membrane.mesh.triangles.len();
-        state.springs.bodies = vec![Vec3::zeros(); n_samples * model.bodies.len()];
         let step = plan.tick / measure::real(plan.n_substeps / plan.n_per_exchange);
         let world = RapierWorld::new(&scene, &model, bulks, step);
         let (n_objects, n_grains) = (scene.objects.len(), state.grains.positions.len());

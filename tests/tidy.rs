@@ -56,14 +56,15 @@ const DOORS: &[(&str, &[&str])] = &[
     ("ros2_client", &["sinks/ros.rs", "sources/ros.rs"]),
     ("rustdds", &["sinks/ros.rs", "sources/ros.rs"]),
     ("iceoryx2", &["wire/rows.rs", "sinks/shm.rs"]),
-    ("mcap", &["sinks/bag.rs"]),
+    ("mcap", &["bag/writer.rs", "bag/reader.rs", "bag/recover.rs", "bag/check.rs"]),
+    ("zstd", &["bag/writer.rs", "bag/reader.rs"]),
     ("indicatif", &["node/progress.rs", "lab/board.rs"]),
     ("comfy_table", &["node/summary.rs", "lab/table.rs"]),
     ("plotters", &["lab/plot.rs", "lab/axis.rs"]),
-    ("maud", &["lab/report.rs"]),
+    ("maud", &["lab/report.rs", "lab/bag_page.rs"]),
     ("csv", &["lab/folder.rs", "benchmarks/sheet.rs"]),
     ("ctrlc", &["node/shutdown.rs", "node/launch.rs"]),
-    ("clap", &["src/cli.rs", "src/main.rs"]),
+    ("clap", &["src/cli.rs", "src/cli_bags.rs", "src/main.rs"]),
 ];
 
 #[test]

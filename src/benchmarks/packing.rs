@@ -262,31 +262,24 @@ fn drag(system: &mut System, share: Real) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::physics::{
-        contact::law::{self, Touch},
-        measure::{packing, rest::unbalanced_force},
-    };
+    use crate::physics::measure::{normal_forces, packing, rest::unbalanced_force};
 
-    /// Oracle: the head of this file; to rounding of a few operations.
+    /// Oracle: the head of this file. Tolerance 1e-9: the overlap, a hundredth of the radius, is a
+    /// difference of coordinates of 0.5 m, known to 1e-16 of that.
     #[test]
     fn a_grain_meets_its_mirror_image_as_it_met_the_wall() {
-        let at = |overlap: Real, radius: Real| Touch {
-            overlap,
-            normal: Vec3::z(),
-            velocity: Vec3::zeros(),
-            radius,
-            mass: 1e-4,
+        let (radius, overlap) = (2e-3, 2e-5);
+        let force = |xs: &[Real]| {
+            let places: Vec<Vec3> = xs.iter().map(|&x| Vec3::new(x, 0.5, 0.5)).collect();
+            let radii = vec![radius; xs.len()];
+            let grains = Grains::at_rest(places, radii.clone(), masses(&radii));
+            let mut system = system(grains, &Vec3::repeat(1.0));
+            system.step();
+            normal_forces(&system.state, &system.scratch)[0]
         };
-        let (on_wall, between) = (
-            PairLaw::against_rigid(&MATERIAL, SURFACE),
-            PairLaw::between(&MATERIAL, &MATERIAL, SURFACE),
-        );
-        let (radius, overlap) = (2e-3, 3e-5);
-        let mut spring = Vec3::zeros();
-        let wall = law::force(&on_wall, &at(overlap, radius), SUBSTEP, &mut spring).normal;
-        let twin = at(2.0 * overlap, 0.5 * radius);
-        let image = law::force(&between, &twin, SUBSTEP, &mut spring).normal;
-        assert!((image / wall - 1.0).abs() < 1e-14, "{image} {wall}");
+        let wall = force(&[radius - overlap]);
+        let image = force(&[0.5 - radius + overlap, 0.5 + radius - overlap]);
+        assert!(wall > 0.0 && (image / wall - 1.0).abs() < 1e-9, "{image} {wall}");
     }
 
     /// Oracle: forces balance in the copies as in what they are copies of, but for weight, which now hangs on

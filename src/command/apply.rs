@@ -33,17 +33,17 @@ pub struct Desk {
     gauge_range: [Real; 2],
     speed_max: Real,
     drive_timeouts_ns: Vec<u64>,
-    gauge_setpoint: Real,
-    flange: Target,
-    drives: Vec<Option<Target>>,
-    counts: CommandCounts,
+    pub(super) gauge_setpoint: Real,
+    pub(super) flange: Target,
+    pub(super) drives: Vec<Option<Target>>,
+    pub(super) counts: CommandCounts,
 }
 
 /// A commanded pose and when it came.
 #[derive(Clone, Copy)]
-struct Target {
-    pose: Pose,
-    time_ns: u64,
+pub(super) struct Target {
+    pub(super) pose: Pose,
+    pub(super) time_ns: u64,
 }
 
 impl Desk {

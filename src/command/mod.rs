@@ -4,6 +4,7 @@
 //! recorded too.
 
 pub mod apply;
+mod saved_desk; // what was commanded, as bytes
 
 /// One wish of the outside.
 #[derive(Clone, Debug, PartialEq)]

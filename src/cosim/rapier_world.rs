@@ -8,11 +8,13 @@ use nalgebra::Isometry3;
 use rapier3d_f64::{
     parry::shape::TriMeshFlags,
     prelude::{
-        CoefficientCombineRule, ColliderBuilder, MassProperties, PhysicsWorld, Pose as RapierPose,
-        RigidBodyBuilder, RigidBodyHandle, RigidBodyType, SpringCoefficients, Vector,
+        CoefficientCombineRule, Collider, ColliderBuilder, MassProperties, PhysicsWorld,
+        Pose as RapierPose, RigidBodyAdditionalMassProps, RigidBodyBuilder, RigidBodyHandle,
+        RigidBodyType, SpringCoefficients, Vector,
     },
 };
 
+use super::saved_state::{SavedStateError, same_counts};
 use crate::{
     base::{
         Pose, Real, Vec3,
@@ -140,6 +142,47 @@ impl RapierWorld {
             body.add_torque(vector(&wrench.torque), true);
         }
         self.world.step();
+    }
+
+    /// The bytes of the whole world: bodies, contacts with what was learnt in them, and the trees
+    /// of neighbours. A world that only knew poses and velocities would go on with other bits.
+    pub fn save(&self) -> Vec<u8> {
+        postcard::to_stdvec(&self.world).expect("rapier's world serialises as a whole")
+    }
+
+    /// Puts a saved world in the place of this one, which was made for the scene to go on with:
+    /// gravity, masses and friction are this scene's, what has come of them is the saved world's.
+    ///
+    /// # Errors
+    /// If the bytes are no world, or one with other objects.
+    pub fn restore(&mut self, bytes: &[u8]) -> Result<(), SavedStateError> {
+        let corrupt = SavedStateError::Corrupt { n_bytes: bytes.len() };
+        let mut saved: PhysicsWorld = postcard::from_bytes(bytes).map_err(|_| corrupt)?;
+        same_counts(&[("rigid bodies", saved.bodies.len(), self.world.bodies.len())])?;
+        saved.gravity = self.world.gravity;
+        saved.integration_parameters = self.world.integration_parameters;
+        // Only what differs is touched: even to ask for a body to write to it marks it as changed.
+        for (handle, body) in self.world.bodies.iter() {
+            let Some(kept) = saved.bodies.get(handle) else {
+                let what = "rigid bodies in their places";
+                return Err(SavedStateError::OtherScene { what, found: 0, expected: 1 });
+            };
+            let wanted = &body.mass_properties().additional_local_mprops;
+            if kept.mass_properties().additional_local_mprops != *wanted
+                && let Some(RigidBodyAdditionalMassProps::MassProps(wanted)) = wanted.as_deref()
+            {
+                saved.bodies[handle].set_additional_mass_properties(*wanted, true);
+            }
+        }
+        for (handle, collider) in self.world.colliders.iter() {
+            let differs =
+                |kept: &Collider| kept.friction().to_bits() != collider.friction().to_bits();
+            if saved.colliders.get(handle).is_some_and(differs) {
+                saved.colliders[handle].set_friction(collider.friction());
+            }
+        }
+        self.world = saved;
+        Ok(())
     }
 
     /// Adds poses and velocities of all objects.

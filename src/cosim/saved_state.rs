@@ -14,7 +14,7 @@ use crate::{
 };
 
 /// Why bytes are not a state that can be used.
-#[derive(Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SavedStateError {
     /// The digest at the end does not match the bytes before it.
     #[error("saved state: {n_bytes} bytes are truncated or corrupt; it is computed anew")]
@@ -77,9 +77,25 @@ pub fn write(state: &State) -> Vec<u8> {
         sphere_ids: state.springs.spheres.ids.clone(),
         sphere_springs: arrays(&state.springs.spheres.springs),
     };
-    let mut bytes = postcard::to_stdvec(&numbers).expect("a list of numbers always serialises");
+    sealed(postcard::to_stdvec(&numbers).expect("a list of numbers always serialises"))
+}
+
+/// Bytes followed by their digest.
+pub(crate) fn sealed(mut bytes: Vec<u8>) -> Vec<u8> {
     bytes.extend_from_slice(&xxh3_64(&bytes).to_le_bytes());
     bytes
+}
+
+/// What was sealed.
+///
+/// # Errors
+/// If the bytes are cut off or changed.
+pub(crate) fn unsealed(bytes: &[u8]) -> Result<&[u8], SavedStateError> {
+    let corrupt = SavedStateError::Corrupt { n_bytes: bytes.len() };
+    let Some((body, digest)) = bytes.split_last_chunk::<DIGEST_BYTES>() else {
+        return Err(corrupt);
+    };
+    if xxh3_64(body).to_le_bytes() == *digest { Ok(body) } else { Err(corrupt) }
 }
 
 /// The state in `bytes`, with the same bits.
@@ -88,12 +104,7 @@ pub fn write(state: &State) -> Vec<u8> {
 /// If they are damaged, or their lists do not fit each other.
 pub fn read(bytes: &[u8]) -> Result<State, SavedStateError> {
     let corrupt = SavedStateError::Corrupt { n_bytes: bytes.len() };
-    let Some(n) = bytes.len().checked_sub(DIGEST_BYTES) else { return Err(corrupt) };
-    let (body, digest) = bytes.split_at(n);
-    if xxh3_64(body).to_le_bytes() != digest {
-        return Err(corrupt);
-    }
-    let numbers: Numbers = postcard::from_bytes(body).map_err(|_| corrupt)?;
+    let numbers: Numbers = postcard::from_bytes(unsealed(bytes)?).map_err(|_| corrupt)?;
     numbers.check()?;
     Ok(State {
         grains: Grains {
@@ -127,7 +138,7 @@ pub fn read(bytes: &[u8]) -> Result<State, SavedStateError> {
 ///
 /// # Errors
 /// The first that differs.
-pub(super) fn same_counts(counts: &[(&'static str, usize, usize)]) -> Result<(), SavedStateError> {
+pub(crate) fn same_counts(counts: &[(&'static str, usize, usize)]) -> Result<(), SavedStateError> {
     match counts.iter().find(|(_, found, expected)| found != expected) {
         Some(&(what, found, expected)) => {
             Err(SavedStateError::OtherScene { what, found, expected })
@@ -177,19 +188,30 @@ fn patches(rows: &[[Real; 6]]) -> Patches {
     patches
 }
 
+/// Position and quaternion x y z w.
+pub(crate) fn pose_row(pose: &Pose) -> [Real; 7] {
+    let (p, q) = (pose.translation.vector, pose.rotation.coords);
+    [p.x, p.y, p.z, q.x, q.y, q.z, q.w]
+}
+
+/// The pose of a row.
+pub(crate) fn pose(&[px, py, pz, qx, qy, qz, qw]: &[Real; 7]) -> Pose {
+    // Not normalised again: the bits must come back.
+    let rotation = Quat::new_unchecked(nalgebra::Quaternion::new(qw, qx, qy, qz));
+    Pose::from_parts(Vec3::new(px, py, pz).into(), rotation)
+}
+
 /// Position, quaternion x y z w, velocity, angular velocity.
 fn motion_row(motion: &BodyMotion) -> [Real; 13] {
-    let (p, q) = (motion.pose.translation.vector, motion.pose.rotation.coords);
+    let [px, py, pz, qx, qy, qz, qw] = pose_row(&motion.pose);
     let (v, w) = (motion.twist.linear, motion.twist.angular);
-    [p.x, p.y, p.z, q.x, q.y, q.z, q.w, v.x, v.y, v.z, w.x, w.y, w.z]
+    [px, py, pz, qx, qy, qz, qw, v.x, v.y, v.z, w.x, w.y, w.z]
 }
 
 fn motion(row: &[Real; 13]) -> BodyMotion {
     let [px, py, pz, qx, qy, qz, qw, vx, vy, vz, wx, wy, wz] = *row;
-    // Not normalised again: the bits must come back.
-    let rotation = Quat::new_unchecked(nalgebra::Quaternion::new(qw, qx, qy, qz));
     BodyMotion {
-        pose: Pose::from_parts(Vec3::new(px, py, pz).into(), rotation),
+        pose: pose(&[px, py, pz, qx, qy, qz, qw]),
         twist: Twist { linear: Vec3::new(vx, vy, vz), angular: Vec3::new(wx, wy, wz) },
     }
 }

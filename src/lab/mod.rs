@@ -5,6 +5,10 @@
 //! tables, reports and documents are made of.
 
 mod axis; // ticks of a plot
+#[cfg(feature = "bag")]
+mod bag_course; // what a recording shows over time
+#[cfg(feature = "bag")]
+pub mod bag_page; // the same as a page for people
 pub mod board; // what the terminal shows meanwhile
 mod case; // one case from start to end
 pub mod comparison; // kept outcomes beside their sources, as Markdown

@@ -19,6 +19,27 @@ const STYLE: &str = include_str!("report.css");
 /// The page as HTML.
 pub fn page(outcome: &Outcome) -> String {
     let title = format!("{}, {}", outcome.experiment, size_name(outcome.size));
+    let head = html! {
+        p.kind { "jamgrip experiment" }
+        h1 { (outcome.experiment) " " span.size { (size_name(outcome.size)) } }
+        p.about { (outcome.about) }
+        (badges(outcome))
+    };
+    let body = html! {
+        (warnings(outcome))
+        (rows("Red rows", outcome.rows.iter().filter(|row| !row.pass).collect()))
+        (plots(&outcome.plots))
+        (rows("Rows that pass", outcome.rows.iter().filter(|row| row.pass).collect()))
+        (quantities(&outcome.quantities))
+        (notes(&outcome.notes))
+        (cases(outcome))
+        (repeat(outcome))
+    };
+    whole(&title, &head, &body)
+}
+
+/// A page complete in itself.
+pub(super) fn whole(title: &str, head: &Markup, body: &Markup) -> String {
     let style = format!("{STYLE}{}", dark_colours());
     let page = html! {
         (DOCTYPE)
@@ -30,24 +51,7 @@ pub fn page(outcome: &Outcome) -> String {
                 title { (title) " · jamgrip" }
                 style { (PreEscaped(style)) }
             }
-            body {
-                header {
-                    p.kind { "jamgrip experiment" }
-                    h1 { (outcome.experiment) " " span.size { (size_name(outcome.size)) } }
-                    p.about { (outcome.about) }
-                    (badges(outcome))
-                }
-                main {
-                    (warnings(outcome))
-                    (rows("Red rows", outcome.rows.iter().filter(|row| !row.pass).collect()))
-                    (plots(&outcome.plots))
-                    (rows("Rows that pass", outcome.rows.iter().filter(|row| row.pass).collect()))
-                    (quantities(&outcome.quantities))
-                    (notes(&outcome.notes))
-                    (cases(outcome))
-                    (repeat(outcome))
-                }
-            }
+            body { header { (head) } main { (body) } }
         }
     };
     page.into_string()
@@ -122,7 +126,8 @@ fn one_row(row: &Row) -> Markup {
     }
 }
 
-fn plots(plots: &[Plot]) -> Markup {
+/// Pictures with their legends.
+pub(super) fn plots(plots: &[Plot]) -> Markup {
     html! {
         @if !plots.is_empty() {
             section {
@@ -132,7 +137,9 @@ fn plots(plots: &[Plot]) -> Markup {
                         h3 { (plot.title) }
                         (legend(plot))
                         (PreEscaped(plot::svg(plot)))
-                        figcaption { b { "The source: " } (plot.source_says) }
+                        @if !plot.source_says.is_empty() {
+                            figcaption { b { "The source: " } (plot.source_says) }
+                        }
                     }
                 }
             }

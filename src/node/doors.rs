@@ -1,11 +1,13 @@
 //! The doors to the outside that a scene asks for: recording, streams, ROS 2. A door whose feature
 //! was not built says so when it is asked for.
 
-use std::sync::Arc;
+use std::{sync::Arc, time::Duration};
 
 use super::{launch::RunError, outlets::Outlets, progress::Progress};
+#[cfg(feature = "bag")]
+use crate::cosim::compile::PHYSICS_VERSION;
 use crate::{
-    scene::{Controller, OnError, Scene},
+    scene::{Controller, OnError, Scene, Shape},
     sources::Source,
     wire::to_ros::Encoder,
 };
@@ -32,6 +34,12 @@ pub(super) struct Doors<'a> {
     pub(super) encoder: &'a Arc<Encoder>,
     /// Where faults are said.
     pub(super) progress: &'a Progress,
+    /// Length of a substep [s].
+    #[cfg_attr(not(feature = "bag"), expect(dead_code, reason = "only recordings tell it"))]
+    pub(super) substep_s: f64,
+    /// What the recording says of the run besides what it always says.
+    #[cfg_attr(not(feature = "bag"), expect(dead_code, reason = "only recordings tell it"))]
+    pub(super) facts: &'a [(&'static str, String)],
 }
 
 /// Those who may command from outside.
@@ -70,10 +78,9 @@ impl Doors<'_> {
 
     #[cfg(feature = "bag")]
     fn open_bag(&self, outlets: &mut Outlets) -> Result<(), RunError> {
-        use crate::sinks::bag::{Bag, Subject};
+        use crate::sinks::bag::Bag;
 
-        let scene_text = crate::scene::to_yaml(self.scene);
-        let subject = Subject { scene_text, seed: self.scene.seed };
+        let subject = self.subject();
         let folder = self.bag_folder();
         let opened = Bag::create(&folder, Arc::clone(self.encoder), subject)
             .map_err(|error| error.to_string())
@@ -102,6 +109,50 @@ impl Doors<'_> {
         }
         self.progress.say(&reason);
         Ok(())
+    }
+
+    /// What the recording says about the run, so that it can be run again.
+    #[cfg(feature = "bag")]
+    fn subject(&self) -> crate::bag::Subject {
+        let bag = &self.scene.outputs.bag;
+        let whole_ns = |time: f64| Duration::from_secs_f64(time).as_nanos();
+        let format = crate::bag::Format {
+            compression: bag.compression,
+            split_bytes: bag.split_size.map(|mebibytes| mebibytes << 20),
+            split_ns: bag.split_duration.map(|it| u64::try_from(whole_ns(it)).unwrap_or(u64::MAX)),
+        };
+        let mut facts = vec![
+            ("seed", self.scene.seed.to_string()),
+            ("version", env!("CARGO_PKG_VERSION").to_owned()),
+            ("commit", option_env!("JAMGRIP_COMMIT").unwrap_or("unknown").to_owned()),
+            ("physics", PHYSICS_VERSION.to_string()),
+            ("tick_ns", self.scene.time.tick_ns.to_string()),
+            ("substep_s", format!("{:e}", self.substep_s)),
+            ("machine", format!("{} {}", std::env::consts::OS, std::env::consts::ARCH)),
+        ];
+        facts.extend_from_slice(self.facts);
+        let scene_text = crate::scene::to_yaml(self.scene);
+        crate::bag::Subject { scene_text, scene_files: self.scene_files(), facts, format }
+    }
+
+    /// The mesh files of the scene. One that has gone since it was read is said and left out.
+    #[cfg(feature = "bag")]
+    fn scene_files(&self) -> Vec<(String, Vec<u8>)> {
+        let mut files = Vec::new();
+        for object in &self.scene.objects {
+            let Shape::Mesh { file, .. } = &object.shape else { continue };
+            match std::fs::read(file) {
+                Ok(bytes) => {
+                    let name = file.file_name().unwrap_or_default().to_string_lossy();
+                    files.push((name.into_owned(), bytes));
+                }
+                Err(error) => {
+                    let path = file.display();
+                    self.progress.say(&format!("{path}: not kept in the recording: {error}"));
+                }
+            }
+        }
+        files
     }
 
     #[cfg(feature = "bag")]

@@ -22,6 +22,7 @@ use crate::{
     physics::health::Diverged,
     scene::{Controller, Scene},
     sinks::RunStatistics,
+    sources::Source,
     wire::to_ros::Encoder,
 };
 
@@ -36,6 +37,8 @@ pub struct Options {
     pub cache: Cache,
     /// True shows no progress.
     pub is_quiet: bool,
+    /// What the recording says of the run besides what it always says.
+    pub facts: Vec<(&'static str, String)>,
 }
 
 /// Why a run could not begin or go on.
@@ -55,6 +58,10 @@ pub enum RunError {
         "controller: topics, but ROS 2 is not there: {0}; allow it, or choose controller=builtin"
     )]
     NoTopics(String),
+    /// A recording that was to be taken up cannot be.
+    #[cfg(feature = "bag")]
+    #[error(transparent)]
+    Replay(Box<dyn std::error::Error + Send + Sync>),
     /// Signals cannot be listened to.
     #[error("Ctrl-C cannot be listened to: {0}; run jamgrip as a process of its own")]
     Signals(#[from] ctrlc::Error),
@@ -74,6 +81,39 @@ pub struct Finished {
 /// # Errors
 /// If the run cannot begin.
 pub fn launch(scene: &Scene, options: &Options) -> Result<Finished, RunError> {
+    let begin = |compiled: Compiled, progress: &Progress| {
+        Ok(start::start(compiled, options.n_threads, &options.cache, progress)?)
+    };
+    launch_with(scene, options, begin, |outside| Orders::new(scene, outside))
+}
+
+/// Runs `scene` under the commands of `script` alone, to the end that `options` or the scene name.
+///
+/// # Errors
+/// If the run cannot begin.
+#[cfg(feature = "bag")]
+pub fn launch_by(
+    scene: &Scene,
+    options: &Options,
+    script: crate::sources::bag::Script,
+) -> Result<Finished, RunError> {
+    let begin = |compiled: Compiled, progress: &Progress| {
+        Ok(start::start(compiled, options.n_threads, &options.cache, progress)?)
+    };
+    launch_with(scene, options, begin, |_| Orders::from_outside(vec![Box::new(script)]))
+}
+
+/// Runs `scene` to its end from a session that `begin` makes of the compiled scene, under the
+/// orders that `command` makes of those outside.
+///
+/// # Errors
+/// If the run cannot begin.
+pub fn launch_with(
+    scene: &Scene,
+    options: &Options,
+    begin: impl FnOnce(Compiled, &Progress) -> Result<Started, RunError>,
+    command: impl FnOnce(Vec<Box<dyn Source>>) -> Orders,
+) -> Result<Finished, RunError> {
     let since_start = Pacer::start(false);
     let shutdown = Shutdown::listen()?;
     let progress = Progress::new(options.is_quiet);
@@ -83,13 +123,14 @@ pub fn launch(scene: &Scene, options: &Options) -> Result<Finished, RunError> {
     let encoder = Arc::new(Encoder::new(scene, &mesh.triangles, &mesh.positions));
     let sizes = Sizes { n_grains: scene.grains.count, n_vertices: mesh.n_vertices() };
     // Recording first: a folder that cannot be written is noticed before the bag is filled.
-    let (outlets, outside) = Doors { scene, encoder: &encoder, progress: &progress }.open(sizes)?;
-    let started = start::start(compiled, options.n_threads, &options.cache, &progress)?;
-    let Started { mut session, origin } = started;
+    let facts = &options.facts;
+    let doors = Doors { scene, encoder: &encoder, progress: &progress, substep_s, facts };
+    let (outlets, outside) = doors.open(sizes)?;
+    let Started { mut session, origin } = begin(compiled, &progress)?;
     let end_ns = end_ns(scene, options.duration);
     progress.running(end_ns);
     let mut crew = Crew {
-        orders: Orders::new(scene, outside),
+        orders: command(outside),
         outlets,
         schedule: Schedule::new(&scene.outputs, scene.time.tick_ns),
         judge: Judge::default(),

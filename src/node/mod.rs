@@ -15,7 +15,7 @@ pub mod shutdown; // Ctrl-C
 pub mod start; // a settled bag, from the cache or from scratch
 pub mod summary; // what is left at the end
 
-use std::{fmt, sync::Arc, time::Duration};
+use std::{fmt, mem, sync::Arc, time::Duration};
 
 use self::{
     judge::Judge,
@@ -29,7 +29,7 @@ use self::{
 };
 use crate::{
     sinks::{Packet, RunStatistics},
-    snapshot::Snapshot,
+    snapshot::{Snapshot, checkpoint::Checkpoint},
 };
 
 /// While the run waits for a first command, its start is shown this many times a second.
@@ -99,7 +99,9 @@ pub struct Report<Fault> {
 pub fn run<P: Plant>(plant: &mut P, crew: &mut Crew) -> Report<P::Fault> {
     let mut seen = Arc::new(Packet::new(plant.snapshot(Parts::ALL), None));
     crew.wait_for_orders(plant, &seen);
-    let mut pacer = Pacer::start(crew.is_real_time);
+    // The start is kept whatever the rate, at whatever time it is.
+    let mut checkpoints: Vec<_> = crew.checkpoint(plant, true).into_iter().collect();
+    let mut pacer = Pacer::start_at(seen.snapshot.time_ns, crew.is_real_time);
     let ending = loop {
         if let Some(ending) = crew.ending(&seen.snapshot) {
             break Ok(ending);
@@ -111,7 +113,10 @@ pub fn run<P: Plant>(plant: &mut P, crew: &mut Crew) -> Report<P::Fault> {
         let time_ns = seen.snapshot.time_ns + crew.tick_ns;
         let snapshot = plant.snapshot(crew.schedule.parts(time_ns)); // a copy
         pacer.wait_until(time_ns); // the only clock
-        seen = Arc::new(crew.pack(snapshot, &pacer));
+        let is_due = crew.schedule.checkpoint(time_ns);
+        checkpoints.extend(crew.checkpoint(plant, is_due));
+        let packet = crew.pack(snapshot, &pacer);
+        seen = Arc::new(packet.with_checkpoints(mem::take(&mut checkpoints)));
         crew.outlets.publish(&plant.view(&seen.snapshot), &seen); // never fails the run
     };
     crew.progress.end();
@@ -135,6 +140,11 @@ impl Crew {
             }
             pacer::pause();
         }
+    }
+
+    /// All that is needed to go on, if it is due and someone keeps it.
+    fn checkpoint<P: Plant>(&self, plant: &P, is_due: bool) -> Option<Checkpoint> {
+        if is_due && self.outlets.bag.is_some() { plant.checkpoint() } else { None }
     }
 
     fn ending(&mut self, seen: &Snapshot) -> Option<Ending> {

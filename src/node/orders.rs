@@ -32,6 +32,11 @@ impl Orders {
         Self { builtin, outside }
     }
 
+    /// Only what `outside` says, whatever `scene` asks for.
+    pub fn from_outside(outside: Vec<Box<dyn Source>>) -> Self {
+        Self { builtin: None, outside }
+    }
+
     /// Commands for the next tick. Those from outside come last, so that a person can overrule
     /// the built-in controller.
     pub fn drain(&mut self, seen: &Snapshot) -> Vec<Command> {

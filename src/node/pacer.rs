@@ -14,6 +14,8 @@ const WINDOW: Duration = Duration::from_secs(1);
 /// Measures wall time against simulated time.
 pub struct Pacer {
     start: Instant,
+    /// Simulated time at the start [ns].
+    origin_ns: u64,
     is_real_time: bool,
     time_ns: u64,
     /// Wall and simulated time now and then in the last second.
@@ -23,15 +25,21 @@ pub struct Pacer {
 impl Pacer {
     /// A pacer whose wall time starts now. In real time, the run waits when it is ahead.
     pub fn start(is_real_time: bool) -> Self {
+        Self::start_at(0, is_real_time)
+    }
+
+    /// The same for a run that begins at a simulated time of `origin_ns`.
+    pub fn start_at(origin_ns: u64, is_real_time: bool) -> Self {
         let start = Instant::now();
-        Self { start, is_real_time, time_ns: 0, marks: VecDeque::from([(start, 0)]) }
+        let marks = VecDeque::from([(start, origin_ns)]);
+        Self { start, origin_ns, is_real_time, time_ns: origin_ns, marks }
     }
 
     /// Notes that simulated time has come to `time_ns`, and waits for it in real time.
     pub fn wait_until(&mut self, time_ns: u64) {
         self.time_ns = time_ns;
         if self.is_real_time {
-            let due = self.start + Duration::from_nanos(time_ns);
+            let due = self.start + Duration::from_nanos(time_ns - self.origin_ns);
             thread::sleep(due.saturating_duration_since(Instant::now()));
         }
         self.mark(Instant::now());
@@ -54,13 +62,71 @@ impl Pacer {
 
     /// Simulated over wall time since the start.
     pub fn real_time_factor_mean(&self) -> f64 {
-        ratio(self.time_ns, self.start.elapsed())
+        ratio(self.time_ns - self.origin_ns, self.start.elapsed())
     }
 
     /// Simulated over wall time, over the last second of wall time.
     pub fn real_time_factor(&self) -> f64 {
         let (wall, time_ns) = self.marks[0];
         ratio(self.time_ns - time_ns, wall.elapsed())
+    }
+}
+
+/// Where the playing of a recording is: recorded time that passes with wall time.
+pub struct Playhead {
+    anchor: Instant,
+    time_ns: u64,
+    rate: f64,
+    is_paused: bool,
+}
+
+impl Playhead {
+    /// Begins at `time_ns` now, `rate` times as fast as it was recorded.
+    pub fn start(time_ns: u64, rate: f64) -> Self {
+        Self { anchor: Instant::now(), time_ns, rate, is_paused: false }
+    }
+
+    /// Recorded time now [ns].
+    pub fn now_ns(&self) -> u64 {
+        if self.is_paused {
+            return self.time_ns;
+        }
+        let passed = self.anchor.elapsed().mul_f64(self.rate).as_nanos();
+        self.time_ns.saturating_add(u64::try_from(passed).unwrap_or(u64::MAX))
+    }
+
+    /// Goes on from `time_ns`.
+    pub fn jump(&mut self, time_ns: u64) {
+        (self.anchor, self.time_ns) = (Instant::now(), time_ns);
+    }
+
+    /// Goes on `rate` times as fast as recorded.
+    pub fn set_rate(&mut self, rate: f64) {
+        self.jump(self.now_ns());
+        self.rate = rate;
+    }
+
+    /// Stands still, or goes on.
+    pub fn set_paused(&mut self, is_paused: bool) {
+        self.jump(self.now_ns());
+        self.is_paused = is_paused;
+    }
+
+    /// True while it stands still.
+    pub fn is_paused(&self) -> bool {
+        self.is_paused
+    }
+
+    /// Waits for `time_ns`, but not longer than a person notices; true if it has come.
+    pub fn wait_for(&self, time_ns: u64) -> bool {
+        const LONGEST: Duration = Duration::from_millis(20);
+        let left = Duration::from_nanos(time_ns.saturating_sub(self.now_ns()));
+        if left.is_zero() && !self.is_paused {
+            return true;
+        }
+        let left = if self.is_paused { LONGEST } else { left.div_f64(self.rate) };
+        thread::sleep(left.min(LONGEST));
+        !self.is_paused && time_ns <= self.now_ns()
     }
 }
 

@@ -7,7 +7,7 @@ use crate::{
     command::Command,
     physics::health::Diverged,
     session::Session,
-    snapshot::{Snapshot, take, view::View},
+    snapshot::{Snapshot, checkpoint::Checkpoint, take, view::View},
 };
 
 /// Something that ticks and can be looked at.
@@ -24,6 +24,11 @@ pub trait Plant {
     /// A copy of what the outside may see, with the large parts asked for.
     fn snapshot(&self, parts: Parts) -> Snapshot;
 
+    /// All that is needed to go on from here, if it can be saved.
+    fn checkpoint(&self) -> Option<Checkpoint> {
+        None
+    }
+
     /// A borrowed look at everything. `seen` is the snapshot of the same tick.
     fn view<'a>(&'a self, seen: &'a Snapshot) -> View<'a>;
 }
@@ -37,6 +42,11 @@ impl Plant for Session {
 
     fn snapshot(&self, parts: Parts) -> Snapshot {
         take::snapshot(self, parts)
+    }
+
+    fn checkpoint(&self) -> Option<Checkpoint> {
+        let (tick, time_ns, digest) = (self.now(), self.time_ns(), self.digest());
+        Some(Checkpoint { tick, time_ns, digest, bytes: self.save() })
     }
 
     fn view<'a>(&'a self, seen: &'a Snapshot) -> View<'a> {

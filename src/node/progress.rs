@@ -73,6 +73,16 @@ impl Progress {
         ));
     }
 
+    /// Simulated time has come to `time_ns`, at this multiple of real time.
+    pub fn share(&self, time_ns: u64, real_time_factor: f64) {
+        if self.bar.is_hidden() {
+            return;
+        }
+        let time = Duration::from_nanos(time_ns).as_secs_f64();
+        self.bar.set_position(time_ns);
+        self.bar.set_message(format!("{time:7.3} s  {real_time_factor:5.2} x real time"));
+    }
+
     /// Says something above the line.
     pub fn say(&self, text: &dyn Display) {
         self.bar.suspend(|| {

@@ -1,7 +1,7 @@
 //! Which parts of a snapshot are due at which tick.
 
-use crate::scene::Outputs;
 pub use crate::snapshot::Parts;
+use crate::{scene::Outputs, snapshot::due};
 
 /// Rates in simulated time, cut to ticks.
 #[derive(Clone, Copy, Debug)]
@@ -10,6 +10,8 @@ pub struct Schedule {
     grains: Rhythm,
     contacts: Rhythm,
     statistics: Rhythm,
+    /// Rate of checkpoints [Hz], and the length of a tick [ns].
+    checkpoints: Option<(f64, u64)>,
 }
 
 impl Schedule {
@@ -21,6 +23,7 @@ impl Schedule {
             grains: rhythm(outputs.grains_rate),
             contacts: rhythm(outputs.contacts_rate),
             statistics: rhythm(outputs.statistics_rate),
+            checkpoints: outputs.bag.checkpoint_rate.map(|rate| (rate, tick_ns)),
         }
     }
 
@@ -31,6 +34,11 @@ impl Schedule {
             grains: self.grains.is_due(time_ns),
             contacts: self.contacts.is_due(time_ns),
         }
+    }
+
+    /// True if all that is needed to go on is to be kept at `time_ns`, besides the start.
+    pub fn checkpoint(&self, time_ns: u64) -> bool {
+        self.checkpoints.is_some_and(|(rate, tick_ns)| due::is_due(rate, time_ns, tick_ns))
     }
 
     /// True if statistics are due at `time_ns`.

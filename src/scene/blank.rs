@@ -1,8 +1,8 @@
 //! A scene before it is read: every number is NaN, so that nothing forgotten can pass for a value.
 
 use super::{
-    Bag, Chamber, Controller, Flange, Grains, Material, Membrane, Object, OnError, OnFull, Outputs,
-    Ros, Scene, Shape, Table, Time,
+    Bag, BagCompression, Chamber, Controller, Flange, Grains, Material, Membrane, Object, OnError,
+    OnFull, Outputs, Ros, Scene, Shape, Table, Time,
 };
 use crate::base::{Pose, Real, Vec3};
 
@@ -86,6 +86,10 @@ fn outputs() -> Outputs {
             folder: None,
             on_full: OnFull::Wait,
             on_error: OnError::Continue,
+            checkpoint_rate: None,
+            compression: BagCompression::Zstd,
+            split_size: None,
+            split_duration: None,
         },
         real_time: false,
     }

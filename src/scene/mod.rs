@@ -5,6 +5,7 @@
 //! with their units and limits, `check` joins them; all faults come at once. `print` goes back.
 
 pub mod fault; // what can be wrong
+pub mod plain; // YAML that is no scene
 pub mod print; // scene to text
 pub mod quantity; // "2 mm"
 pub mod text; // text to scene
@@ -323,6 +324,26 @@ pub struct Bag {
     pub on_full: OnFull,
     /// What to do when the disk is full or the folder cannot be written.
     pub on_error: OnError,
+    /// How often all that is needed to go on is kept, in simulated time [Hz]; `None` keeps only
+    /// the start.
+    pub checkpoint_rate: Option<Real>,
+    /// How messages are compressed.
+    pub compression: BagCompression,
+    /// A file that has become as long as this is followed by another [MiB].
+    pub split_size: Option<u64>,
+    /// A file that has become as old as this is followed by another, in simulated time [s].
+    pub split_duration: Option<Real>,
+}
+
+/// How a recording compresses its messages.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BagCompression {
+    /// Small, and fast enough.
+    Zstd,
+    /// Faster, larger.
+    Lz4,
+    /// As they are.
+    Uncompressed,
 }
 
 /// What a recording does when its queue is full.

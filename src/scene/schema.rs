@@ -4,8 +4,8 @@
 //! in `check`.
 
 use super::{
-    Bag, Chamber, Controller, Flange, Grains, Material, Membrane, Object, OnError, OnFull, Outputs,
-    PickAndLift, Ros, Scene, Shape, Table, Time,
+    Bag, BagCompression, Chamber, Controller, Flange, Grains, Material, Membrane, Object, OnError,
+    OnFull, Outputs, PickAndLift, Ros, Scene, Shape, Table, Time,
     quantity::{
         ACCELERATION, ANGLE, ANGULAR_ACCELERATION, ANGULAR_SPEED, DENSITY, FORCE, FREQUENCY,
         IMPULSE, LENGTH, PRESSURE, PRESSURE_RATE, SPEED, TIME, TORQUE,
@@ -293,6 +293,21 @@ fn bag(walk: &mut impl Walk, bag: &mut Bag) {
         "stop" => OnError::Stop,
         _ => OnError::Continue,
     };
+    let rate = Quantity { dimension: &FREQUENCY, range: Range::AboveUpTo(0.0, 1e6) };
+    walk.quantity_or("checkpoint_rate", "never", rate, &mut bag.checkpoint_rate);
+    let compression = match bag.compression {
+        BagCompression::Zstd => "zstd",
+        BagCompression::Lz4 => "lz4",
+        BagCompression::Uncompressed => "none",
+    };
+    bag.compression = match walk.choice("compression", &["zstd", "lz4", "none"], compression) {
+        "lz4" => BagCompression::Lz4,
+        "none" => BagCompression::Uncompressed,
+        _ => BagCompression::Zstd,
+    };
+    walk.whole_or("split_mebibytes", "never", 1 << 30, &mut bag.split_size);
+    let time = Quantity::above_zero(&TIME);
+    walk.quantity_or("split_duration", "never", time, &mut bag.split_duration);
 }
 
 /// A whole number that counts things in memory.

@@ -1,41 +1,37 @@
-//! Recordings: a rosbag2 folder with one MCAP file that explains itself.
+//! Recordings while they are made: a rosbag2 folder of MCAP files.
 //!
-//! It holds every message that is published, every command that was received, refused ones too,
-//! and the scene. Log times are simulated time; a command has the time at which its tick began.
+//! They hold every message that is published, every command that was received, refused ones too,
+//! the digest of every tick and, now and then, all that is needed to go on. Log times are simulated
+//! time; a command has the time at which its tick began.
 
 use std::{
     collections::BTreeMap,
     error::Error,
     fs,
-    io::{self, BufWriter, ErrorKind},
+    io::{self, ErrorKind},
     path::{Path, PathBuf},
     sync::{Arc, Mutex, PoisonError},
     time::{Duration, Instant},
 };
 
-use mcap::{
-    Attachment, Compression, McapError, WriteOptions, Writer,
-    records::{MessageHeader, Metadata},
-    write::NoSeek,
-};
-
-use super::{
-    Packet, Sink,
-    bag_metadata::{Contents, file_text, information, qos_profiles},
-    disk::{FullFlag, RESERVE, ReservedFile, is_full},
-};
-use crate::wire::{
-    to_ros::Encoder,
-    topics::{Message, Topic},
+use super::{Packet, Sink};
+pub use crate::bag::{Format, Subject};
+use crate::{
+    bag::{
+        chain::{self, Chain},
+        disk::{RESERVE, is_full},
+        metadata::{Contents, Row, file_text, information},
+        writer::{OpenFile, WriteError, of_system, text},
+    },
+    wire::{
+        messages::RosMessage,
+        to_ros::Encoder,
+        topics::{Message, Topic},
+    },
 };
 
 /// A crash loses at most what came in this time, in wall time.
 const FLUSH_PERIOD: Duration = Duration::from_secs(1);
-/// Messages are compressed together up to this length [bytes].
-const CHUNK: u64 = 768 << 10;
-/// Names the encoding of a message: CDR, little endian.
-const CDR_HEADER: [u8; 4] = [0, 1, 0, 0];
-
 /// Why nothing more is recorded.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum BagError {
@@ -96,15 +92,6 @@ fn seconds(time_ns: u64) -> f64 {
     time_ns as f64 * 1e-9
 }
 
-/// What a recording is about.
-#[derive(Clone, Debug)]
-pub struct Subject {
-    /// Text of the resolved scene; kept in the recording as `scene.yaml`.
-    pub scene_text: String,
-    /// Seed of the scene.
-    pub seed: u64,
-}
-
 /// What a recording holds so far.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct BagReport {
@@ -130,25 +117,22 @@ pub struct Bag {
     encoder: Arc<Encoder>,
     subject: Subject,
     folder: PathBuf,
-    file_name: String,
+    /// The encoder's topics, then that of the digests.
+    topics: Vec<Topic>,
     file: Option<OpenFile>,
-    contents: Contents,
+    /// What each file holds, the open one last.
+    files: Vec<Contents>,
+    /// Messages of each topic so far.
+    n_sent: Vec<u64>,
+    /// The last message of each topic that late readers get; repeated when a new file begins.
+    latched: BTreeMap<usize, Message>,
+    chain: Chain,
     /// Digest of the last state.
     digest: u64,
     /// Why the recording has ended early.
     fault: Option<BagError>,
     flushed_at: Instant,
     reporter: BagReporter,
-}
-
-/// The MCAP file while it is written.
-struct OpenFile {
-    writer: Writer<NoSeek<BufWriter<ReservedFile>>>,
-    full: FullFlag,
-    /// Channel of each topic.
-    channels: Vec<u16>,
-    /// A message with its header, put together here.
-    bytes: Vec<u8>,
 }
 
 impl Bag {
@@ -171,27 +155,28 @@ impl Bag {
         if entries.next().is_some() {
             return Err(BagError::FolderInUse { folder: folder.to_owned() });
         }
-        let name = folder.file_name().map_or("bag".into(), |name| name.to_string_lossy());
-        let file_name = format!("{name}_0.mcap");
-        let path = folder.join(&file_name);
-        let opened = OpenFile::create(&path, encoder.topics(), &subject.scene_text);
-        let file = opened.map_err(|error| {
-            // An empty folder can be used again; that it cannot be emptied is the smaller fault.
-            let _ = fs::remove_file(&path);
-            cannot_create(&path, text(&error))
-        })?;
+        let mut topics = encoder.topics().to_vec();
+        topics.push(chain::topic());
         let mut bag = Self {
-            contents: Contents::new(encoder.topics().len()),
             folder: folder.to_owned(),
-            file_name,
-            file: Some(file),
+            file: None,
+            files: Vec::new(),
+            n_sent: vec![0; topics.len()],
+            latched: BTreeMap::new(),
+            chain: Chain::new(&subject.scene_text),
             digest: 0,
             fault: None,
             flushed_at: now(),
             reporter: BagReporter::default(),
+            topics,
             encoder,
             subject,
         };
+        bag.begin_file().map_err(|error| {
+            // An empty folder can be used again; that it cannot be emptied is the smaller fault.
+            let _ = fs::remove_file(bag.path());
+            cannot_create(&bag.path(), text(&error))
+        })?;
         bag.note().map_err(|e| cannot_create(&bag.metadata_path(), e.to_string()))?;
         Ok(bag)
     }
@@ -205,93 +190,141 @@ impl Bag {
         self.folder.join("metadata.yaml")
     }
 
-    /// Records a packet's commands and messages.
-    fn record(&mut self, packet: &Packet) -> Result<(), McapError> {
+    /// The file that is written now, or was last.
+    fn path(&self) -> PathBuf {
+        self.folder.join(self.files.last().map_or("", |it| &it.file))
+    }
+
+    fn begin_file(&mut self) -> Result<(), WriteError> {
+        let name = self.folder.file_name().map_or("bag".into(), |name| name.to_string_lossy());
+        let name = format!("{name}_{}.mcap", self.files.len());
+        self.files.push(Contents::new(name, self.topics.len()));
+        self.file = Some(OpenFile::create(&self.path(), &self.topics, &self.subject)?);
+        Ok(())
+    }
+
+    /// Records a packet's commands and messages, its digest and its checkpoints.
+    fn record(&mut self, packet: &Packet) -> Result<(), WriteError> {
         let snapshot = &packet.snapshot;
         let begin_ns = snapshot.time_ns.saturating_sub(self.encoder.tick_ns());
-        if self.contents.times.is_none() {
-            let encoder = Arc::clone(&self.encoder);
+        let encoder = Arc::clone(&self.encoder);
+        if self.is_split_due(snapshot.time_ns) {
+            self.split(begin_ns)?;
+        }
+        if self.chain.tick().is_none() && self.n_sent.iter().all(|n| *n == 0) {
             encoder.latched(begin_ns).iter().try_for_each(|message| self.put(message))?;
         }
+        // The start's checkpoint comes with the first packet: its digest is the first link.
+        for checkpoint in packet.checkpoints.iter().filter(|it| it.tick < snapshot.tick) {
+            self.link(checkpoint.tick.0, checkpoint.time_ns, checkpoint.digest)?;
+        }
         for record in &snapshot.commands {
-            let message = self.encoder.commands().encode(&record.command, begin_ns);
+            let message = encoder.commands().encode(&record.command, begin_ns);
+            self.chain.command(&self.topics[message.topic].name, &message.cdr);
             self.put(&message)?;
         }
-        let encoder = Arc::clone(&self.encoder);
         packet.messages(&encoder).iter().try_for_each(|message| self.put(message))?;
+        self.link(snapshot.tick.0, snapshot.time_ns, snapshot.digest)?;
         self.digest = snapshot.digest;
+        if let Some(file) = &mut self.file {
+            packet.checkpoints.iter().try_for_each(|checkpoint| file.attach(checkpoint))?;
+        }
         if FLUSH_PERIOD <= self.flushed_at.elapsed() {
             self.flush()?;
         }
         Ok(())
     }
 
-    fn put(&mut self, message: &Message) -> Result<(), McapError> {
-        let Some(file) = &mut self.file else { return Ok(()) };
-        file.write(message, self.contents.counts[message.topic])?;
-        self.contents.add(message.topic, message.time_ns);
+    /// Links a tick, once.
+    fn link(&mut self, tick: u64, time_ns: u64, digest: u64) -> Result<(), WriteError> {
+        if self.chain.tick().is_some_and(|last| tick <= last) {
+            return Ok(());
+        }
+        let cdr = self.chain.link(tick, digest).to_cdr();
+        self.put(&Message { topic: self.topics.len() - 1, time_ns, cdr })
+    }
+
+    fn put(&mut self, message: &Message) -> Result<(), WriteError> {
+        let (Some(file), Some(contents)) = (&mut self.file, self.files.last_mut()) else {
+            return Ok(());
+        };
+        file.write(message, self.n_sent[message.topic])?;
+        self.n_sent[message.topic] += 1;
+        contents.add(message.topic, message.time_ns);
+        if self.topics[message.topic].qos.is_latched {
+            self.latched.insert(message.topic, message.clone());
+        }
         Ok(())
     }
 
-    /// Hands everything to the operating system.
-    fn flush(&mut self) -> Result<(), McapError> {
-        self.flushed_at = now();
-        if let Some(file) = &mut self.file {
-            file.writer.flush()?;
+    fn is_split_due(&self, time_ns: u64) -> bool {
+        let (Some(file), Some(contents)) = (&self.file, self.files.last()) else { return false };
+        let Some((first_ns, _)) = contents.times else { return false };
+        let Format { split_bytes, split_ns, .. } = self.subject.format;
+        split_bytes.is_some_and(|longest| longest <= file.gauge().n_bytes())
+            || split_ns.is_some_and(|longest| longest < time_ns - first_ns)
+    }
+
+    /// Completes the file and begins the next, with what late readers get repeated.
+    fn split(&mut self, time_ns: u64) -> Result<(), WriteError> {
+        self.complete_file()?;
+        self.begin_file()?;
+        for (_, message) in std::mem::take(&mut self.latched) {
+            self.put(&Message { time_ns, ..message })?;
         }
         Ok(self.note()?)
     }
 
+    /// Hands everything to the operating system.
+    fn flush(&mut self) -> Result<(), WriteError> {
+        self.flushed_at = now();
+        if let Some(file) = &mut self.file {
+            file.flush()?;
+        }
+        Ok(self.note()?)
+    }
+
+    fn rows(&self) -> Vec<Row> {
+        self.topics.iter().map(Row::of).collect()
+    }
+
     /// Writes `metadata.yaml` anew, in one step, and brings the report up to date.
     fn note(&mut self) -> io::Result<()> {
-        let topics = self.encoder.topics();
-        let names = topics.iter().map(|topic| topic.name.clone());
+        let names = self.topics.iter().map(|topic| topic.name.clone());
         let report = BagReport {
             folder: self.folder.clone(),
-            message_counts: names.zip(self.contents.counts.iter().copied()).collect(),
+            message_counts: names.zip(self.n_sent.iter().copied()).collect(),
         };
         *self.reporter.0.lock().unwrap_or_else(PoisonError::into_inner) = report;
         let path = self.metadata_path();
         let draft = path.with_extension("yaml.new");
-        fs::write(&draft, file_text(topics, &self.contents, &self.file_name))?;
+        fs::write(&draft, file_text(&self.rows(), &self.files))?;
         fs::rename(&draft, &path)
     }
 
-    /// Completes the file with its metadata and index.
-    fn finish(&mut self) -> Result<(), McapError> {
-        let Some(mut file) = self.file.take() else { return Ok(()) };
-        let topics = self.encoder.topics();
-        let whole = information(topics, &self.contents, &self.file_name);
-        let (digest, n_messages) = (self.digest, self.contents.n_messages());
-        file.writer.write_metadata(&record(
-            "jamgrip",
-            [
-                ("seed", self.subject.seed.to_string()),
-                ("version", env!("CARGO_PKG_VERSION").to_owned()),
-                ("commit", option_env!("JAMGRIP_COMMIT").unwrap_or("unknown").to_owned()),
-                ("state_digest", format!("{digest:016x}")),
-                ("message_count", n_messages.to_string()),
-            ],
-        ))?;
-        file.writer.write_metadata(&record(
-            "rosbag2",
-            [("serialized_metadata", whole), ("ROS_DISTRO", "jazzy".to_owned())],
-        ))?;
-        file.writer.finish()?;
-        let inner = file.writer.into_inner().into_inner();
-        let disk = inner.into_inner().map_err(|error| McapError::Io(error.into_error()))?;
-        disk.sync()?;
-        // From here on the reserve is free, so that there is room for metadata.yaml as well.
-        drop(disk);
+    /// Completes the file that is open, if there is one.
+    fn complete_file(&mut self) -> Result<(), WriteError> {
+        let Some(file) = self.file.take() else { return Ok(()) };
+        let n_messages: u64 = self.n_sent.iter().sum();
+        let facts = vec![
+            ("state_digest", format!("{:016x}", self.digest)),
+            ("tick", self.chain.tick().unwrap_or(0).to_string()),
+            ("message_count", n_messages.to_string()),
+        ];
+        file.finish(facts, information(&self.rows(), &self.files))
+    }
+
+    /// Completes the recording.
+    fn finish(&mut self) -> Result<(), WriteError> {
+        self.complete_file()?;
         Ok(self.note()?)
     }
 
     /// Ends the recording early, with as much of it kept as the disk allows.
-    fn end(&mut self, error: &McapError) -> BagError {
-        let recorded_ns = self.contents.times.map_or(0, |(_, last)| last);
-        let folder = self.folder.clone();
-        let path = folder.join(&self.file_name);
-        let disk_is_full = matches!(error, McapError::Io(error) if is_full(error));
+    fn end(&mut self, error: &WriteError) -> BagError {
+        let recorded_ns = self.files.iter().filter_map(|it| Some(it.times?.1)).max().unwrap_or(0);
+        let (folder, path) = (self.folder.clone(), self.path());
+        let disk_is_full = of_system(error).is_some_and(is_full);
         let fault = match self.finish() {
             Ok(()) if disk_is_full => BagError::DiskFull { folder, recorded_ns },
             _ => BagError::CannotWrite { folder, path, fault: text(error), recorded_ns },
@@ -301,11 +334,11 @@ impl Bag {
     }
 
     /// Says and remembers what became of an attempt; a full disk is found here.
-    fn conclude(&mut self, outcome: Result<(), McapError>) -> Result<(), BagError> {
-        let is_disk_full = self.file.as_ref().is_some_and(|file| file.full.is_set());
+    fn conclude(&mut self, outcome: Result<(), WriteError>) -> Result<(), BagError> {
+        let is_disk_full = self.file.as_ref().is_some_and(|file| file.gauge().is_full());
         match outcome {
             Ok(()) if !is_disk_full => Ok(()),
-            Ok(()) => Err(self.end(&McapError::Io(ErrorKind::StorageFull.into()))),
+            Ok(()) => Err(self.end(&io::Error::from(ErrorKind::StorageFull).into())),
             Err(error) => Err(self.end(&error)),
         }
     }
@@ -342,72 +375,6 @@ impl Sink for Bag {
         let outcome = self.finish();
         Ok(self.conclude(outcome)?)
     }
-}
-
-impl OpenFile {
-    fn create(path: &Path, topics: &[Topic], scene_text: &str) -> Result<Self, McapError> {
-        let disk = ReservedFile::create(path)?;
-        let full = disk.full_flag();
-        // Chunks are put together in memory and written whole: whatever happens, the file holds
-        // whole chunks, and readers find all messages of them.
-        let mut writer = WriteOptions::new()
-            .profile("ros2")
-            .library(concat!("jamgrip ", env!("CARGO_PKG_VERSION")))
-            .compression(Some(Compression::Zstd))
-            .compression_threads(0)
-            .chunk_size(Some(CHUNK))
-            .disable_seeking(true)
-            .create(NoSeek::new(BufWriter::new(disk)))?;
-        writer.attach(&Attachment {
-            log_time: 0,
-            create_time: 0,
-            name: "scene.yaml".to_owned(),
-            media_type: "application/yaml".to_owned(),
-            data: scene_text.as_bytes().into(),
-        })?;
-        let mut channels = Vec::with_capacity(topics.len());
-        for topic in topics {
-            let kind = topic.message_type;
-            let schema = writer.add_schema(kind.name, "ros2msg", kind.definition.as_bytes())?;
-            let metadata = BTreeMap::from([
-                ("offered_qos_profiles".to_owned(), qos_profiles(topic.qos)),
-                ("topic_type_hash".to_owned(), kind.type_hash.to_owned()),
-            ]);
-            channels.push(writer.add_channel(schema, &topic.name, "cdr", &metadata)?);
-        }
-        writer.flush()?;
-        Ok(Self { writer, full, channels, bytes: Vec::new() })
-    }
-
-    fn write(&mut self, message: &Message, n_before: u64) -> Result<(), McapError> {
-        self.bytes.clear();
-        self.bytes.extend_from_slice(&CDR_HEADER);
-        self.bytes.extend_from_slice(&message.cdr);
-        #[expect(clippy::cast_possible_truncation, reason = "sequence numbers may start anew")]
-        let header = MessageHeader {
-            channel_id: self.channels[message.topic],
-            sequence: n_before as u32,
-            log_time: message.time_ns,
-            publish_time: message.time_ns,
-        };
-        self.writer.write_to_known_channel(&header, &self.bytes)
-    }
-}
-
-/// An error and what caused it: the crate's own words say little.
-fn text(error: &McapError) -> String {
-    let mut text = error.to_string();
-    let mut cause = error.source();
-    while let Some(error) = cause {
-        text += &format!(": {error}");
-        cause = error.source();
-    }
-    text
-}
-
-fn record<const N: usize>(name: &str, values: [(&str, String); N]) -> Metadata {
-    let metadata = values.map(|(key, value)| (key.to_owned(), value)).into();
-    Metadata { name: name.to_owned(), metadata }
 }
 
 #[expect(clippy::disallowed_methods, reason = "a crash must not lose more than a second of work")]

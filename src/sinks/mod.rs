@@ -4,11 +4,7 @@
 //! or stops the physics. The encoding to ROS 2 messages is made once, by whichever sink asks first.
 
 #[cfg(feature = "bag")]
-pub mod bag; // rosbag2 recordings
-#[cfg(feature = "bag")]
-mod bag_metadata; // what a recording says about itself
-#[cfg(feature = "bag")]
-mod disk; // a file that can be completed on a full disk
+pub mod bag; // recordings while they are made
 pub mod fanout; // one thread and one queue per sink
 pub mod reach;
 #[cfg(feature = "ros")]
@@ -20,7 +16,7 @@ use std::sync::OnceLock;
 
 pub use crate::snapshot::run::{RunStatistics, SinkCounters};
 use crate::{
-    snapshot::Snapshot,
+    snapshot::{Snapshot, checkpoint::Checkpoint},
     wire::{to_ros::Encoder, topics::Message},
 };
 
@@ -30,6 +26,8 @@ pub struct Packet {
     pub snapshot: Snapshot,
     /// How the run goes, in wall time; there when statistics are due.
     pub run: Option<RunStatistics>,
+    /// All that is needed to go on, where it is due; the start's too with the first packet.
+    pub checkpoints: Vec<Checkpoint>,
     /// The messages, once someone has asked for them.
     messages: OnceLock<Vec<Message>>,
 }
@@ -37,7 +35,12 @@ pub struct Packet {
 impl Packet {
     /// A packet whose messages are not encoded yet.
     pub fn new(snapshot: Snapshot, run: Option<RunStatistics>) -> Self {
-        Self { snapshot, run, messages: OnceLock::new() }
+        Self { snapshot, run, checkpoints: Vec::new(), messages: OnceLock::new() }
+    }
+
+    /// The same with checkpoints.
+    pub fn with_checkpoints(self, checkpoints: Vec<Checkpoint>) -> Self {
+        Self { checkpoints, ..self }
     }
 
     /// The messages; `encoder` makes them if nobody has yet.

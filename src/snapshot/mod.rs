@@ -2,6 +2,7 @@
 //!
 //! The small parts are there at every tick; grains, membrane and contacts only when they are due.
 
+pub mod checkpoint; // all that is needed to go on
 pub mod due;
 pub mod run;
 pub mod take;

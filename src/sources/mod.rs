@@ -3,6 +3,8 @@
 //! A source never waits and never slows a tick: what arrives while a tick runs is kept for the
 //! next one, in the order of arrival.
 
+#[cfg(feature = "bag")]
+pub mod bag; // what was commanded in a recording
 pub mod inbox;
 #[cfg(feature = "ros")]
 pub mod ros;

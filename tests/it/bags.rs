@@ -5,9 +5,10 @@ use std::{
 };
 
 use jamgrip::{
+    scene::BagCompression,
     sinks::{
         Sink,
-        bag::{Bag, BagError, BagReport, Subject},
+        bag::{Bag, BagError, BagReport, Format, Subject},
         fanout::{Delivery, Fanout},
     },
     wire::to_ros::Encoder,
@@ -21,7 +22,12 @@ const SCENE_TEXT: &str = "name: synthetic\n";
 const DIGEST: u64 = 1000_u64.wrapping_mul(0x9e37_79b9_7f4a_7c15);
 
 fn subject() -> Subject {
-    Subject { scene_text: SCENE_TEXT.to_owned(), seed: 7 }
+    Subject {
+        scene_text: SCENE_TEXT.to_owned(),
+        scene_files: vec![("knob.obj".to_owned(), b"v 0 0 0\n".to_vec())],
+        facts: vec![("seed", "7".to_owned())],
+        format: Format::default(),
+    }
 }
 
 fn create(folder: &Path) -> Result<Bag, BagError> {
@@ -76,6 +82,7 @@ fn expected_counts() -> BTreeMap<String, u64> {
         ("/jamgrip/flange/pose_cmd", 1),
         // The command for an object that does not exist, and the release.
         ("/jamgrip/object_cmd", 2),
+        ("/jamgrip/state_digest", 1000),
         ("/jamgrip/object/cylinder/contact_wrench", state),
         ("/jamgrip/object/cylinder/pose", state),
         ("/jamgrip/object/cylinder/twist", state),
@@ -115,6 +122,9 @@ fn the_mcap_crate_reads_what_was_encoded() {
     for message in mcap::MessageStream::new(&bytes).unwrap() {
         let message = message.unwrap();
         assert_eq!(message.data[..4], [0, 1, 0, 0], "CDR, little endian");
+        if message.channel.topic == "/jamgrip/state_digest" {
+            continue;
+        }
         found.entry(message.channel.topic.clone()).or_default().push(message.data[4..].to_vec());
     }
     assert!(found == expected);
@@ -139,8 +149,9 @@ fn other_libraries_read_every_topic() {
     assert!(mcap["library"].as_str().unwrap().starts_with("jamgrip "));
     assert_eq!(mcap["compressions"], serde_json::json!(["zstd"]));
     assert_eq!(mcap["attachments"]["scene.yaml"], SCENE_TEXT);
+    assert_eq!(mcap["attachments"]["scene_file/knob.obj"], "v 0 0 0\n");
     assert_eq!(mcap["metadata"]["jamgrip"]["seed"], "7");
-    assert_eq!(mcap["metadata"]["jamgrip"]["state_digest"], format!("{DIGEST:016x}"));
+    assert_eq!(mcap["metadata"]["jamgrip_end"]["state_digest"], format!("{DIGEST:016x}"));
     let whole = mcap["metadata"]["rosbag2"]["serialized_metadata"].as_str().unwrap();
     assert!(whole.starts_with("version: 9\nstorage_identifier: mcap\n"));
     let qos = mcap["qos"]["/tf_static"].as_str().unwrap();
@@ -281,4 +292,78 @@ fn a_killed_recording_keeps_what_was_flushed() {
     // Oracle: what the recording reported when it flushed.
     assert_eq!(n_found, n_reported);
     assert!(300 < n_found);
+}
+
+/// Oracle: the number of ticks over the length of a file; two independent libraries read all files,
+/// and what late readers get is there from each file's beginning.
+#[test]
+fn a_long_recording_is_split_and_every_file_stands_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, format, n_files) in [
+        ("by_time", Format { split_ns: Some(250_000_000), ..Format::default() }, 4),
+        ("by_size", Format { split_bytes: Some(1), ..Format::default() }, 0),
+        ("lz4", Format { compression: BagCompression::Lz4, ..Format::default() }, 1),
+        ("none", Format { compression: BagCompression::Uncompressed, ..Format::default() }, 1),
+    ] {
+        let place = folder.path().join(name);
+        let mut bag =
+            Bag::create(&place, synthetic::encoder(), Subject { format, ..subject() }).unwrap();
+        for tick in 1..=1000 {
+            bag.write(&synthetic::packet(tick)).unwrap();
+            if tick == 100 {
+                bag.idle().unwrap();
+            }
+            if name == "by_size" && tick == 5 {
+                break;
+            }
+        }
+        bag.close().unwrap();
+        let read = read_back(&place);
+        let n_found = read["mcap"]["files"].as_u64().unwrap();
+        assert!(n_found == n_files || n_files == 0, "{name}: {n_found} files");
+        let counts = &read["mcap"]["counts"];
+        let n_ticks = if name == "by_size" { 5 } else { 1000 };
+        assert_eq!(counts["/jamgrip/state_digest"], n_ticks, "{name}");
+        assert_eq!(counts["/tf_static"].as_u64(), Some(n_found), "{name}: repeated in each file");
+        assert_eq!(counts["/jamgrip/membrane/mesh"].as_u64(), Some(n_found), "{name}");
+        for first in read["mcap"]["first_topics"].as_array().unwrap() {
+            let first: Vec<&str> =
+                first.as_array().unwrap().iter().filter_map(Value::as_str).collect();
+            assert!(first.contains(&"/tf_static"), "{name}: {first:?}");
+            assert!(first.contains(&"/jamgrip/membrane/mesh"), "{name}: {first:?}");
+        }
+        let expected = match name {
+            "lz4" => "lz4",
+            "none" => "",
+            _ => "zstd",
+        };
+        assert_eq!(read["mcap"]["compressions"], serde_json::json!([expected]), "{name}");
+        let findings = jamgrip::bag::check::check(&place).unwrap();
+        assert!(findings.is_empty(), "{name}: {findings:?}");
+    }
+}
+
+/// Oracle: the numbers of `synthetic::snapshot`, and a parser of pages that is not ours.
+#[test]
+fn a_recording_becomes_a_page() {
+    let folder = tempfile::tempdir().unwrap();
+    let bag = folder.path().join("bag");
+    record_second(&bag);
+    let page = jamgrip::lab::bag_page::page(&bag).unwrap();
+    let file = folder.path().join("report.html");
+    fs::write(&file, &page).unwrap();
+    let read = peers::run("read_page.py", &[file.to_str().unwrap()]);
+    assert!(!read.is_empty());
+    for told in [
+        "Force on the gripper",
+        "Gauge pressure in the bag",
+        "Heights",
+        "command: gauge pressure -80 kPa",
+        "command: release cylinder",
+        "object detected, vacuum builds up",
+        "phase lift",
+    ] {
+        assert!(page.contains(told), "{told}");
+    }
+    assert_eq!(page.matches("<figure>").count(), 6);
 }

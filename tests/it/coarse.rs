@@ -14,7 +14,7 @@ use jamgrip::{
 
 /// Grains twice as large as the full gripper's on a mesh twice as coarse; a light plastic cylinder
 /// with vertical walls just below the bag.
-const TEXT: &str = "
+pub(crate) const TEXT: &str = "
 name: coarse
 membrane: { frequency: 8 }
 grains: { count: 280, radius_min: 3.8 mm, radius_max: 4.2 mm }

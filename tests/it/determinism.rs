@@ -2,7 +2,7 @@
 //! the neighbour lists are built.
 
 use jamgrip::{
-    base::{Pose, digest::Digest, parallel},
+    base::{Pose, Vec3, digest::Digest, parallel},
     command::Command,
     cosim::{Coupled, Inputs},
     session::Session,
@@ -104,4 +104,60 @@ fn it_does_not_matter_for_the_filling_either() {
     };
     // Oracle: lists that reach far, so that no contact can be missed between two builds.
     assert_eq!(fill(1.0), fill(3.0), "contacts were missed between two builds");
+}
+
+/// Pushes, evacuates, lifts, and drives the object by hand for a while: all that is to be saved.
+fn eventful(tick: usize) -> Vec<Command> {
+    let object = || "cylinder".to_owned();
+    match tick {
+        0 => vec![coarse::flange_to(0.078)],
+        40 => vec![Command::Vacuum { gauge_pa: -60e3 }],
+        60 => vec![coarse::flange_to(0.12)],
+        100..130 if tick.is_multiple_of(10) => {
+            let pose = coarse::pose(Vec3::new(0.001, 0.0, 0.035));
+            vec![Command::ObjectPose { object: object(), pose }]
+        }
+        140 => vec![Command::ObjectRelease { object: object() }],
+        _ => Vec::new(),
+    }
+}
+
+#[test]
+fn a_run_taken_up_anywhere_goes_on_with_the_same_bits() {
+    const N_TICKS: usize = 170;
+    let mut session = coarse::session(1, &[]);
+    let (mut digests, mut saved) = (vec![session.digest()], Vec::new());
+    let mut touched_table = false;
+    for tick in 0..N_TICKS {
+        if tick.is_multiple_of(28) {
+            saved.push((tick, session.save()));
+        }
+        session.tick(&eventful(tick)).unwrap();
+        digests.push(session.digest());
+        touched_table |= session.coupled().world.motion(0).pose.translation.z < 0.0251;
+    }
+    assert!(touched_table, "the object stood on the table, so that rapier had contacts to save");
+    for (start, bytes) in saved {
+        let mut resumed = Session::resume(coarse::compiled(2, &[]), &bytes).unwrap();
+        // Oracle: the run that never stopped, to the last bit.
+        assert_eq!(resumed.digest(), digests[start], "taken up at tick {start}");
+        assert!(resumed.save() == bytes, "tick {start}: what is read is what was written");
+        for tick in start..N_TICKS {
+            resumed.tick(&eventful(tick)).unwrap();
+            let expected = digests[tick + 1];
+            assert_eq!(resumed.digest(), expected, "from tick {start}, after tick {tick}");
+        }
+        assert_eq!(resumed.desk().counts(), session.desk().counts());
+    }
+}
+
+#[test]
+fn bytes_of_another_scene_or_cut_off_are_refused() {
+    let bytes = coarse::session(1, &[]).save();
+    for n in [0, 7, bytes.len() / 2, bytes.len() - 1] {
+        assert!(Session::resume(coarse::compiled(1, &[]), &bytes[..n]).is_err(), "{n} bytes");
+    }
+    let other = coarse::compiled(1, &["grains.count=281"]);
+    let error = Session::resume(other, &bytes).err().unwrap().to_string();
+    assert!(error.contains("280 grains, the scene has 281"), "{error}");
 }

@@ -3,6 +3,10 @@
 
 #[cfg(feature = "bag")]
 mod bags; // recordings, read back by independent libraries
+#[cfg(feature = "bag")]
+mod bags_damaged; // killed, cut off, full disks, and what is saved of it
+#[cfg(feature = "bag")]
+mod bags_played; // a recording published again
 mod bench; // how fast it is told to be
 mod by_tick; // a made-up system whose numbers follow from its tick
 mod coarse; // a coarse gripper for tests of the physics
@@ -25,6 +29,8 @@ mod packings; // periodic boxes and dense packings
 mod peers; // independent programs in Python
 #[cfg(feature = "ros")]
 mod private_network; // where tests may speak DDS
+#[cfg(feature = "bag")]
+mod replays; // recordings simulated again, branched off, and taken as commands
 mod rig; // a bare model by hand
 #[cfg(feature = "ros")]
 mod ros_loop; // what goes out reaches others, what others say comes in

@@ -121,7 +121,7 @@ fn check_recording(bag: &Path, told: &Value) {
     for topic in ["grains", "membrane", "wrench", "vacuum_state", "object/cylinder/pose"] {
         assert!(10 < count(&format!("/jamgrip/{topic}")), "{topic} is recorded");
     }
-    assert_eq!(read["mcap"]["metadata"]["jamgrip"]["state_digest"], told["state_digest"]);
+    assert_eq!(read["mcap"]["metadata"]["jamgrip_end"]["state_digest"], told["state_digest"]);
 }
 
 /// Weight of the scene's cylinder [N], from its dimensions.

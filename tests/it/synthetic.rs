@@ -9,8 +9,8 @@ use jamgrip::{
     },
     command::{Command, CommandCounts, CommandRecord, Outcome, PoseCommand, Refusal},
     scene::{
-        Bag, Chamber, Controller, Flange, Grains, Material, Membrane, Object, OnError, OnFull,
-        Outputs, Ros, Scene, Shape, Table, Time,
+        Bag, BagCompression, Chamber, Controller, Flange, Grains, Material, Membrane, Object,
+        OnError, OnFull, Outputs, Ros, Scene, Shape, Table, Time,
     },
     sinks::{Packet, RunStatistics, SinkCounters},
     snapshot::{
@@ -100,6 +100,10 @@ fn outputs() -> Outputs {
             folder: None,
             on_full: OnFull::Wait,
             on_error: OnError::Continue,
+            checkpoint_rate: None,
+            compression: BagCompression::Zstd,
+            split_size: None,
+            split_duration: None,
         },
         real_time: false,
     }

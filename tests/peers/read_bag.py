@@ -59,34 +59,39 @@ def with_rosbags(folder):
 
 
 def with_mcap(folder):
-    """Counts by topic, and what the recording says about itself."""
-    (file,) = folder.glob("*.mcap")
-    counts = {}
-    with file.open("rb") as stream:
-        reader = make_reader(stream, validate_crcs=True, decoder_factories=[DecoderFactory()])
-        last_ns = -1
-        for _, channel, message, _ in reader.iter_decoded_messages(log_time_order=False):
-            counts[channel.topic] = counts.get(channel.topic, 0) + 1
-            assert message.log_time >= last_ns, "log times go backwards"
-            last_ns = message.log_time
-        summary = reader.get_summary()
-        header = reader.get_header()
-        return {
-            "counts": counts,
-            "profile": header.profile,
-            "library": header.library,
-            "channels": len(summary.channels),
-            "qos": {
-                channel.topic: channel.metadata["offered_qos_profiles"]
-                for channel in summary.channels.values()
-            },
-            "compressions": sorted({chunk.compression for chunk in summary.chunk_indexes}),
-            "attachments": {
-                attachment.name: attachment.data.decode()
-                for attachment in reader.iter_attachments()
-            },
-            "metadata": {record.name: record.metadata for record in reader.iter_metadata()},
-        }
+    """Counts by topic in all files, and what the last file says about itself."""
+    counts, first_topics = {}, []
+    last_ns = -1
+    # The tenth comes after the ninth.
+    files = sorted(folder.glob("*.mcap"), key=lambda file: (len(file.stem), file.stem))
+    for file in files:
+        with file.open("rb") as stream:
+            reader = make_reader(stream, validate_crcs=True, decoder_factories=[DecoderFactory()])
+            of_file = []
+            for _, channel, message, _ in reader.iter_decoded_messages(log_time_order=False):
+                counts[channel.topic] = counts.get(channel.topic, 0) + 1
+                assert message.log_time >= last_ns, "log times go backwards"
+                last_ns = message.log_time
+                of_file.append(channel.topic)
+            first_topics.append(sorted(of_file[:3]))
+            summary = reader.get_summary()
+            header = reader.get_header()
+            told = {
+                "profile": header.profile,
+                "library": header.library,
+                "channels": len(summary.channels),
+                "qos": {
+                    channel.topic: channel.metadata["offered_qos_profiles"]
+                    for channel in summary.channels.values()
+                },
+                "compressions": sorted({chunk.compression for chunk in summary.chunk_indexes}),
+                "attachments": {
+                    attachment.name: attachment.data.decode(errors="replace")
+                    for attachment in reader.iter_attachments()
+                },
+                "metadata": {record.name: record.metadata for record in reader.iter_metadata()},
+            }
+    return {"counts": counts, "files": len(files), "first_topics": first_topics, **told}
 
 
 def main():

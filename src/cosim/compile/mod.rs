@@ -35,7 +35,7 @@ use crate::{
 };
 
 /// Changes whenever the same scene would settle differently: part of every cache key.
-const PHYSICS_VERSION: u64 = 6;
+pub const PHYSICS_VERSION: u64 = 6;
 /// Neighbours are listed this share of the largest radius beyond contact.
 const SKIN_SHARE: Real = 0.25;
 /// Longest time between two steps of the rigid world [s].
@@ -148,16 +148,37 @@ impl Compiled {
     /// # Errors
     /// If the bytes are damaged or of another scene.
     pub fn read_start_state(&self, bytes: &[u8]) -> Result<State, SavedStateError> {
-        let mut state = saved_state::read(bytes)?;
+        let mut state = self.fitting_state(bytes)?;
+        state.gauge = 0.0;
+        state.walls[FLANGE] = BodyMotion { pose: self.scene.flange.pose, twist: Twist::zero() };
+        Ok(state)
+    }
+
+    /// The state in `bytes`, in the middle of a run.
+    ///
+    /// # Errors
+    /// If the bytes are damaged or of another scene.
+    pub fn read_state(&self, bytes: &[u8]) -> Result<State, SavedStateError> {
+        let state = self.fitting_state(bytes)?;
+        same_counts(&[("body springs", state.springs.bodies.len(), self.n_samples())])?;
+        Ok(state)
+    }
+
+    fn fitting_state(&self, bytes: &[u8]) -> Result<State, SavedStateError> {
+        let state = saved_state::read(bytes)?;
         let n_vertices = self.model.membrane.mesh.n_vertices();
         same_counts(&[
             ("grains", state.grains.len(), self.scene.grains.count),
             ("vertices", state.membrane.positions.len(), n_vertices),
             ("walls", state.walls.len(), self.model.walls.len()),
         ])?;
-        state.gauge = 0.0;
-        state.walls[FLANGE] = BodyMotion { pose: self.scene.flange.pose, twist: Twist::zero() };
         Ok(state)
+    }
+
+    /// Number of samples of the sheet on all bodies.
+    pub fn n_samples(&self) -> usize {
+        let mesh = &self.model.membrane.mesh;
+        (mesh.n_vertices() + mesh.triangles.len()) * self.model.bodies.len()
     }
 }
 

@@ -90,8 +90,8 @@ impl Grain<'_> {
         self.state.grains.radii[self.i]
     }
 
-    /// From the sheet to the centre [m].
-    fn from_membrane(&self, contact: &Touched) -> Vec3 {
+    /// From the closest point to the centre [m].
+    fn arm(&self, contact: &Touched) -> Vec3 {
         let [.., x, y, z, _] = self.found[contact.place];
         Vec3::new(x, y, z)
     }
@@ -122,7 +122,7 @@ impl Grain<'_> {
             let contact = Contact {
                 triangle: it.triangle,
                 weights: [w0, w1, w2],
-                from_membrane: self.from_membrane(it),
+                from_membrane: self.arm(it),
                 overlap: minimum.overlap,
             };
             let spring = spring_of(&before, &minimum.normal);
@@ -141,7 +141,7 @@ impl Grain<'_> {
         let distance = contact.distance_squared.sqrt();
         Minimum {
             place,
-            normal: self.from_membrane(contact) * distance.recip(),
+            normal: self.arm(contact) * distance.recip(),
             overlap: self.radius() - distance,
             distance_squared: contact.distance_squared,
         }

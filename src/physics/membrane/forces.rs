@@ -34,7 +34,7 @@ pub fn forces(
     parallel::for_parts_of_two(wing_forces, end_forces, |first, wings, ends| {
         lanes::widest(PullAndFold { model, vertices, facets, first, wings, ends });
     });
-    let link_forces = [&**wing_forces, &**end_forces].map(|it| bytemuck::cast_slice(it));
+    let link_forces = [&**wing_forces, &**end_forces].map(bytemuck::cast_slice);
     parallel::for_parts(forces, |first, forces| {
         lanes::widest(Gather { model, gauge_pressure, facets, link_forces, first, forces });
     });

@@ -800,6 +800,34 @@ uint64 n_failed
         };
     }
 
+    /// Fingerprint of the whole state at the end of a tick. Only recordings hold it.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct StateDigest {
+        /// Ticks since the start of the run \[1\].
+        pub r#tick: u64,
+        /// Digest of the whole state; equal digests are equal states, bit by bit.
+        pub r#digest: u64,
+        /// Digest of the chain so far: the scene's text, and of every tick its commands and its digest.
+        pub r#chain: u64,
+    }
+
+    impl RosMessage for StateDigest {
+        const TYPE: MessageType = MessageType {
+            name: "jamgrip_msgs/msg/StateDigest",
+            dds_name: "jamgrip_msgs::msg::dds_::StateDigest_",
+            type_hash: "RIHS01_8ace4a29b566a96b4c49aaaef2b97f13b73b877caaa3d473f1e00de9509106b9",
+            definition: r##"# Fingerprint of the whole state at the end of a tick. Only recordings hold it.
+
+# Ticks since the start of the run [1].
+uint64 tick
+# Digest of the whole state; equal digests are equal states, bit by bit.
+uint64 digest
+# Digest of the chain so far: the scene's text, and of every tick its commands and its digest.
+uint64 chain
+"##,
+        };
+    }
+
     /// How the simulation runs, and whether its model is valid.
     #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
     pub struct Statistics {

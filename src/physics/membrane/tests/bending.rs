@@ -5,7 +5,7 @@ use super::super::mesh::Mesh;
 use super::super::{Facet, MembraneModel, MembraneState, Sheet};
 use super::{forces_on, model_of, rubber, shaken, totals};
 use crate::base::random::{Random, Stream};
-use crate::base::{Real, Vec3};
+use crate::base::{Real, Vec3, lanes::Vector};
 
 /// Two triangles about an edge, arbitrary but not degenerate, with given velocities.
 fn random_hinge(random: &mut Random) -> MembraneState {
@@ -125,7 +125,7 @@ fn the_restoring_moment_does_not_depend_on_the_mesh_size() {
         positions[0].z += 0.3 * size;
         let (fold, _) = fold_of(&model, &positions);
         let force = fold.u1 * (fold.slenderness * fold.half_sine);
-        (positions[0] - positions[2]).cross(&force).x
+        (positions[0] - positions[2]).cross(&force.into()).x
     };
     // Oracle: C3 g. Tolerance: rounding.
     assert!((moment(1e-3) / moment(1.0) - 1.0).abs() < 1e-13);

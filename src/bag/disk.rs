@@ -10,30 +10,41 @@ use std::{
     path::Path,
     sync::{
         Arc,
-        atomic::{AtomicBool, Ordering},
+        atomic::{AtomicBool, AtomicU64, Ordering},
     },
 };
 
 /// Room for the last chunk and the index of a long recording [bytes].
-pub(super) const RESERVE: usize = 4 << 20;
+pub const RESERVE: usize = 4 << 20;
 
-/// Tells whether the disk has become full.
+/// Tells how long the file is, and whether the disk has become full.
 #[derive(Clone, Debug, Default)]
-pub(super) struct FullFlag(Arc<AtomicBool>);
+pub struct Gauge(Arc<Reading>);
 
-impl FullFlag {
+#[derive(Debug, Default)]
+struct Reading {
+    is_full: AtomicBool,
+    n_bytes: AtomicU64,
+}
+
+impl Gauge {
     /// True once the reserve was needed.
-    pub(super) fn is_set(&self) -> bool {
-        self.0.load(Ordering::Relaxed)
+    pub fn is_full(&self) -> bool {
+        self.0.is_full.load(Ordering::Relaxed)
+    }
+
+    /// Bytes written so far.
+    pub fn n_bytes(&self) -> u64 {
+        self.0.n_bytes.load(Ordering::Relaxed)
     }
 }
 
 /// A file with a reserve.
 #[derive(Debug)]
-pub(super) struct ReservedFile {
+pub struct ReservedFile {
     file: File,
     reserve: Option<File>,
-    full: FullFlag,
+    gauge: Gauge,
 }
 
 impl ReservedFile {
@@ -41,22 +52,22 @@ impl ReservedFile {
     ///
     /// # Errors
     /// If the file exists, the folder cannot be written, or there is no room for the reserve.
-    pub(super) fn create(path: &Path) -> io::Result<Self> {
+    pub fn create(path: &Path) -> io::Result<Self> {
         let file = OpenOptions::new().write(true).create_new(true).open(path)?;
         let reserve = reserve_beside(path)?;
-        Ok(Self { file, reserve: Some(reserve), full: FullFlag::default() })
+        Ok(Self { file, reserve: Some(reserve), gauge: Gauge::default() })
     }
 
-    /// Set when the disk becomes full.
-    pub(super) fn full_flag(&self) -> FullFlag {
-        self.full.clone()
+    /// Tells length and fullness, also while someone else writes.
+    pub fn gauge(&self) -> Gauge {
+        self.gauge.clone()
     }
 
     /// Sees to it that the file is on the disk, and not only in memory.
     ///
     /// # Errors
     /// As the disk says.
-    pub(super) fn sync(&self) -> io::Result<()> {
+    pub fn sync(&self) -> io::Result<()> {
         self.file.sync_all()
     }
 }
@@ -71,20 +82,22 @@ fn reserve_beside(path: &Path) -> io::Result<File> {
 }
 
 /// True for the errors of a disk, or a quota, without room.
-pub(super) fn is_full(error: &io::Error) -> bool {
+pub fn is_full(error: &io::Error) -> bool {
     matches!(error.kind(), ErrorKind::StorageFull | ErrorKind::QuotaExceeded)
 }
 
 impl Write for ReservedFile {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        match self.file.write(bytes) {
+        let n_written = match self.file.write(bytes) {
             Err(error) if is_full(&error) && self.reserve.is_some() => {
                 self.reserve = None;
-                self.full.0.store(true, Ordering::Relaxed);
-                self.file.write(bytes)
+                self.gauge.0.is_full.store(true, Ordering::Relaxed);
+                self.file.write(bytes)?
             }
-            other => other,
-        }
+            other => other?,
+        };
+        self.gauge.0.n_bytes.fetch_add(n_written as u64, Ordering::Relaxed);
+        Ok(n_written)
     }
 
     fn flush(&mut self) -> io::Result<()> {

@@ -1,0 +1,91 @@
+//! The chain of digests: of every tick the digest of its state, tied to all commands and digests
+//! before it. Whoever alters, drops or reorders one of them breaks every link that follows.
+
+use xxhash_rust::xxh3::Xxh3;
+
+use crate::wire::{
+    messages::{RosMessage, jamgrip_msgs::StateDigest},
+    topics::{NODE, Qos, Topic},
+};
+
+/// The topic of the links; only recordings have it.
+pub fn topic() -> Topic {
+    Topic {
+        name: topic_name(),
+        type_name: StateDigest::TYPE.name,
+        message_type: StateDigest::TYPE,
+        qos: Qos { is_reliable: true, depth: 10, is_latched: false },
+        is_input: false,
+    }
+}
+
+/// Name of that topic.
+pub fn topic_name() -> String {
+    format!("{NODE}/state_digest")
+}
+
+/// The chain up to a tick.
+#[derive(Clone)]
+pub struct Chain {
+    end: u64,
+    tick: Option<u64>,
+    waiting: Xxh3,
+}
+
+impl Chain {
+    /// A chain that begins with the text of a scene.
+    pub fn new(scene_text: &str) -> Self {
+        let end = xxhash_rust::xxh3::xxh3_64(scene_text.as_bytes());
+        Self { end, tick: None, waiting: Xxh3::new() }
+    }
+
+    /// The last tick that was linked.
+    pub fn tick(&self) -> Option<u64> {
+        self.tick
+    }
+
+    /// Takes in a command of the next tick, as it is recorded.
+    pub fn command(&mut self, topic: &str, cdr: &[u8]) {
+        self.waiting.update(&(topic.len() as u64).to_le_bytes());
+        self.waiting.update(topic.as_bytes());
+        self.waiting.update(&(cdr.len() as u64).to_le_bytes());
+        self.waiting.update(cdr);
+    }
+
+    /// Links the next tick.
+    pub fn link(&mut self, tick: u64, digest: u64) -> StateDigest {
+        let mut hasher = std::mem::take(&mut self.waiting);
+        for number in [self.end, tick, digest] {
+            hasher.update(&number.to_le_bytes());
+        }
+        self.end = hasher.digest();
+        self.tick = Some(tick);
+        StateDigest { tick, digest, chain: self.end }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Oracle: the meaning of the chain: whatever comes before changes the end, nothing else does.
+    #[test]
+    fn every_change_before_shows_at_the_end() {
+        let end = |scene: &str, commands: &[(&str, &[u8])], digests: [u64; 2]| {
+            let mut chain = Chain::new(scene);
+            commands.iter().for_each(|(topic, cdr)| chain.command(topic, cdr));
+            chain.link(1, digests[0]);
+            chain.link(2, digests[1]).chain
+        };
+        let commands: [(&str, &[u8]); 2] = [("a", b"x"), ("b", b"y")];
+        let expected = end("scene", &commands, [5, 6]);
+        assert_eq!(end("scene", &commands, [5, 6]), expected);
+        let reversed: [(&str, &[u8]); 2] = [("b", b"y"), ("a", b"x")];
+        let merged: [(&str, &[u8]); 1] = [("a", b"xby")];
+        assert_ne!(end("other", &commands, [5, 6]), expected);
+        assert_ne!(end("scene", &reversed, [5, 6]), expected);
+        assert_ne!(end("scene", &merged, [5, 6]), expected);
+        assert_ne!(end("scene", &commands, [4, 6]), expected);
+        assert_ne!(end("scene", &commands, [5, 7]), expected);
+    }
+}

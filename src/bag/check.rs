@@ -1,0 +1,240 @@
+//! Is a recording whole, and does all that it says of itself agree with what is in it?
+
+use std::{
+    collections::BTreeMap,
+    fs, io,
+    path::{Path, PathBuf},
+};
+
+use serde_json::Value;
+
+use super::{
+    NotABag,
+    info::Info,
+    reader::{ChunkNote, Item, Reader},
+    recording::Recording,
+};
+use crate::scene::plain;
+
+/// Something that is not as it should be.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Finding {
+    /// True if something was lost or is wrong; false if it is only unusual.
+    pub is_error: bool,
+    /// Where.
+    pub path: PathBuf,
+    /// What, and what to do.
+    pub text: String,
+}
+
+/// Checks all of a recording.
+///
+/// # Errors
+/// If there is none.
+pub fn check(path: &Path) -> Result<Vec<Finding>, NotABag> {
+    let info = Info::read(path)?;
+    let mut findings = Vec::new();
+    for file in &info.files {
+        let mut inspector = Inspector::default();
+        let reader = Reader::open(&file.path);
+        let reader =
+            reader.map_err(|fault| NotABag::Unreadable { path: file.path.clone(), fault })?;
+        reader.for_each(|item| inspector.look(&item));
+        let remarks = inspector.conclude();
+        findings.extend(remarks.into_iter().map(|(is_error, text)| Finding {
+            is_error,
+            path: file.path.clone(),
+            text,
+        }));
+    }
+    if path.is_dir() {
+        let path = path.join("metadata.yaml");
+        findings.extend(check_metadata(&path, &info));
+    }
+    findings.extend(check_course(path)?);
+    Ok(findings)
+}
+
+/// What is noticed in one file.
+#[derive(Default)]
+struct Inspector {
+    remarks: Vec<(bool, String)>,
+    chunks: Vec<ChunkNote>,
+    /// Chunk indexes: where, and first and last time.
+    indexed: Vec<(u64, u64, u64)>,
+    counts: BTreeMap<u16, u64>,
+    in_chunk: Option<(u64, u64)>,
+    time_last: u64,
+    n_backwards: u64,
+    has_header: bool,
+}
+
+impl Inspector {
+    fn error(&mut self, text: String) {
+        self.remarks.push((true, text));
+    }
+
+    fn look(&mut self, item: &Item) {
+        use mcap::records::Record;
+        match item {
+            Item::Header(header) => {
+                self.has_header = true;
+                if header.library.is_empty() {
+                    self.remarks.push((false, "the header does not say what wrote it".to_owned()));
+                }
+                if !["", "ros1", "ros2"].contains(&header.profile.as_str()) {
+                    let text = format!("profile `{}` is not one of MCAP's", header.profile);
+                    self.remarks.push((false, text));
+                }
+            }
+            Item::Chunk(chunk) => {
+                self.close_chunk();
+                self.chunks.push(chunk.clone());
+            }
+            Item::Message(message) => {
+                *self.counts.entry(message.channel.id).or_default() += 1;
+                let time = message.log_time;
+                self.n_backwards += u64::from(time < self.time_last);
+                self.time_last = self.time_last.max(time);
+                let (first, last) = self.in_chunk.unwrap_or((time, time));
+                self.in_chunk = Some((first.min(time), last.max(time)));
+            }
+            Item::Other(Record::ChunkIndex(it)) => {
+                let entry = (it.chunk_start_offset, it.message_start_time, it.message_end_time);
+                self.indexed.push(entry);
+            }
+            Item::Other(Record::DataEnd(_)) => self.close_chunk(),
+            Item::Other(Record::Statistics(it)) => self.compare(it),
+            Item::Damage(damage) => {
+                self.error(format!("{damage}; `jamgrip bag recover` keeps the rest"))
+            }
+            _ => {}
+        }
+    }
+
+    /// Compares the times that a chunk's head names with those of its messages.
+    fn close_chunk(&mut self) {
+        let Some(found) = self.in_chunk.take() else { return };
+        let Some(chunk) = self.chunks.last() else { return };
+        let told = (chunk.header.message_start_time, chunk.header.message_end_time);
+        if told != found && 0 < chunk.n_messages {
+            let offset = chunk.offset;
+            self.error(format!("chunk at byte {offset}: times {told:?} are told, {found:?} found"));
+        }
+    }
+
+    fn compare(&mut self, told: &mcap::records::Statistics) {
+        let counts: BTreeMap<u16, u64> = told
+            .channel_message_counts
+            .iter()
+            .filter(|it| *it.1 != 0)
+            .map(|(k, v)| (*k, *v))
+            .collect();
+        if counts != self.counts {
+            let found: u64 = self.counts.values().sum();
+            let told = told.message_count;
+            self.error(format!(
+                "statistics tell of {told} messages, by channel; {found} are found"
+            ));
+        }
+    }
+
+    fn conclude(mut self) -> Vec<(bool, String)> {
+        if !self.has_header {
+            self.error("there is no header".to_owned());
+        }
+        if 0 < self.n_backwards {
+            let text = format!("{} messages are older than one before them", self.n_backwards);
+            self.remarks.push((false, text));
+        }
+        for (offset, first, last) in std::mem::take(&mut self.indexed) {
+            let chunk = self.chunks.iter().find(|it| it.offset == offset);
+            let fits = chunk.is_some_and(|it| {
+                (it.header.message_start_time, it.header.message_end_time) == (first, last)
+            });
+            if !fits {
+                self.error(format!(
+                    "the index tells of a chunk at byte {offset} that is not there"
+                ));
+            }
+        }
+        self.remarks
+    }
+}
+
+/// Compares `metadata.yaml` with what was counted.
+fn check_metadata(path: &Path, info: &Info) -> Vec<Finding> {
+    let finding = |is_error, text| Finding { is_error, path: path.to_owned(), text };
+    let rewrite = "`jamgrip bag recover` writes it anew";
+    let text = match fs::read_to_string(path) {
+        Ok(text) => text,
+        Err(error) if error.kind() == io::ErrorKind::NotFound => {
+            return vec![finding(true, format!("it is missing; {rewrite}"))];
+        }
+        Err(error) => return vec![finding(true, format!("cannot be read: {error}"))],
+    };
+    let tree = match plain::parse(&text, &path.display().to_string()) {
+        Ok(tree) => tree,
+        Err(error) => return vec![finding(true, format!("{error}; {rewrite}"))],
+    };
+    let tree = &tree["rosbag2_bagfile_information"];
+    let mut findings = Vec::new();
+    let told = tree["message_count"].as_u64();
+    if told != Some(info.n_messages()) {
+        let told = told.map_or("nothing".to_owned(), |it| it.to_string());
+        let text = format!("message_count is {told}, {} are found; {rewrite}", info.n_messages());
+        findings.push(finding(true, text));
+    }
+    let empty = Vec::new();
+    let topics = tree["topics_with_message_count"].as_array().unwrap_or(&empty);
+    for topic in topics {
+        let (name, told) = (&topic["topic_metadata"]["name"], &topic["message_count"]);
+        let name = name.as_str().unwrap_or_default();
+        let found = info.topics.get(name).map(|it| it.n_messages);
+        if found != told.as_u64() {
+            let found = found.unwrap_or(0);
+            let text = format!("{name}: {told} messages are told, {found} are found; {rewrite}");
+            findings.push(finding(true, text));
+        }
+    }
+    let names: Vec<String> = info.metadata().1.into_iter().map(|it| it.file).collect();
+    let told: Vec<&str> = tree["relative_file_paths"]
+        .as_array()
+        .map(|it| it.iter().filter_map(Value::as_str).collect())
+        .unwrap_or_default();
+    if told != names {
+        let text = format!("files {told:?} are told, {names:?} are there; {rewrite}");
+        findings.push(finding(true, text));
+    }
+    findings
+}
+
+/// The chain of digests and the checkpoints of a recording that has them.
+fn check_course(path: &Path) -> Result<Vec<Finding>, NotABag> {
+    let finding = |is_error, text| Finding { is_error, path: path.to_owned(), text };
+    let recording = Recording::open(path)?;
+    let Some(tick_ns) = recording.facts.get("tick_ns").and_then(|it| it.parse().ok()) else {
+        return Ok(Vec::new());
+    };
+    let course = recording
+        .course_of_all(tick_ns)
+        .map_err(|fault| NotABag::Unreadable { path: path.to_owned(), fault })?;
+    let mut findings = Vec::new();
+    if let Some(tick) = course.broken_at {
+        let text = format!(
+            "the chain of digests is broken at tick {tick}: a command, a digest or the scene was \
+             altered after it was recorded"
+        );
+        findings.push(finding(true, text));
+    }
+    if let Some(tick) = course.gap_after {
+        findings.push(finding(true, format!("ticks after {tick} are missing")));
+    }
+    for place in &course.checkpoints {
+        if let Err(fault) = place.read() {
+            let text = format!("checkpoint at tick {}: {fault}", place.tick);
+            findings.push(finding(true, text));
+        }
+    }
+    Ok(findings)
+}

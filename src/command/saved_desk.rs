@@ -1,0 +1,56 @@
+//! The desk as bytes: what was commanded last goes on to hold after a run is taken up again.
+
+use serde::{Deserialize, Serialize};
+
+use super::{
+    CommandCounts,
+    apply::{Desk, Target},
+};
+use crate::{
+    base::Real,
+    cosim::saved_state::{SavedStateError, pose, pose_row, same_counts},
+};
+
+/// A pose and when it was commanded [ns].
+type SavedTarget = ([Real; 7], u64);
+
+/// All of a desk that evolves.
+#[derive(Serialize, Deserialize)]
+struct Numbers {
+    gauge_setpoint: Real,
+    flange: SavedTarget,
+    drives: Vec<Option<SavedTarget>>,
+    counts: [u64; 3],
+}
+
+impl Desk {
+    /// The bytes of what was commanded.
+    pub fn save(&self) -> Vec<u8> {
+        let saved = |target: &Target| (pose_row(&target.pose), target.time_ns);
+        let CommandCounts { n_applied, n_limited, n_refused } = self.counts;
+        let numbers = Numbers {
+            gauge_setpoint: self.gauge_setpoint,
+            flange: saved(&self.flange),
+            drives: self.drives.iter().map(|drive| drive.as_ref().map(saved)).collect(),
+            counts: [n_applied, n_limited, n_refused],
+        };
+        postcard::to_stdvec(&numbers).expect("a list of numbers always serialises")
+    }
+
+    /// Takes up what was commanded before.
+    ///
+    /// # Errors
+    /// If the bytes are no desk, or that of a scene with another number of objects.
+    pub fn restore(&mut self, bytes: &[u8]) -> Result<(), SavedStateError> {
+        let corrupt = SavedStateError::Corrupt { n_bytes: bytes.len() };
+        let numbers: Numbers = postcard::from_bytes(bytes).map_err(|_| corrupt)?;
+        same_counts(&[("driven objects", numbers.drives.len(), self.drives.len())])?;
+        let target = |(row, time_ns): &SavedTarget| Target { pose: pose(row), time_ns: *time_ns };
+        let [n_applied, n_limited, n_refused] = numbers.counts;
+        self.gauge_setpoint = numbers.gauge_setpoint;
+        self.flange = target(&numbers.flange);
+        self.drives = numbers.drives.iter().map(|drive| drive.as_ref().map(target)).collect();
+        self.counts = CommandCounts { n_applied, n_limited, n_refused };
+        Ok(())
+    }
+}

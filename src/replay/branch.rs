@@ -1,0 +1,183 @@
+//! A new run that branches off a recorded moment: the same bits up to there, other values from there
+//! on, the recorded commands throughout.
+
+use std::time::Duration;
+
+use super::again::{Again, ReplayError};
+use crate::{
+    cosim::compile::Compiled,
+    node::{
+        launch::{self, Finished, RunError},
+        orders::Orders,
+        progress::Progress,
+        start::Started,
+    },
+    scene::{Grains, Membrane, Scene, SceneError},
+    session::Session,
+};
+
+/// Where a run branches off, and how.
+pub struct Branch {
+    /// Simulated time of the last recorded tick that is kept [ns].
+    pub from_ns: u64,
+    /// Changes of the scene, as `key=value`, the outputs of the new run among them.
+    pub overrides: Vec<String>,
+}
+
+/// Why no run branches off.
+#[derive(Debug, thiserror::Error)]
+pub enum BranchError {
+    /// The recording cannot be taken up.
+    #[error(transparent)]
+    Replay(#[from] ReplayError),
+    /// A change is wrong.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// A value cannot change after the start.
+    #[error(
+        "--set {key}: cannot change after the start, because {reason}; \
+         run the scene anew with it, `jamgrip run`"
+    )]
+    Fixed {
+        /// The key.
+        key: &'static str,
+        /// Why.
+        reason: &'static str,
+    },
+    /// The recording is shorter, or its start is not kept.
+    #[error(
+        "--from {from_s} s: the recording can be taken up from {first_s} s to {last_s} s; \
+         choose a time between"
+    )]
+    OutOfRange {
+        /// Asked for [s].
+        from_s: f64,
+        /// First tick [s].
+        first_s: f64,
+        /// Last tick [s].
+        last_s: f64,
+    },
+    /// The run did not come to the recorded state again.
+    #[error(
+        "tick {tick} came out otherwise than recorded, so there is nothing to branch off from; \
+         `jamgrip replay BAG --verify` says more"
+    )]
+    Differs {
+        /// The tick.
+        tick: u64,
+    },
+    /// The new run could not begin or go on.
+    #[error(transparent)]
+    Run(#[from] RunError),
+}
+
+impl BranchError {
+    /// True if something else has to be asked for.
+    pub fn is_of_command_line(&self) -> bool {
+        matches!(self, Self::Scene(_) | Self::Fixed { .. } | Self::OutOfRange { .. })
+    }
+}
+
+/// Branches a run off a recording and runs it to the recording's end, or to that of `options`.
+///
+/// # Errors
+/// If the moment is not in the recording, or a change is not possible.
+pub fn branch(
+    again: &Again,
+    branch: &Branch,
+    options: &launch::Options,
+) -> Result<Finished, BranchError> {
+    let scene = again.changed_scene(&branch.overrides)?;
+    if let Some((key, reason)) = fixed_change(&again.scene, &scene) {
+        return Err(BranchError::Fixed { key, reason });
+    }
+    let tick_ns = again.scene.time.tick_ns;
+    let tick = branch.from_ns / tick_ns;
+    let bytes = moment(again, tick, options.n_threads)?;
+    let begin = |compiled: Compiled, _: &Progress| {
+        let resumed = Session::resume(compiled, &bytes);
+        let session = resumed.map_err(|fault| RunError::Replay(Box::new(fault)))?;
+        Ok(Started { session, origin: "branched" })
+    };
+    let script = again.script()?;
+    let last = seconds(again.course.last_tick() * tick_ns);
+    let duration = Some(options.duration.unwrap_or(last));
+    let mut options = launch::Options { duration, ..options.clone() };
+    let origin = format!("{} after tick {tick}", again.path.display());
+    options.facts.push(("branched_from", origin));
+    // Whoever is outside can only look: the commands are those of the recording.
+    let command = |_| Orders::from_outside(vec![Box::new(script)]);
+    Ok(launch::launch_with(&scene, &options, begin, command)?)
+}
+
+/// The recorded run after `tick`, as bytes.
+fn moment(again: &Again, tick: u64, n_threads: usize) -> Result<Vec<u8>, BranchError> {
+    let tick_ns = again.scene.time.tick_ns;
+    let (course, mut script) = (&again.course, again.script()?);
+    let last = course.gap_after.unwrap_or(u64::MAX).min(course.last_tick());
+    let out_of_range = || BranchError::OutOfRange {
+        from_s: seconds(tick * tick_ns),
+        first_s: seconds(course.checkpoints.first().map_or(0, |it| it.tick) * tick_ns),
+        last_s: seconds(last * tick_ns),
+    };
+    if last < tick {
+        return Err(out_of_range());
+    }
+    let session = again.session_before(tick, &again.scene, n_threads)?;
+    let mut session = session.ok_or_else(out_of_range)?;
+    while session.now().0 < tick {
+        let commands = script.of(session.now().0 + 1);
+        session.tick(&commands).map_err(ReplayError::from)?;
+    }
+    let recorded = course.digests.iter().find(|(at, _)| *at == tick);
+    match recorded {
+        Some((_, digest)) if *digest != session.digest() => Err(BranchError::Differs { tick }),
+        _ => Ok(session.save()),
+    }
+}
+
+fn seconds(time_ns: u64) -> f64 {
+    Duration::from_nanos(time_ns).as_secs_f64()
+}
+
+/// The first value that differs though saved numbers depend on it, and why it cannot.
+fn fixed_change(old: &Scene, new: &Scene) -> Option<(&'static str, &'static str)> {
+    const RUN: &str = "recorded commands and digests are counted in ticks";
+    const PACKING: &str = "the grains and the membrane that were recorded have it in them";
+    const OBJECT: &str = "the recorded object has this shape";
+    const START: &str = "it only says where things were at the start";
+    let grains = |it: &Grains| {
+        let Grains { count, radius_min, radius_max, material, .. } = *it;
+        (count, [radius_min, radius_max, material.density].map(f64::to_bits))
+    };
+    let membrane = |it: &Membrane| {
+        let Membrane { radius, frequency, rest_length_shrink, fill_stretch, .. } = *it;
+        (frequency, [radius, rest_length_shrink, fill_stretch].map(f64::to_bits))
+    };
+    let objects = |it: &Scene| -> Vec<String> {
+        it.objects.iter().map(|it| format!("{:?}", (&it.name, it.pose))).collect()
+    };
+    let shapes =
+        |it: &Scene| -> Vec<String> { it.objects.iter().map(|it| shape_text(&it.shape)).collect() };
+    let checks = [
+        (old.time.tick_ns != new.time.tick_ns, "time.tick", RUN),
+        (old.seed != new.seed, "seed", PACKING),
+        (grains(&old.grains) != grains(&new.grains), "grains", PACKING),
+        (membrane(&old.membrane) != membrane(&new.membrane), "membrane", PACKING),
+        (shapes(old) != shapes(new), "object.shape", OBJECT),
+        (objects(old) != objects(new), "object", START),
+        (old.flange.pose != new.flange.pose, "flange.position", START),
+        (old.table.height.to_bits() != new.table.height.to_bits(), "table.height", OBJECT),
+    ];
+    checks.into_iter().find(|(differs, ..)| *differs).map(|(_, key, reason)| (key, reason))
+}
+
+/// A shape without the path of the file it came from.
+fn shape_text(shape: &crate::scene::Shape) -> String {
+    match shape {
+        crate::scene::Shape::Mesh { vertices, triangles, .. } => {
+            format!("{vertices:?} {triangles:?}")
+        }
+        other => format!("{other:?}"),
+    }
+}

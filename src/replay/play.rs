@@ -1,0 +1,318 @@
+//! Publishes a recording again with its original timing: faster or slower, in part, over and over,
+//! paused and wound by whoever gives the cues.
+//!
+//! Messages go out in the order of the files, each when its time has come. Late readers are served as
+//! in the run itself: before the first message of a part, the last ones before it on latched topics
+//! are published.
+
+use std::{
+    collections::BTreeMap,
+    io,
+    path::PathBuf,
+    sync::{Arc, mpsc::Receiver},
+};
+
+use crate::{
+    bag::reader::{Channel, Item, Recorded, items},
+    node::{pacer::Playhead, shutdown::Shutdown},
+};
+
+/// Topic of simulated time.
+pub const CLOCK: &str = "/clock";
+
+/// Where messages go.
+pub trait Stage {
+    /// A topic that messages will come on. False if it cannot be played.
+    fn open(&mut self, channel: &Channel) -> bool;
+
+    /// One message on an open topic.
+    fn publish(&mut self, message: &Recorded);
+
+    /// Recorded time, for those who want it more or less often than it was recorded.
+    fn clock(&mut self, time_ns: u64);
+}
+
+/// What is played, and how.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// How many times as fast as recorded.
+    pub rate: f64,
+    /// Where to begin, from the first message on [ns].
+    pub start_ns: u64,
+    /// Where to end, from the first message on [ns].
+    pub end_ns: Option<u64>,
+    /// True begins again at the end.
+    pub is_loop: bool,
+    /// Only these topics; `*` at the end stands for any rest. Empty means all.
+    pub topics: Vec<String>,
+    /// Not these.
+    pub exclude: Vec<String>,
+    /// Publish recorded time this often in wall time, in place of the recorded clock [Hz].
+    pub clock_rate: Option<f64>,
+}
+
+/// What someone wants while it plays.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Cue {
+    /// Stand still.
+    Pause,
+    /// Go on.
+    Resume,
+    /// One of the two above.
+    Toggle,
+    /// Play one message and stand still again.
+    Next,
+    /// Go to this place, from the first message on [ns].
+    Seek(u64),
+    /// Play so many times as fast as recorded.
+    Rate(f64),
+    /// End.
+    Quit,
+}
+
+impl Cue {
+    /// A cue as a line of text, such as `seek 1.5s`.
+    ///
+    /// # Errors
+    /// If it is none; the text says which there are.
+    pub fn parse(line: &str) -> Result<Self, String> {
+        const KNOWN: &str = "pause, resume, toggle, next, seek TIME, rate FACTOR, quit";
+        let (word, rest) = line.trim().split_once(' ').unwrap_or((line.trim(), ""));
+        let unknown = || format!("`{}`: no cue; there are: {KNOWN}", line.trim());
+        match (word, rest.trim()) {
+            ("pause", "") => Ok(Self::Pause),
+            ("resume", "") => Ok(Self::Resume),
+            ("toggle" | "", "") => Ok(Self::Toggle),
+            ("next", "") => Ok(Self::Next),
+            ("quit", "") => Ok(Self::Quit),
+            ("seek", time) => {
+                let time = crate::scene::quantity::TIME.parse(time).map_err(|it| it.to_string())?;
+                if time < 0.0 {
+                    return Err(format!("seek {time} s: the recording begins at 0 s"));
+                }
+                #[expect(clippy::cast_possible_truncation, reason = "it saturates")]
+                #[expect(clippy::cast_sign_loss, reason = "not negative, see above")]
+                Ok(Self::Seek((time * 1e9) as u64))
+            }
+            ("rate", factor) => match factor.parse() {
+                Ok(factor) if 0.0 < factor && f64::is_finite(factor) => Ok(Self::Rate(factor)),
+                _ => Err(format!("rate {factor}: write a number above zero, such as 2")),
+            },
+            _ => Err(unknown()),
+        }
+    }
+}
+
+/// What was played.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Played {
+    /// Messages published.
+    pub n_published: u64,
+    /// Topics that could not be played.
+    pub refused: Vec<String>,
+    /// Damages met.
+    pub n_damages: u64,
+}
+
+/// Plays the files until the end, a cue, or `shutdown` ends it.
+///
+/// # Errors
+/// If a file cannot be opened.
+pub fn play(
+    files: &[PathBuf],
+    options: &Options,
+    stage: &mut dyn Stage,
+    cues: &Receiver<Cue>,
+    shutdown: &Shutdown,
+) -> io::Result<Played> {
+    let mut player = Player {
+        options,
+        stage,
+        cues,
+        shutdown,
+        head: None,
+        first_ns: 0,
+        clock_ns: None,
+        steps: 0,
+        is_open: BTreeMap::new(),
+        played: Played::default(),
+    };
+    let mut start_ns = options.start_ns;
+    loop {
+        match player.pass(files, start_ns)? {
+            Ending::End if options.is_loop => start_ns = options.start_ns,
+            Ending::Seek(to_ns) => start_ns = to_ns,
+            Ending::End | Ending::Quit => return Ok(player.played),
+        }
+    }
+}
+
+/// How one pass through the files ended.
+enum Ending {
+    End,
+    Seek(u64),
+    Quit,
+}
+
+struct Player<'a> {
+    options: &'a Options,
+    stage: &'a mut dyn Stage,
+    cues: &'a Receiver<Cue>,
+    shutdown: &'a Shutdown,
+    head: Option<Playhead>,
+    /// Time of the recording's first message [ns].
+    first_ns: u64,
+    /// Recorded time last told to the stage [ns].
+    clock_ns: Option<u64>,
+    /// Messages to play although it stands still.
+    steps: u64,
+    /// Whether each topic is played.
+    is_open: BTreeMap<String, bool>,
+    played: Played,
+}
+
+impl Player<'_> {
+    /// Plays once through the files from `start_ns` on.
+    fn pass(&mut self, files: &[PathBuf], start_ns: u64) -> io::Result<Ending> {
+        let mut latched: BTreeMap<String, Recorded> = BTreeMap::new();
+        let (mut first_ns, mut is_begun) = (None, false);
+        for (_, item) in items(files)? {
+            let message = match item {
+                Item::Message(message) => message,
+                Item::Damage(_) => {
+                    self.played.n_damages += 1;
+                    continue;
+                }
+                _ => continue,
+            };
+            let begin = *first_ns.get_or_insert(message.log_time);
+            self.first_ns = begin;
+            if !self.is_played(&message.channel) {
+                continue;
+            }
+            let at_ns = message.log_time.saturating_sub(begin);
+            if at_ns < start_ns {
+                if is_latched(&message.channel) {
+                    latched.insert(message.channel.topic.clone(), message);
+                }
+                if self.shutdown.is_requested() {
+                    return Ok(Ending::Quit);
+                }
+                continue;
+            }
+            if self.options.end_ns.is_some_and(|end_ns| end_ns < at_ns) {
+                break;
+            }
+            if !is_begun {
+                self.begin(start_ns, &latched);
+                is_begun = true;
+            }
+            if let Some(ending) = self.wait_for(at_ns) {
+                return Ok(ending);
+            }
+            self.stage.publish(&message);
+            self.played.n_published += 1;
+        }
+        Ok(Ending::End)
+    }
+
+    /// Sets the head to the start of a part and serves late readers.
+    fn begin(&mut self, start_ns: u64, latched: &BTreeMap<String, Recorded>) {
+        match &mut self.head {
+            Some(head) => head.jump(start_ns),
+            None => self.head = Some(Playhead::start(start_ns, self.options.rate)),
+        }
+        for message in latched.values() {
+            self.stage.publish(message);
+            self.played.n_published += 1;
+        }
+    }
+
+    /// Waits until a message is due, and listens to cues meanwhile.
+    fn wait_for(&mut self, at_ns: u64) -> Option<Ending> {
+        loop {
+            if let Some(ending) = self.listen() {
+                return Some(ending);
+            }
+            self.tell_time();
+            if 0 < self.steps {
+                self.steps -= 1;
+                self.head.as_mut()?.jump(at_ns);
+                return None;
+            }
+            if self.head.as_ref()?.wait_for(at_ns) {
+                return None;
+            }
+        }
+    }
+
+    fn listen(&mut self) -> Option<Ending> {
+        if self.shutdown.is_requested() {
+            return Some(Ending::Quit);
+        }
+        let head = self.head.as_mut()?;
+        while let Ok(cue) = self.cues.try_recv() {
+            match cue {
+                Cue::Pause => head.set_paused(true),
+                Cue::Resume => head.set_paused(false),
+                Cue::Toggle => head.set_paused(!head.is_paused()),
+                Cue::Next => {
+                    head.set_paused(true);
+                    self.steps += 1;
+                }
+                Cue::Rate(rate) => head.set_rate(rate),
+                Cue::Seek(to_ns) => {
+                    head.jump(to_ns);
+                    self.clock_ns = None;
+                    return Some(Ending::Seek(to_ns));
+                }
+                Cue::Quit => return Some(Ending::Quit),
+            }
+        }
+        None
+    }
+
+    /// Tells recorded time as often as asked for.
+    fn tell_time(&mut self) {
+        let (Some(rate_hz), Some(head)) = (self.options.clock_rate, &self.head) else { return };
+        let now_ns = head.now_ns();
+        #[expect(clippy::cast_possible_truncation, reason = "it saturates")]
+        #[expect(clippy::cast_sign_loss, reason = "rates are above zero")]
+        let period_ns = (1e9 * self.options.rate / rate_hz) as u64;
+        if self.clock_ns.is_none_or(|told| told + period_ns <= now_ns || now_ns < told) {
+            self.clock_ns = Some(now_ns);
+            self.stage.clock(self.first_ns + now_ns);
+        }
+    }
+
+    fn is_played(&mut self, channel: &Arc<Channel>) -> bool {
+        if let Some(is_open) = self.is_open.get(&channel.topic) {
+            return *is_open;
+        }
+        let is_chosen = is_chosen(&channel.topic, self.options);
+        let is_open = is_chosen && self.stage.open(channel);
+        if is_chosen && !is_open {
+            self.played.refused.push(channel.topic.clone());
+        }
+        self.is_open.insert(channel.topic.clone(), is_open);
+        is_open
+    }
+}
+
+fn is_chosen(topic: &str, options: &Options) -> bool {
+    let matches = |pattern: &String| match pattern.strip_suffix('*') {
+        Some(start) => topic.starts_with(start),
+        None => topic == pattern,
+    };
+    let is_own_clock = options.clock_rate.is_some() && topic == CLOCK;
+    (options.topics.is_empty() || options.topics.iter().any(matches))
+        && !options.exclude.iter().any(matches)
+        && !is_own_clock
+}
+
+/// True for topics whose last message late readers get.
+pub fn is_latched(channel: &Channel) -> bool {
+    channel.metadata.get("offered_qos_profiles").is_some_and(|qos| {
+        crate::bag::metadata::qos_in_words(qos).contains("durability: transient_local")
+    })
+}

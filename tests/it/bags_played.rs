@@ -1,0 +1,171 @@
+//! A recording published again: when, in which order, and what is left out.
+
+use std::{
+    path::{Path, PathBuf},
+    sync::mpsc::{self, Sender},
+    time::{Duration, Instant},
+};
+
+use jamgrip::{
+    bag::reader::{Channel, Recorded},
+    node::shutdown::Shutdown,
+    replay::play::{Cue, Options, Played, Stage, play},
+    sinks::{
+        Sink,
+        bag::{Bag, Format, Subject},
+    },
+};
+
+use crate::synthetic;
+
+/// Records 400 ms of simulated time in files of 150 ms.
+fn record(folder: &Path) -> Vec<PathBuf> {
+    let subject = Subject {
+        scene_text: String::new(),
+        scene_files: Vec::new(),
+        facts: Vec::new(),
+        format: Format { split_ns: Some(150_000_000), ..Format::default() },
+    };
+    let folder = folder.join("bag");
+    let mut bag = Bag::create(&folder, synthetic::encoder(), subject).unwrap();
+    (1..=400).for_each(|tick| bag.write(&synthetic::packet(tick)).unwrap());
+    bag.close().unwrap();
+    jamgrip::bag::files(&folder).unwrap()
+}
+
+/// Remembers what was published, and when; may give cues.
+#[derive(Default)]
+struct Memory {
+    published: Vec<(String, u64, Instant)>,
+    clock: Vec<u64>,
+    cues: Vec<(usize, Cue)>,
+    teller: Option<Sender<Cue>>,
+}
+
+#[expect(clippy::disallowed_methods, reason = "when a message is published is what is tested")]
+fn now() -> Instant {
+    Instant::now()
+}
+
+impl Stage for Memory {
+    fn open(&mut self, channel: &Channel) -> bool {
+        channel.topic != "/jamgrip/grains"
+    }
+
+    fn publish(&mut self, message: &Recorded) {
+        self.published.push((message.channel.topic.clone(), message.log_time, now()));
+        let n = self.published.len();
+        for (_, cue) in self.cues.iter().filter(|(after, _)| *after == n) {
+            self.teller.as_ref().unwrap().send(*cue).unwrap();
+        }
+    }
+
+    fn clock(&mut self, time_ns: u64) {
+        self.clock.push(time_ns);
+    }
+}
+
+fn options() -> Options {
+    Options {
+        rate: 4.0,
+        start_ns: 0,
+        end_ns: None,
+        is_loop: false,
+        topics: Vec::new(),
+        exclude: Vec::new(),
+        clock_rate: None,
+    }
+}
+
+fn run(files: &[PathBuf], options: &Options, cues: Vec<(usize, Cue)>) -> (Played, Memory) {
+    let (teller, listener) = mpsc::channel();
+    let mut stage = Memory { cues, teller: Some(teller), ..Memory::default() };
+    let played = play(files, options, &mut stage, &listener, &Shutdown::default()).unwrap();
+    (played, stage)
+}
+
+fn of(stage: &Memory, topic: &str) -> Vec<u64> {
+    stage.published.iter().filter(|it| it.0 == topic).map(|it| it.1).collect()
+}
+
+#[test]
+fn every_message_comes_once_in_its_time() {
+    let folder = tempfile::tempdir().unwrap();
+    let files = record(folder.path());
+    assert_eq!(files.len(), 3, "400 ms in files of 150 ms");
+    let (played, stage) = run(&files, &options(), Vec::new());
+    assert_eq!(played.n_published, stage.published.len() as u64);
+    assert_eq!(played.refused, ["/jamgrip/grains"]);
+    // Oracle: the clock of the run, one message a tick.
+    let expected: Vec<u64> = (1..=400).map(|tick| tick * synthetic::TICK_NS).collect();
+    assert_eq!(of(&stage, "/clock"), expected);
+    // The frames that stay are repeated at the start of each file.
+    assert_eq!(of(&stage, "/tf_static").len(), 3);
+    // Never early: 400 ms four times as fast. How late it may be depends on the machine.
+    let begin = stage.published[0].2;
+    for (topic, time_ns, at) in &stage.published {
+        let due = Duration::from_nanos(*time_ns).div_f64(4.0);
+        let early = due.saturating_sub(*at - begin);
+        assert!(early < Duration::from_millis(1), "{topic} at {time_ns} ns is {early:?} early");
+    }
+}
+
+#[test]
+fn parts_filters_and_an_own_clock() {
+    let folder = tempfile::tempdir().unwrap();
+    let files = record(folder.path());
+    let part = Options {
+        rate: 8.0,
+        start_ns: 200_000_000,
+        end_ns: Some(295_000_000),
+        topics: vec!["/jamgrip/*".to_owned(), "/tf_static".to_owned(), "/clock".to_owned()],
+        exclude: vec!["/jamgrip/membrane*".to_owned()],
+        clock_rate: Some(1000.0),
+        ..options()
+    };
+    let (_, stage) = run(&files, &part, Vec::new());
+    // Late readers: what was latched before the part comes first, though it is older.
+    assert_eq!(of(&stage, "/tf_static").len(), 1);
+    assert!(of(&stage, "/tf_static")[0] < 200_000_000);
+    assert!(of(&stage, "/clock").is_empty() && of(&stage, "/tf").is_empty());
+    assert!(stage.published.iter().all(|it| !it.0.starts_with("/jamgrip/membrane")));
+    let wrenches = of(&stage, "/jamgrip/wrench");
+    // Oracle: 100 Hz from 200 ms to 295 ms.
+    assert_eq!((wrenches.len(), wrenches[0], wrenches[9]), (10, 200_000_000, 290_000_000));
+    let is_rising = stage.clock.windows(2).all(|pair| pair[0] < pair[1]);
+    assert!(is_rising && 2 <= stage.clock.len(), "{:?}", stage.clock);
+    assert!(stage.clock.iter().all(|it| (200_000_000..=300_000_000).contains(it)));
+}
+
+#[test]
+fn it_is_wound_stepped_looped_and_ended_by_cues() {
+    let folder = tempfile::tempdir().unwrap();
+    let files = record(folder.path());
+    let only_clock = Options { topics: vec!["/clock".to_owned()], is_loop: true, ..options() };
+    let ms = |n: u64| n * 1_000_000;
+    // After 10 messages back to 5 ms; two steps while it stands still; then to 399 ms, around the
+    // end, and out.
+    let cues = vec![
+        (10, Cue::Seek(ms(5))),
+        (11, Cue::Next),
+        (12, Cue::Next),
+        (13, Cue::Seek(ms(399))),
+        (13, Cue::Resume),
+        (13, Cue::Rate(50.0)),
+        (15, Cue::Quit),
+    ];
+    let (_, stage) = run(&files, &only_clock, cues);
+    // Oracle: counting by hand. Each cue is heard before the next message.
+    let expected: Vec<u64> = (1..=10).chain([5, 6, 7]).chain([399, 400]).map(ms).collect();
+    assert_eq!(of(&stage, "/clock"), expected);
+}
+
+#[test]
+fn cues_are_read_and_refused() {
+    assert_eq!(Cue::parse("seek 1.5s\n"), Ok(Cue::Seek(1_500_000_000)));
+    assert_eq!(Cue::parse("rate 0.5"), Ok(Cue::Rate(0.5)));
+    assert_eq!(Cue::parse(""), Ok(Cue::Toggle));
+    for wrong in ["seek", "seek -1s", "seek 3", "rate 0", "rate fast", "stop"] {
+        assert!(Cue::parse(wrong).is_err(), "{wrong}");
+    }
+}

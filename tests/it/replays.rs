@@ -1,0 +1,262 @@
+//! Recordings simulated again: proved, branched off, taken as commands.
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    process::{Command as Process, Output},
+    sync::OnceLock,
+};
+
+use serde_json::Value;
+
+use crate::coarse;
+
+/// How long the recorded run is.
+const N_TICKS: u64 = 300;
+
+/// The program, with start states shared between the tests.
+fn jamgrip(arguments: &[&str]) -> Output {
+    Process::new(env!("CARGO_BIN_EXE_jamgrip"))
+        .args(arguments)
+        .args(["--cache", concat!(env!("CARGO_TARGET_TMPDIR"), "/starts")])
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .output()
+        .unwrap()
+}
+
+/// The line of JSON that a program ended with, and its exit code.
+fn told(arguments: &[&str]) -> (Value, i32) {
+    let output = jamgrip(arguments);
+    let said = String::from_utf8_lossy(&output.stdout);
+    let line = said.lines().last();
+    let complaint = String::from_utf8_lossy(&output.stderr).into_owned();
+    let line = line.unwrap_or_else(|| panic!("{arguments:?}: {complaint}"));
+    (serde_json::from_str(line).unwrap(), output.status.code().unwrap())
+}
+
+struct Recorded {
+    folder: PathBuf,
+    scene: String,
+    summary: Value,
+}
+
+impl Recorded {
+    fn bag(&self) -> &str {
+        self.folder.to_str().unwrap()
+    }
+}
+
+/// A coarse gripper that the built-in controller has pushed on its object for 0.3 s.
+fn recorded() -> &'static Recorded {
+    static RECORDED: OnceLock<Recorded> = OnceLock::new();
+    RECORDED.get_or_init(|| {
+        let place = Path::new(env!("CARGO_TARGET_TMPDIR")).join("replays");
+        // Left behind by an earlier run of the tests.
+        drop(fs::remove_dir_all(&place));
+        fs::create_dir_all(&place).unwrap();
+        let scene = place.join("coarse.yaml");
+        fs::write(&scene, coarse::TEXT).unwrap();
+        let (scene, folder) = (scene.to_str().unwrap().to_owned(), place.join("bag"));
+        let bag = folder.to_str().unwrap();
+        let set = "outputs.bag.checkpoint_rate=10 Hz";
+        let (summary, code) = told(&[
+            "run",
+            &scene,
+            "--no-ros",
+            "--no-stream",
+            "--json",
+            "--for",
+            "0.3s",
+            "--bag",
+            bag,
+            "--set",
+            set,
+        ]);
+        assert_eq!(code, 0, "{summary}");
+        assert!(
+            1.0 < summary["peak_push_force_n"].as_f64().unwrap(),
+            "something happens: {summary}"
+        );
+        Recorded { folder, scene, summary }
+    })
+}
+
+#[test]
+fn every_tick_comes_out_as_recorded_for_any_number_of_threads() {
+    let bag = recorded();
+    for threads in ["1", "2", "7"] {
+        let (verdict, code) =
+            told(&["replay", bag.bag(), "--verify", "--json", "--threads", threads]);
+        // Oracle: the recording; the start counts as one more.
+        assert_eq!((code, &verdict["first_difference"]), (0, &Value::Null), "{verdict}");
+        assert_eq!(
+            (&verdict["ticks"], &verdict["compared"]),
+            (&N_TICKS.into(), &(N_TICKS + 1).into())
+        );
+        assert_eq!(verdict["remarks"], serde_json::json!([]));
+    }
+    let (verdict, code) = told(&["replay", bag.bag(), "--verify", "--json", "--start", "0.25s"]);
+    // From the checkpoint at 0.2 s on.
+    assert_eq!((code, &verdict["ticks"]), (0, &100.into()), "{verdict}");
+    let (verdict, code) =
+        told(&["replay", bag.bag(), "--verify", "--json", "--settle", "--end", "0.01s"]);
+    assert_eq!((code, &verdict["compared"]), (0, &11.into()), "{verdict}");
+}
+
+/// Copies a recording and changes one command; says in which tick it takes effect.
+fn tampered(from: &Path, to: &Path) -> u64 {
+    let mut files = fs::read_dir(from).unwrap().map(|it| it.unwrap().path());
+    let file = files.find(|it| it.extension().is_some_and(|it| it == "mcap")).unwrap();
+    let bytes = fs::read(&file).unwrap();
+    let mut out = mcap::Writer::new(fs::File::create(to).unwrap()).unwrap();
+    let summary = mcap::Summary::read(&bytes).unwrap().unwrap();
+    for index in &summary.metadata_indexes {
+        out.write_metadata(&mcap::read::metadata(&bytes, index).unwrap()).unwrap();
+    }
+    for index in &summary.attachment_indexes {
+        out.attach(&mcap::read::attachment(&bytes, index).unwrap()).unwrap();
+    }
+    let mut altered_in = None;
+    for message in mcap::MessageStream::new(&bytes).unwrap() {
+        let mut message = message.unwrap();
+        let is_command = message.channel.topic == "/jamgrip/flange/pose_cmd";
+        if is_command && 100_000_000 < message.log_time && altered_in.is_none() {
+            // The flange shall go a micrometre to the side. A pose ends with three numbers of
+            // position and four of orientation.
+            let mut data = message.data.to_vec();
+            let x = data.len() - 7 * 8;
+            data[x..x + 8].copy_from_slice(&1e-6_f64.to_le_bytes());
+            message.data = data.into();
+            altered_in = Some(message.log_time / 1_000_000 + 1);
+        }
+        out.write(&message).unwrap();
+    }
+    out.finish().unwrap();
+    altered_in.unwrap()
+}
+
+#[test]
+fn one_altered_command_is_found_in_its_tick() {
+    let place = tempfile::tempdir().unwrap();
+    let copy = place.path().join("copy.mcap");
+    let tick = tampered(&recorded().folder, &copy);
+    let (verdict, code) = told(&["replay", copy.to_str().unwrap(), "--verify", "--json"]);
+    // Oracle: the tick whose command was altered.
+    assert_eq!((code, &verdict["first_difference"]), (1, &tick.into()), "{verdict}");
+    let remarks = verdict["remarks"].to_string();
+    assert!(remarks.contains(&format!("broken at tick {tick}")), "{remarks}");
+    let output = Process::new(env!("CARGO_BIN_EXE_jamgrip"))
+        .args(["bag", "check", copy.to_str().unwrap()])
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&output.stdout);
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(said.contains(&format!("broken at tick {tick}")), "{said}");
+}
+
+#[test]
+fn a_branch_without_changes_is_the_same_run_and_one_with_changes_is_not() {
+    let bag = recorded();
+    let place = tempfile::tempdir().unwrap();
+    let branch = |name: &str, set: &str| {
+        let folder = place.path().join(name);
+        let folder = folder.to_str().unwrap();
+        let (summary, code) = told(&[
+            "replay",
+            bag.bag(),
+            "--from",
+            "0.17s",
+            "--json",
+            "--bag",
+            folder,
+            "--set",
+            set,
+        ]);
+        assert_eq!(code, 0, "{summary}");
+        assert_eq!(summary["start_state"], "branched");
+        let (verdict, code) = told(&["replay", folder, "--verify", "--json"]);
+        assert_eq!((code, &verdict["ticks"]), (0, &(N_TICKS - 170).into()), "{verdict}");
+        summary
+    };
+    // Oracle: the recorded run. Its friction is 0.6 by default, and outputs change nothing.
+    let same = branch("same", "outputs.state_rate=10 Hz");
+    assert_eq!(same["state_digest"], bag.summary["state_digest"]);
+    assert_eq!(same["sim_time_s"], bag.summary["sim_time_s"]);
+    for (name, set) in [
+        ("slippery", "object.friction=0.01"),
+        ("heavy", "object.density=7800 kg/m^3"),
+        ("table", "table.friction=0.01"),
+        ("up", "gravity=[0 m/s^2, 0 m/s^2, 9.81 m/s^2]"),
+    ] {
+        let other = branch(name, set);
+        assert_ne!(other["state_digest"], bag.summary["state_digest"], "{set}");
+    }
+}
+
+#[test]
+fn what_cannot_change_after_the_start_is_refused() {
+    let bag = recorded();
+    for (set, expected) in [
+        ("grains.count=281", "the grains and the membrane that were recorded"),
+        ("object.shape.cylinder.radius=13 mm", "the recorded object has this shape"),
+        ("seed=2", "seed"),
+        ("time.tick=2 ms", "counted in ticks"),
+        ("object.fricton=1", "did you mean `friction`"),
+    ] {
+        let output = jamgrip(&["replay", bag.bag(), "--from", "0.1s", "--no-bag", "--set", set]);
+        let complaint = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{set}: {complaint}");
+        assert!(complaint.contains(expected), "{set}: {complaint}");
+    }
+    let output = jamgrip(&["replay", bag.bag(), "--from", "7s", "--no-bag"]);
+    let complaint = String::from_utf8_lossy(&output.stderr);
+    assert!(complaint.contains("from 0 s to 0.3 s"), "{complaint}");
+}
+
+#[test]
+fn a_recording_commands_a_run_of_its_scene() {
+    let bag = recorded();
+    let (summary, code) = told(&[
+        "run",
+        &bag.scene,
+        "--no-ros",
+        "--no-stream",
+        "--no-bag",
+        "--json",
+        "--for",
+        "0.3s",
+        "--commands",
+        bag.bag(),
+    ]);
+    // Oracle: the recorded run, whose controller gave the commands.
+    assert_eq!((code, &summary["state_digest"]), (0, &bag.summary["state_digest"]), "{summary}");
+}
+
+#[test]
+fn recordings_of_others_command_a_run() {
+    let bag = recorded();
+    let place = tempfile::tempdir().unwrap();
+    let theirs = place.path().join("theirs");
+    crate::peers::run("write_bag.py", &[theirs.to_str().unwrap()]);
+    let folder = place.path().join("bag");
+    let (summary, code) = told(&[
+        "run",
+        &bag.scene,
+        "--no-ros",
+        "--no-stream",
+        "--json",
+        "--for",
+        "0.12s",
+        "--commands",
+        theirs.to_str().unwrap(),
+        "--bag",
+        folder.to_str().unwrap(),
+    ]);
+    // Oracle: `write_bag.py`: a command every 50 ms from the first message on, the third at 100 ms.
+    assert_eq!((code, &summary["commands"]["applied"]), (0, &3.into()), "{summary}");
+    let recording = jamgrip::bag::recording::Recording::open(&folder).unwrap();
+    let course = recording.course_of_all(1_000_000).unwrap();
+    let ticks: Vec<u64> = course.commands.iter().map(|it| it.tick).collect();
+    assert_eq!(ticks, [1, 51, 101]);
+    assert_eq!(course.commands[2].cdr, (-2000.0_f64).to_le_bytes());
+}
