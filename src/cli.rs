@@ -56,6 +56,15 @@ pub(crate) enum Action {
     /// Measures how fast the simulation is
     #[command(after_help = BENCH_HELP)]
     Bench(Bench),
+    /// Listens to a run whose latency is measured: a part of `bench --case latency`
+    #[cfg(all(feature = "ros", feature = "shm"))]
+    #[command(hide = true)]
+    BenchListener {
+        /// Prefix of the run's streams
+        prefix: String,
+        /// Seconds that the run takes
+        seconds: f64,
+    },
     /// Writes kept results beside what their sources show, as Markdown with figures
     Report {
         /// Folder of result files, for example tests/golden/validation

@@ -47,6 +47,8 @@ fn main() -> ExitCode {
         Action::Experiment(args) => trials::experiment(&args),
         Action::Validate(args) => trials::validate(&args),
         Action::Bench(args) => timing::bench(&args),
+        #[cfg(all(feature = "ros", feature = "shm"))]
+        Action::BenchListener { prefix, seconds } => timing::listen(&prefix, seconds),
         Action::Report { from, to } => trials::report(&from, &to),
     };
     outcome.unwrap_or_else(|error| {

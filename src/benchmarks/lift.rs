@@ -23,7 +23,7 @@ use crate::{
         measure::{real, real_of},
         membrane::mesh::Mesh,
     },
-    scene::{self, Scene},
+    scene::{self, Scene, SceneError},
     session::Session,
     snapshot::take,
 };
@@ -51,7 +51,7 @@ struct Lap {
 
 /// Runs whole sessions, one at least.
 pub(super) fn run(case: &Case, options: &Options) -> Result<Figures, BenchError> {
-    let scene = scene::parse(SCENE.1, SCENE.0, Path::new("launch_configs"), &[])?;
+    let scene = scene(&[])?;
     let mut laps: Vec<Lap> = Vec::new();
     let mut start_digest = 0;
     while laps.is_empty() || laps.iter().map(|lap| lap.wall_s).sum::<Real>() < options.seconds {
@@ -71,7 +71,13 @@ pub(super) fn run(case: &Case, options: &Options) -> Result<Figures, BenchError>
     figures(case, options, &laps, start_digest)
 }
 
-fn session(scene: &Scene, options: &Options) -> Result<Session, BenchError> {
+/// The default scene with these changes.
+pub(super) fn scene(overrides: &[String]) -> Result<Scene, SceneError> {
+    scene::parse(SCENE.1, SCENE.0, Path::new("launch_configs"), overrides)
+}
+
+/// A session at its first tick.
+pub(super) fn session(scene: &Scene, options: &Options) -> Result<Session, BenchError> {
     let compiled = Compiled::new(scene, options.n_threads).map_err(start::StartError::from)?;
     let progress = Progress::new(options.is_quiet);
     let started = start::start(compiled, options.n_threads, &options.cache, &progress);
