@@ -70,6 +70,7 @@ fn run(args: &cli::Run) -> Result<ExitCode, Box<dyn Error>> {
     let options = Options {
         n_threads: args.n_threads(),
         duration: args.duration,
+        scene_file: args.scene.scene.clone(),
         cache: args.cache.clone().map_or_else(Cache::of_user, Cache::new),
         is_quiet: args.json,
         facts: Vec::new(),

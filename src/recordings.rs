@@ -128,6 +128,7 @@ fn branch(args: &Replay, from: f64) -> Result<ExitCode, Box<dyn Error>> {
     let options = Options {
         n_threads: args.n_threads(),
         duration: args.end,
+        scene_file: args.bag.clone(),
         cache: args.cache.clone().map_or_else(Cache::of_user, Cache::new),
         is_quiet: args.json,
         facts: Vec::new(),

@@ -4,7 +4,7 @@ use super::{Command, CommandCounts, CommandRecord, Limit, Outcome, PoseCommand, 
 use crate::{
     base::{Pose, Quat, Real, Vec3},
     cosim::Inputs,
-    scene::Scene,
+    scene::{Object, Scene},
 };
 
 /// How far a quaternion's length may be from 1.
@@ -49,21 +49,52 @@ pub(super) struct Target {
 impl Desk {
     /// A desk for `scene`: the flange shall stay where it is.
     pub fn new(scene: &Scene) -> Self {
-        let nanoseconds = |time: Real| std::time::Duration::from_secs_f64(time).as_nanos();
         Self {
             names: scene.objects.iter().map(|object| object.name.clone()).collect(),
             gauge_range: [scene.chamber.gauge_min, scene.chamber.gauge_max],
             speed_max: scene.flange.speed_max,
-            drive_timeouts_ns: scene
-                .objects
-                .iter()
-                .map(|o| u64::try_from(nanoseconds(o.drive_timeout)).unwrap_or(u64::MAX))
-                .collect(),
+            drive_timeouts_ns: scene.objects.iter().map(drive_timeout_ns).collect(),
             gauge_setpoint: 0.0,
             flange: Target { pose: scene.flange.pose, time_ns: 0 },
             drives: vec![None; scene.objects.len()],
             counts: CommandCounts::default(),
         }
+    }
+
+    /// Forgets what was commanded, not what was counted.
+    pub fn restart(&mut self, scene: &Scene) {
+        let counts = self.counts;
+        *self = Self { counts, ..Self::new(scene) };
+    }
+
+    /// Makes room for an object that comes last.
+    pub fn insert(&mut self, object: &Object) {
+        self.names.push(object.name.clone());
+        self.drive_timeouts_ns.push(drive_timeout_ns(object));
+        self.drives.push(None);
+    }
+
+    /// Forgets object `i`.
+    pub fn remove(&mut self, i: usize) {
+        self.names.remove(i);
+        self.drive_timeouts_ns.remove(i);
+        self.drives.remove(i);
+    }
+
+    /// Object `i` was put elsewhere: nothing drives it any more.
+    pub fn release(&mut self, i: usize) {
+        self.drives[i] = None;
+    }
+
+    /// The flange was put elsewhere and shall stay there.
+    pub fn place_flange(&mut self, pose: Pose, now_ns: u64) {
+        self.flange = Target { pose, time_ns: now_ns };
+    }
+
+    /// Simulated time has become zero: what was commanded before was commanded at the start.
+    pub fn restart_time(&mut self) {
+        self.flange.time_ns = 0;
+        self.drives.iter_mut().flatten().for_each(|drive| drive.time_ns = 0);
     }
 
     /// How commands fared so far.
@@ -206,6 +237,11 @@ impl Desk {
         let allowed_m = self.speed_max * (elapsed + 1e-3) + 1e-3;
         (distance_m > allowed_m).then_some(Limit::PoseJump { distance_m, allowed_m })
     }
+}
+
+fn drive_timeout_ns(object: &Object) -> u64 {
+    let nanoseconds = std::time::Duration::from_secs_f64(object.drive_timeout).as_nanos();
+    u64::try_from(nanoseconds).unwrap_or(u64::MAX)
 }
 
 fn finite(field: &'static str, value: Real) -> Result<(), Refusal> {

@@ -1,9 +1,9 @@
 //! The doors to the outside that a scene asks for: recording, streams, ROS 2. A door whose feature
 //! was not built says so when it is asked for.
 
-use std::{sync::Arc, time::Duration};
+use std::{path::Path, sync::Arc, time::Duration};
 
-use super::{launch::RunError, outlets::Outlets, progress::Progress};
+use super::{front::Front, launch::RunError, outlets::Outlets, progress::Progress};
 #[cfg(feature = "bag")]
 use crate::cosim::compile::PHYSICS_VERSION;
 use crate::{
@@ -26,6 +26,12 @@ pub(super) struct Sizes {
 pub(super) struct Doors<'a> {
     /// What is asked for.
     pub(super) scene: &'a Scene,
+    /// Where it is from.
+    #[cfg_attr(
+        not(feature = "ros"),
+        expect(dead_code, reason = "without ROS 2 nobody asks for others beside it")
+    )]
+    pub(super) scene_file: &'a Path,
     /// Makes messages for all who carry them.
     #[cfg_attr(
         not(any(feature = "ros", feature = "bag")),
@@ -42,8 +48,14 @@ pub(super) struct Doors<'a> {
     pub(super) facts: &'a [(&'static str, String)],
 }
 
-/// Those who may command from outside.
-pub(super) type Outside = Vec<Box<dyn Source>>;
+/// Those who may command and ask from outside.
+#[derive(Default)]
+pub struct Outside {
+    /// Those who command.
+    pub sources: Vec<Box<dyn Source>>,
+    /// Those who ask.
+    pub front: Option<Front>,
+}
 
 impl Doors<'_> {
     /// Opens all of them.
@@ -58,7 +70,7 @@ impl Doors<'_> {
         if self.scene.outputs.stream {
             self.open_stream(&mut outlets, sizes);
         }
-        let mut outside = Outside::new();
+        let mut outside = Outside::default();
         let opened = if self.scene.outputs.ros.enabled {
             self.open_ros(&mut outlets, &mut outside)
         } else {
@@ -198,23 +210,40 @@ impl Doors<'_> {
     #[cfg(feature = "ros")]
     fn open_ros(&self, outlets: &mut Outlets, outside: &mut Outside) -> Result<(), String> {
         use crate::{
+            services::ros::RosBench,
+            simulator::{Simulator, Version, asks},
             sinks::{
+                announced::Announced,
                 fanout::Delivery,
                 reach::Reach,
                 ros::{RosNode, RosSink},
             },
             sources::ros::RosSource,
+            wire::topics::NODE,
         };
 
         let reach = Reach::choose(&self.scene.outputs.ros, |name| std::env::var(name).ok());
         let reach = reach.map_err(|error| error.to_string())?;
         let node = RosNode::join(&reach).map_err(|error| error.to_string())?;
+        let announced = Arc::new(Announced::default());
         let sink = RosSink::new(&node, self.encoder).map_err(|error| error.to_string())?;
+        let sink = sink.announcing(&announced);
         let source = RosSource::new(&node, self.encoder).map_err(|error| error.to_string())?;
         // Old states are worth nothing to a controller, but half a second bridges a hiccup.
         let delivery = Delivery::Latest { depth: 500 };
         outlets.fanout.add(Box::new(sink), delivery).map_err(|error| error.to_string())?;
-        outside.push(Box::new(source));
+        outside.sources.push(Box::new(source));
+        let (offers, asked) = asks::asked(NODE, None);
+        let channels = asks::channels(NODE, None);
+        let bench = RosBench::open(&node, &offers, &channels, &announced);
+        let bench = Box::new(bench.map_err(|error| error.to_string())?);
+        let is_stopped = matches!(self.scene.controller, Controller::Topics { .. });
+        let distribution = std::env::var("ROS_DISTRO").unwrap_or_default();
+        let simulator = Simulator::new(self.scene, asked, is_stopped)
+            .with_channels(channels.len())
+            .beside(self.scene_file)
+            .speaking(Version::of_distribution(&distribution));
+        outside.front = Some(Front::new(simulator, bench, announced));
         Ok(())
     }
 

@@ -2,6 +2,7 @@
 
 pub mod cache; // settled start states on disk
 mod doors; // recording, streams, ROS 2
+pub mod front; // the simulator at its bench
 pub mod judge; // what came of a run
 pub mod launch; // scene to a run
 pub mod orders; // who may command
@@ -18,6 +19,7 @@ pub mod summary; // what is left at the end
 use std::{fmt, mem, sync::Arc, time::Duration};
 
 use self::{
+    front::Front,
     judge::Judge,
     orders::Orders,
     outlets::Outlets,
@@ -28,6 +30,8 @@ use self::{
     shutdown::Shutdown,
 };
 use crate::{
+    command::Command,
+    simulator::World,
     sinks::{Packet, RunStatistics},
     snapshot::{Snapshot, checkpoint::Checkpoint},
 };
@@ -46,6 +50,8 @@ pub enum Ending {
     Interrupted,
     /// The recording failed, and the scene says to stop then.
     RecordingFailed,
+    /// A client of the simulator told it to quit.
+    Quit,
 }
 
 impl fmt::Display for Ending {
@@ -55,6 +61,7 @@ impl fmt::Display for Ending {
             Self::TimeUp => "time is up",
             Self::Interrupted => "interrupted",
             Self::RecordingFailed => "recording failed",
+            Self::Quit => "told to quit",
         })
     }
 }
@@ -63,6 +70,8 @@ impl fmt::Display for Ending {
 pub struct Crew {
     /// Who commands.
     pub orders: Orders,
+    /// Who may ask and change, if anybody.
+    pub front: Option<Front>,
     /// Where results go.
     pub outlets: Outlets,
     /// What is due when.
@@ -81,6 +90,10 @@ pub struct Crew {
     pub is_real_time: bool,
     /// What statistics say of the scene.
     pub about: RunStatistics,
+    /// Packets given out so far.
+    pub n_packets: u64,
+    /// What the next packet keeps besides.
+    pub checkpoints: Vec<Checkpoint>,
 }
 
 /// How a run went, as far as clocks and plant know.
@@ -98,26 +111,31 @@ pub struct Report<Fault> {
 /// Runs `plant` until there is a reason to end. What was recorded is still open afterwards.
 pub fn run<P: Plant>(plant: &mut P, crew: &mut Crew) -> Report<P::Fault> {
     let mut seen = Arc::new(Packet::new(plant.snapshot(Parts::ALL), None));
-    crew.wait_for_orders(plant, &seen);
+    let mut pacer = Pacer::start_at(crew.run_time_ns(&seen.snapshot), crew.is_real_time);
     // The start is kept whatever the rate, at whatever time it is.
-    let mut checkpoints: Vec<_> = crew.checkpoint(plant, true).into_iter().collect();
-    let mut pacer = Pacer::start_at(seen.snapshot.time_ns, crew.is_real_time);
+    crew.keep(plant, true);
+    crew.greet();
     let ending = loop {
         if let Some(ending) = crew.ending(&seen.snapshot) {
             break Ok(ending);
         }
-        let commands = crew.orders.drain(&seen.snapshot); // outside to plain values
+        seen = crew.attend(plant, seen); // questions between two ticks
+        if !crew.may_tick() {
+            crew.stand_still(plant, &seen, &mut pacer);
+            continue;
+        }
+        let commands = crew.commands(&seen.snapshot); // outside to plain values
         if let Err(fault) = plant.tick(&commands) {
             break Err(fault); // the core cannot go on, nobody can
         }
         let time_ns = seen.snapshot.time_ns + crew.tick_ns;
         let snapshot = plant.snapshot(crew.schedule.parts(time_ns)); // a copy
-        pacer.wait_until(time_ns); // the only clock
-        let is_due = crew.schedule.checkpoint(time_ns);
-        checkpoints.extend(crew.checkpoint(plant, is_due));
-        let packet = crew.pack(snapshot, &pacer);
-        seen = Arc::new(packet.with_checkpoints(mem::take(&mut checkpoints)));
+        let run_time_ns = crew.run_time_ns(&snapshot);
+        crew.pace(&mut pacer, run_time_ns); // the only clock
+        crew.keep(plant, crew.schedule.checkpoint(run_time_ns));
+        seen = crew.pack(snapshot, &pacer);
         crew.outlets.publish(&plant.view(&seen.snapshot), &seen); // never fails the run
+        crew.ticked(&seen);
     };
     crew.progress.end();
     let (wall_time_s, real_time_factor) = (pacer.wall_time_s(), pacer.real_time_factor_mean());
@@ -125,31 +143,100 @@ pub fn run<P: Plant>(plant: &mut P, crew: &mut Crew) -> Report<P::Fault> {
 }
 
 impl Crew {
-    /// Shows the start to the outside until it commands something.
-    fn wait_for_orders<P: Plant>(&mut self, plant: &P, start: &Arc<Packet>) {
-        if self.orders.is_waiting() {
+    fn greet(&self) {
+        if self.is_waiting() {
             self.progress.say(&"waiting for a first command");
-        }
-        let mut shown_at = None;
-        let waiting = Pacer::start(false);
-        while self.orders.is_waiting() && !self.shutdown.is_requested() {
-            let now = waiting.wall_time_s();
-            if shown_at.is_none_or(|then| 1.0 <= (now - then) * f64::from(WAITING_RATE)) {
-                self.outlets.publish(&plant.view(&start.snapshot), start);
-                shown_at = Some(now);
-            }
-            pacer::pause();
         }
     }
 
-    /// All that is needed to go on, if it is due and someone keeps it.
-    fn checkpoint<P: Plant>(&self, plant: &P, is_due: bool) -> Option<Checkpoint> {
-        if is_due && self.outlets.bag.is_some() { plant.checkpoint() } else { None }
+    /// True until something sets a run going that shall begin by command.
+    fn is_waiting(&self) -> bool {
+        self.front.as_ref().map_or(self.orders.is_waiting(), |it| it.simulator().is_waiting())
+    }
+
+    fn may_tick(&self) -> bool {
+        self.front.as_ref().map_or(!self.orders.is_waiting(), |it| it.simulator().may_tick())
+    }
+
+    /// Answers questions, and shows what they have changed.
+    fn attend<P: Plant>(&mut self, plant: &mut P, seen: Arc<Packet>) -> Arc<Packet> {
+        let Some(front) = &mut self.front else { return seen };
+        if !self.orders.is_waiting() {
+            front.first_command();
+        }
+        let changed = {
+            let mut world = World { subject: plant, seen: &seen.snapshot };
+            front.attend(&mut world, self.n_packets)
+        };
+        if changed.changes.is_empty() {
+            return seen;
+        }
+        if changed.is_state_reset || changed.is_time_reset {
+            self.orders.restart();
+            self.judge = Judge::default();
+        }
+        let packet = Packet::new(plant.snapshot(Parts::ALL), None).with_changes(changed.changes);
+        let packet = Arc::new(self.number(packet));
+        self.outlets.publish(&plant.view(&packet.snapshot), &packet);
+        packet
+    }
+
+    /// Time stands still: waits a moment for someone to change that. Who waits for a first command
+    /// is shown the start.
+    fn stand_still<P: Plant>(&mut self, plant: &P, seen: &Arc<Packet>, pacer: &mut Pacer) {
+        if self.is_waiting() && pacer.is_due(WAITING_RATE) {
+            self.outlets.publish(&plant.view(&seen.snapshot), seen);
+        }
+        match &mut self.front {
+            Some(front) => front.wait(pacer::PAUSE),
+            None => pacer::pause(),
+        }
+        pacer.stand_still();
+    }
+
+    fn commands(&mut self, seen: &Snapshot) -> Vec<Command> {
+        let mut commands = self.orders.drain(seen);
+        commands.extend(self.front.iter_mut().flat_map(Front::take_commands));
+        commands
+    }
+
+    /// Steps that someone waits for are not paced.
+    fn pace(&self, pacer: &mut Pacer, run_time_ns: u64) {
+        if self.front.as_ref().is_some_and(|it| it.simulator().is_stepping()) {
+            pacer.stand_still();
+        }
+        pacer.wait_until(run_time_ns);
+    }
+
+    fn ticked(&mut self, seen: &Packet) {
+        if let Some(front) = &mut self.front {
+            front.ticked(&seen.snapshot, self.n_packets);
+        }
+    }
+
+    fn number(&mut self, packet: Packet) -> Packet {
+        self.n_packets += 1;
+        packet.numbered(self.n_packets).with_checkpoints(mem::take(&mut self.checkpoints))
+    }
+
+    /// Takes all that is needed to go on, if it is due and someone keeps it, for the next packet.
+    fn keep<P: Plant>(&mut self, plant: &P, is_due: bool) {
+        if is_due && self.outlets.bag.is_some() {
+            self.checkpoints.extend(plant.checkpoint());
+        }
+    }
+
+    /// Time of the run: that of its ticks together, whatever became of simulated time.
+    fn run_time_ns(&self, seen: &Snapshot) -> u64 {
+        seen.run_tick.time_ns(self.tick_ns)
     }
 
     fn ending(&mut self, seen: &Snapshot) -> Option<Ending> {
         if self.shutdown.is_requested() {
             return Some(Ending::Interrupted);
+        }
+        if self.front.as_ref().is_some_and(|it| it.simulator().is_quitting()) {
+            return Some(Ending::Quit);
         }
         if self.orders.is_done() {
             return Some(Ending::Finished);
@@ -163,7 +250,7 @@ impl Crew {
     }
 
     /// Judges a snapshot, shows it, and adds statistics where they are due.
-    fn pack(&mut self, snapshot: Snapshot, pacer: &Pacer) -> Packet {
+    fn pack(&mut self, snapshot: Snapshot, pacer: &Pacer) -> Arc<Packet> {
         self.judge.look(&snapshot, Duration::from_nanos(self.tick_ns).as_secs_f64());
         let phase = self.orders.phase().map_or("", |phase| phase.name());
         self.progress.tick(&snapshot, phase, pacer);
@@ -176,7 +263,7 @@ impl Crew {
             sinks: self.outlets.counters(),
             ..self.about.clone()
         });
-        Packet::new(snapshot, run)
+        Arc::new(self.number(Packet::new(snapshot, run)))
     }
 }
 

@@ -8,6 +8,7 @@ pub mod fault; // what can be wrong
 pub mod plain; // YAML that is no scene
 pub mod print; // scene to text
 pub mod quantity; // "2 mm"
+pub mod resource; // objects that others name
 pub mod text; // text to scene
 
 pub(crate) mod blank;
@@ -17,6 +18,7 @@ mod mesh_file;
 mod read;
 pub(crate) mod schema;
 mod tree;
+mod urdf;
 pub(crate) mod walk;
 mod yaml;
 

@@ -12,6 +12,7 @@
 use std::{
     net::Ipv4Addr,
     sync::{Arc, Mutex, PoisonError},
+    time::Duration,
 };
 
 use ros2_client::{
@@ -24,11 +25,12 @@ use serde::{Serialize, Serializer, ser::SerializeTuple};
 
 use super::{
     Packet, Sink,
+    announced::Announced,
     reach::{Extent, Reach},
 };
 use crate::wire::{
     to_ros::Encoder,
-    topics::{Message, Qos, Topic},
+    topics::{Common, Message, Qos, Topic, common},
 };
 
 /// Name of the node, in the root namespace.
@@ -108,6 +110,9 @@ pub struct Body(Vec<u8>);
 pub struct RosSink {
     publishers: Vec<Option<(String, Publisher<Body>)>>,
     encoder: Arc<Encoder>,
+    announced: Arc<Announced>,
+    /// The last clock message, repeated while time stands still.
+    clock: Option<Message>,
     _node: Arc<RosNode>,
 }
 
@@ -173,6 +178,11 @@ impl RosNode {
         self.open(topic, |node, it| node.create_subscription(it, None))
     }
 
+    /// The participant itself, for services.
+    pub fn participant(&self) -> rustdds::DomainParticipant {
+        self.context.domain_participant()
+    }
+
     fn open<Port>(
         &self,
         topic: &Topic,
@@ -236,9 +246,20 @@ impl RosSink {
             node.publisher(topic).map(|it| Some((topic.name.clone(), it)))
         };
         let publishers = encoder.topics().iter().map(open).collect::<Result<_, _>>()?;
-        let sink = Self { publishers, encoder: Arc::clone(encoder), _node: Arc::clone(node) };
+        let sink = Self {
+            publishers,
+            encoder: Arc::clone(encoder),
+            announced: Arc::default(),
+            clock: None,
+            _node: Arc::clone(node),
+        };
         sink.send(&encoder.latched(0))?;
         Ok(sink)
+    }
+
+    /// Notes what has been published, for answers that must stay behind it.
+    pub fn announcing(self, announced: &Arc<Announced>) -> Self {
+        Self { announced: Arc::clone(announced), ..self }
     }
 
     /// Tries all messages, also behind one that fails.
@@ -266,13 +287,30 @@ impl Sink for RosSink {
     }
 
     fn write(&mut self, packet: &Packet) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
-        self.send(packet.messages(&self.encoder)).map_err(Into::into)
+        let messages = packet.messages(&self.encoder);
+        let sent = self.send(messages);
+        self.announced.note(packet.number);
+        self.clock = messages.iter().find(|it| it.topic == common(Common::Clock)).cloned();
+        sent.map_err(Into::into)
+    }
+
+    fn idle_after(&self) -> Duration {
+        Duration::from_millis(100)
+    }
+
+    fn idle(&mut self) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
+        self.send(self.clock.as_slice()).map_err(Into::into)
     }
 
     fn close(&mut self) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
         self.publishers.clear();
         Ok(())
     }
+}
+
+/// The same for ports on bare DDS.
+pub fn policies(qos: Qos) -> rustdds::QosPolicies {
+    profile(qos).into()
 }
 
 fn profile(qos: Qos) -> QosProfile {

@@ -34,6 +34,8 @@ mod replays; // recordings simulated again, branched off, and taken as commands
 mod rig; // a bare model by hand
 #[cfg(feature = "ros")]
 mod ros_loop; // what goes out reaches others, what others say comes in
+#[cfg(feature = "ros")]
+mod ros_simulator; // what ROS 2 users ask of a simulator
 mod scenes; // scenes that run, scenes that are refused
 mod sheet; // a grain on the membrane
 mod spheres; // grains on the spheres of the classic membrane

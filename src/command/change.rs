@@ -1,0 +1,111 @@
+//! What the outside may do to the world between two ticks, and no body could do by moving: put
+//! things elsewhere, add and remove them, go back to the start.
+
+use std::fmt;
+
+use crate::{
+    base::{Pose, real::Twist},
+    scene::Object,
+};
+
+/// One change. Like a command it is a plain value: equal changes at equal ticks give equal bits.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Change {
+    /// Goes back to the start.
+    Reset(Scope),
+    /// Puts an object elsewhere, at once.
+    PlaceObject {
+        /// Name of the object.
+        object: String,
+        /// Pose of its centre of mass in the world.
+        pose: Pose,
+        /// Velocity of its centre of mass, world axes.
+        twist: Twist,
+    },
+    /// Puts the gripper elsewhere, at once: flange, membrane and grains as one, and at rest.
+    PlaceFlange {
+        /// Pose of the flange in the world.
+        pose: Pose,
+    },
+    /// Adds an object. Its pose is that of its shape's origin.
+    Insert(Box<Object>),
+    /// Takes an object away.
+    Remove {
+        /// Name of the object.
+        object: String,
+    },
+}
+
+impl fmt::Display for Change {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Reset(scope) => write!(f, "reset of {scope}"),
+            Self::PlaceObject { object, .. } => write!(f, "`{object}` put elsewhere"),
+            Self::PlaceFlange { .. } => f.write_str("the gripper put elsewhere"),
+            Self::Insert(object) => write!(f, "object `{}` added", object.name),
+            Self::Remove { object } => write!(f, "object `{object}` taken away"),
+        }
+    }
+}
+
+/// What goes back to the start.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Scope {
+    /// Simulated time becomes zero.
+    pub time: bool,
+    /// Poses, velocities, forces, pressure and commands are those of the start; objects of the
+    /// scene that were removed are back.
+    pub state: bool,
+    /// Objects that were added are gone.
+    pub spawned: bool,
+}
+
+impl Scope {
+    /// Everything goes back.
+    pub const ALL: Self = Self { time: true, state: true, spawned: true };
+}
+
+impl fmt::Display for Scope {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let parts = [(self.time, "time"), (self.state, "state"), (self.spawned, "added objects")];
+        let named: Vec<&str> = parts.iter().filter(|(is_in, _)| *is_in).map(|it| it.1).collect();
+        f.write_str(if named.is_empty() { "nothing" } else { "" })?;
+        f.write_str(&named.join(", "))
+    }
+}
+
+/// Why a change was not made. The world is then as it was.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ChangeRefused {
+    /// The object is not there.
+    #[error("there is no object `{object}`: use one of {known}")]
+    UnknownObject {
+        /// What was asked for.
+        object: String,
+        /// What there is.
+        known: String,
+    },
+    /// The name is taken.
+    #[error("the name `{object}` is taken: choose another one")]
+    NameTaken {
+        /// What was asked for.
+        object: String,
+    },
+    /// Something else is there.
+    #[error("`{what}` would overlap {with} there: choose a free place")]
+    Overlap {
+        /// What was to be placed.
+        what: String,
+        /// What is there.
+        with: String,
+    },
+    /// The object cannot be simulated.
+    #[error("{0}")]
+    Unusable(String),
+    /// The run was taken up in its middle, and nobody told it how it began.
+    #[error("this run was taken up in its middle and does not know its start: reset time only")]
+    StartUnknown,
+    /// This world does not change.
+    #[error("this world cannot be changed like that")]
+    Unchangeable,
+}
