@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, Parser, Subcommand};
 use jamgrip::{
+    base::lanes::Width,
     experiments::Size,
     lab::outcome::{n_processors, sized_name},
 };
@@ -30,6 +31,20 @@ pub(crate) struct Cli {
     /// What to do.
     #[command(subcommand)]
     pub(crate) action: Action,
+
+    /// At most so many numbers side by side in a register: 8 (AVX-512), 4 (AVX2) or 1; results are
+    /// the same
+    #[arg(long, global = true, value_name = "N", value_parser = lanes)]
+    pub(crate) lanes: Option<Width>,
+}
+
+fn lanes(text: &str) -> Result<Width, String> {
+    match text {
+        "1" => Ok(Width::One),
+        "4" => Ok(Width::Four),
+        "8" => Ok(Width::Eight),
+        _ => Err("there are 1, 4 and 8".to_owned()),
+    }
 }
 
 /// What to do.

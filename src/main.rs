@@ -17,6 +17,7 @@ use std::{
 use clap::Parser;
 use cli::{Action, Cli};
 use jamgrip::{
+    base::lanes,
     benchmarks::BenchError,
     lab::fault::LabError,
     node::{
@@ -37,6 +38,9 @@ const WRONG: u8 = 2;
 fn main() -> ExitCode {
     let cli = Cli::parse();
     env_logger::Builder::from_env(env_logger::Env::default().default_filter_or(LOG_FILTER)).init();
+    if let Some(width) = cli.lanes {
+        lanes::limit(width);
+    }
     let outcome = match cli.action {
         Action::Run(args) => run(&args),
         #[cfg(feature = "bag")]

@@ -33,6 +33,8 @@ pub struct Figures {
     pub n_vertices: usize,
     /// Solver threads.
     pub threads: usize,
+    /// Numbers computed side by side, at most.
+    pub lanes: u8,
     /// Length of a substep [s].
     pub substep_s: Real,
     /// Substeps per second, the median of all laps.
@@ -179,8 +181,11 @@ impl Figures {
             )?;
             return self.write_latencies(text);
         }
-        let Self { case, n_grains, n_vertices, threads, n_laps, n_lap_steps, .. } = self;
-        writeln!(text, "{case}: {n_grains} grains, {n_vertices} vertices, {threads} threads")?;
+        let Self { case, n_grains, n_vertices, threads, lanes, n_laps, n_lap_steps, .. } = self;
+        writeln!(
+            text,
+            "{case}: {n_grains} grains, {n_vertices} vertices, threads: {threads}, lanes: {lanes}"
+        )?;
         let processors = or_unknown(self.processor_share, |it| format!("{:.0} %", 100.0 * it));
         writeln!(
             text,

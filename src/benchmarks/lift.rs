@@ -9,7 +9,7 @@ use super::{
     soundness::{Seen, check_lift},
 };
 use crate::{
-    base::Real,
+    base::{Real, lanes},
     cosim::compile::Compiled,
     node::{
         judge::Judge,
@@ -151,6 +151,7 @@ fn figures(
         n_grains: coupled.state.grains.len(),
         n_vertices: mesh.n_vertices(),
         threads: options.n_threads,
+        lanes: lanes::width() as u8,
         substep_s: coupled.model.substep,
         steps_per_s,
         steps_per_s_best: real_of(n_steps) / times[0],

@@ -20,7 +20,8 @@ use crate::{
         },
         contact::law::{PairLaw, Surface},
         packing::{
-            Grown, Growth, Recipe, Room, first_scale, scatter, scatter::NoRoom, sphere_volume,
+            Grown, Growth, Recipe, Room, first_scale, numbering::along_curve, scatter,
+            scatter::NoRoom, sphere_volume,
         },
         state::{Grains, State},
     },
@@ -64,7 +65,7 @@ const OPENED: Real = 1.5;
 /// Standard gravity [m/s²].
 const GRAVITY: Real = 9.81;
 /// Changes whenever the same box would be filled otherwise.
-const VERSION: u64 = 3;
+const VERSION: u64 = 4;
 
 /// Grains in a box.
 #[derive(Clone, Copy, Debug)]
@@ -152,6 +153,10 @@ impl Boxed {
         let small: Vec<Real> = last.iter().map(|r| scale * r).collect();
         let mut random = Random::new(1, Stream::Position);
         let places = scatter(&small, None, &mut random, |it| room.place(RADII[1], it))?;
+        let order = along_curve(&places, 2.0 * RADII[1]);
+        let ordered = |radii: &[Real]| order.iter().map(|&i| radii[i]).collect::<Vec<_>>();
+        let (last, small) = (ordered(&last), ordered(&small));
+        let places = order.iter().map(|&i| places[i]).collect();
         let masses = masses(&last);
         let mut system = system(Grains::at_rest(places, small, masses), &size);
         let radius = 0.5 * (RADII[0] + RADII[1]);
