@@ -37,10 +37,13 @@ use crate::{
         change::{Change, ChangeRefused},
     },
     physics::boundary::shape::Aabb,
-    scene::Scene,
+    scene::{Scene, resource::Shelf},
     services::{Asker, Call, Outgoing},
     snapshot::Snapshot,
-    wire::{cdr::Cdr, messages::simulation_interfaces::Result as Told},
+    wire::{
+        cdr::Cdr,
+        messages::simulation_interfaces::{Result as Told, Spawnable, WorldResource},
+    },
 };
 
 /// What can be looked at and changed between two ticks.
@@ -97,6 +100,9 @@ pub struct Simulator {
     register: Register,
     goals: Goals,
     grip: Option<Grip>,
+    /// Lists that were made, and of what.
+    spawnables: Option<(Shelf, Vec<Spawnable>)>,
+    worlds: Option<(Shelf, Vec<WorldResource>)>,
     is_monotonic: bool,
     /// Velocities at the ends of the last two ticks, with their times [ns].
     twists: [(u64, Vec<(String, Twist)>); 2],
@@ -124,6 +130,8 @@ impl Simulator {
             register: Register::new(scene),
             goals: Goals::default(),
             grip: None,
+            spawnables: None,
+            worlds: None,
             is_monotonic: scene.outputs.ros.monotonic_clock,
             twists: Default::default(),
             out: Vec::new(),
