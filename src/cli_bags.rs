@@ -72,9 +72,19 @@ pub(crate) struct Replay {
         value_parser = factor, conflicts_with_all = ["verify", "from"]
     )]
     pub(crate) clock: Option<f64>,
+    /// Waits so long between announcing the topics and the first message, for readers to find them
+    #[arg(
+        long, value_name = "TIME", default_value = "0.5s", value_parser = time_or_zero,
+        conflicts_with_all = ["verify", "from"]
+    )]
+    pub(crate) delay: f64,
     /// Takes cues from standard input while it plays
     #[arg(long, conflicts_with_all = ["verify", "from"])]
     pub(crate) cues: bool,
+    /// With --verify, computes so many numbers at once at most: 1, 4 or 8; the result is the same
+    /// [default: as many as the processor can]
+    #[arg(long, value_name = "N", requires = "verify", value_parser = ["1", "4", "8"])]
+    pub(crate) lanes: Option<String>,
     /// With --verify, fills the bag again from scene and seed too, in place of the recorded start
     #[arg(long, requires = "verify", conflicts_with = "start")]
     pub(crate) settle: bool,

@@ -11,6 +11,7 @@ use std::{
 
 use jamgrip::{
     bag::{check, info::Info, recover},
+    base::lanes::{self, Width},
     lab::bag_page,
     node::{
         cache::Cache,
@@ -75,6 +76,11 @@ pub(crate) fn run_by(
 fn verify(args: &Replay) -> Result<ExitCode, Box<dyn Error>> {
     let shutdown = Shutdown::listen()?;
     let progress = Progress::new(args.json);
+    match args.lanes.as_deref() {
+        Some("1") => lanes::limit(Width::One),
+        Some("4") => lanes::limit(Width::Four),
+        _ => {}
+    }
     let again = Again::open(&args.bag)?;
     let verdict = verify::verify(
         &again,
@@ -157,6 +163,7 @@ fn play(args: &Replay) -> Result<ExitCode, Box<dyn Error>> {
         is_loop: args.is_loop,
         topics: args.topics.clone(),
         exclude: args.exclude.clone(),
+        delay: Duration::from_secs_f64(args.delay),
         clock_rate: args.clock,
     };
     let (teller, cues) = mpsc::channel();
