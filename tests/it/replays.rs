@@ -99,7 +99,7 @@ fn recorded() -> &'static Recorded {
 }
 
 #[test]
-fn every_tick_comes_out_as_recorded_for_any_number_of_threads() {
+fn every_tick_comes_out_as_recorded_for_any_number_of_threads_and_lanes() {
     let bag = recorded();
     for threads in ["1", "2", "7"] {
         let (verdict, code) =
@@ -111,6 +111,10 @@ fn every_tick_comes_out_as_recorded_for_any_number_of_threads() {
             (&N_TICKS.into(), &(N_TICKS + 1).into())
         );
         assert_eq!(verdict["remarks"], serde_json::json!([]));
+    }
+    for lanes in ["1", "4", "8"] {
+        let (verdict, code) = told(&["replay", bag.bag(), "--verify", "--json", "--lanes", lanes]);
+        assert_eq!((code, &verdict["first_difference"]), (0, &Value::Null), "{lanes}: {verdict}");
     }
     let (verdict, code) = told(&["replay", bag.bag(), "--verify", "--json", "--start", "0.25s"]);
     // From the checkpoint at 0.2 s on.
@@ -404,5 +408,20 @@ fn a_branch_says_which_changes_it_cannot_repeat() {
     for arguments in [&["--from", "60ms", "--end", "70ms"][..], &["--from", "110ms"]] {
         let (code, complaint) = branch(arguments);
         assert_eq!(code, Some(0), "{arguments:?}: {complaint}");
+
+/// Oracle: what is known of the recording: made by 0.1.0, whose results the changelog says changed.
+#[test]
+fn a_recording_of_the_first_release_says_why_it_cannot_be_proved() {
+    let (verdict, code) =
+        told(&["replay", "bags/pick_and_lift", "--verify", "--json", "--end", "3ms"]);
+    assert_eq!((code, &verdict["first_difference"]), (1, &1.into()), "{verdict}");
+    let remarks = verdict["remarks"].to_string();
+    for told in [
+        "recorded by jamgrip 0.1.0, before recordings held the digest of every tick: only 10 digests",
+        "no checkpoint is recorded: the start was",
+        "what changed results since then: ",
+        "shares out its force by the mountain passes",
+    ] {
+        assert!(remarks.contains(told), "{told}: {remarks}");
     }
 }
