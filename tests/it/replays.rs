@@ -408,6 +408,8 @@ fn a_branch_says_which_changes_it_cannot_repeat() {
     for arguments in [&["--from", "60ms", "--end", "70ms"][..], &["--from", "110ms"]] {
         let (code, complaint) = branch(arguments);
         assert_eq!(code, Some(0), "{arguments:?}: {complaint}");
+    }
+}
 
 /// Oracle: what is known of the recording: made by 0.1.0, whose results the changelog says changed.
 #[test]

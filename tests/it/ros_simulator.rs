@@ -1,6 +1,6 @@
 //! What ROS 2 users ask of a simulator, asked of the whole program from outside.
 
-use std::{process::Command, time::Duration};
+use std::{path::Path, process::Command, time::Duration};
 
 use jamgrip::{
     command::change::{Change, ChangeRefused},
