@@ -239,7 +239,10 @@ impl Inputs {
     fn contains(&self, topic: &str) -> bool {
         match self {
             Self::Named(names) => names.iter().any(|it| it == topic),
-            Self::ByName => topic.starts_with(NODE) && topic.ends_with("_cmd"),
+            Self::ByName => {
+                let is_command = topic.ends_with("_cmd") || topic.ends_with("/joint_commands");
+                topic.starts_with(NODE) && is_command
+            }
         }
     }
 }
