@@ -159,6 +159,7 @@ fn crew(
     let end = std::time::Duration::from_secs_f64(seconds).as_nanos();
     Ok(Crew {
         orders: Orders::new(scene, vec![Box::new(source)]),
+        front: None,
         outlets,
         schedule: Schedule::new(&scene.outputs, scene.time.tick_ns),
         judge: Judge::default(),
@@ -168,6 +169,8 @@ fn crew(
         end_ns: Some(u64::try_from(end).unwrap_or(u64::MAX)),
         is_real_time: true,
         about: RunStatistics::default(),
+        n_packets: 0,
+        checkpoints: Vec::new(),
     })
 }
 

@@ -10,13 +10,17 @@ use crate::{
         BenchError, Options,
         packing::{Boxed, Phase},
     },
-    command::Command,
+    command::{
+        Command,
+        change::{Change, ChangeRefused},
+    },
     node::{
         pacer::{Stopwatch, wall_ns},
         plant::Plant,
     },
     physics::{System, health::Diverged, measure::real_of},
     session::Session,
+    simulator::Subject,
     snapshot::{Parts, Snapshot, take, view::View},
 };
 
@@ -70,6 +74,16 @@ impl Standing {
             latency("tick_to_sample_stream", first, &shown, &heard.stream)?,
             percentiles("tick_period", periods, counted.len() - 1),
         ])
+    }
+}
+
+impl Subject for Standing {
+    fn look(&self) -> Snapshot {
+        Plant::snapshot(self, Parts::ALL)
+    }
+
+    fn change(&mut self, _: &Change) -> Result<(), ChangeRefused> {
+        Err(ChangeRefused::Unchangeable)
     }
 }
 
