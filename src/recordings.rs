@@ -158,6 +158,7 @@ fn play(args: &Replay) -> Result<ExitCode, Box<dyn Error>> {
         is_loop: args.is_loop,
         topics: args.topics.clone(),
         exclude: args.exclude.clone(),
+        delay: Duration::from_secs_f64(args.delay),
         clock_rate: args.clock,
     };
     let (teller, cues) = mpsc::channel();
@@ -201,7 +202,7 @@ fn on_stage(
 ) -> Result<Performance, Box<dyn Error>> {
     use jamgrip::{replay::stage::RosStage, scene::Ros, sinks::reach::Reach};
 
-    let anywhere = Ros { enabled: true, domain_id: None, lan: false };
+    let anywhere = Ros { enabled: true, ..Ros::OFF };
     let reach = Reach::choose(&anywhere, |name| std::env::var(name).ok())?;
     let mut stage = RosStage::join(&reach, options.clock_rate.is_some())?;
     let played = perform(&mut stage)?;

@@ -7,11 +7,11 @@ use crate::{
     command::{
         Command, CommandRecord,
         apply::{Desk, Frames},
-        change::{Change, ChangeRefused, Scope},
+        change::{Change, ChangeRefused, Knob, Scope},
     },
     cosim::{
         Coupled, FLANGE, Inputs, Means,
-        compile::Compiled,
+        compile::{Compiled, retune},
         rapier_world::RapierWorld,
         saved_state::{self, SavedStateError},
     },
@@ -44,6 +44,10 @@ pub struct Session {
     /// Ticks since the start of the run, whatever became of simulated time.
     run_tick: Tick,
     means: Means,
+    /// What the wrist sensor takes for zero, flange axes.
+    sensor_zero: Wrench,
+    /// Properties that are not those of the scene any more.
+    turned: Vec<(Knob, f64)>,
     records: Vec<CommandRecord>,
     digest: u64,
     normal_forces: Vec<f64>,
@@ -58,6 +62,9 @@ struct Saved<'a> {
     state: &'a [u8],
     world: &'a [u8],
     desk: &'a [u8],
+    /// Force and torque.
+    sensor_zero: [[f64; 3]; 2],
+    turned: Vec<(Knob, f64)>,
 }
 
 impl Session {
@@ -98,6 +105,9 @@ impl Session {
         session.desk.restore(saved.desk)?;
         session.tick = Tick(saved.tick);
         session.run_tick = Tick(saved.run_tick);
+        let [force, torque] = saved.sensor_zero.map(Vec3::from);
+        session.sensor_zero = Wrench { force, torque };
+        saved.turned.iter().for_each(|(knob, value)| session.turn(*knob, *value));
         if 0 < saved.run_tick {
             session.start.state = None;
         }
@@ -135,7 +145,10 @@ impl Session {
         let (state, world) = (saved_state::write(&self.coupled.state), self.coupled.world.save());
         let desk = self.desk.save();
         let (tick, run_tick) = (self.tick.0, self.run_tick.0);
-        let saved = Saved { tick, run_tick, state: &state, world: &world, desk: &desk };
+        let Wrench { force, torque } = self.sensor_zero;
+        let sensor_zero = [force, torque].map(Into::into);
+        let (state, world, desk, turned) = (&state, &world, &desk, self.turned.clone());
+        let saved = Saved { tick, run_tick, state, world, desk, sensor_zero, turned };
         Some(saved_state::sealed(postcard::to_stdvec(&saved).expect("bytes always serialise")))
     }
 
@@ -160,6 +173,8 @@ impl Session {
             tick: Tick(0),
             run_tick: Tick(0),
             means: no_forces(n_objects),
+            sensor_zero: Wrench::zero(),
+            turned: Vec::new(),
             records: Vec::new(),
             digest: 0,
             // Nothing is known of forces before the first tick.
@@ -205,6 +220,16 @@ impl Session {
                 self.coupled.place_flange(&self.scene, pose)?;
                 self.desk.place_flange(*pose, self.time_ns());
             }
+            Change::ZeroForceSensor => {
+                self.sensor_zero = self.sensed();
+                self.records.clear();
+                return Ok(());
+            }
+            Change::Turn { knob, value } => {
+                self.turn(*knob, *value);
+                self.records.clear();
+                return Ok(());
+            }
             Change::Insert(object) => self.insert(object)?,
             Change::Remove { object } => {
                 let i = self.find(object)?;
@@ -218,6 +243,16 @@ impl Session {
         Ok(())
     }
 
+    fn turn(&mut self, knob: Knob, value: f64) {
+        knob.set(&mut self.scene, value);
+        if knob == Knob::ObjectFriction {
+            self.start.objects.iter_mut().for_each(|it| it.friction = value);
+        }
+        retune(&self.scene, &mut self.coupled.model);
+        self.turned.retain(|(other, _)| *other != knob);
+        self.turned.push((knob, value));
+    }
+
     fn reset(&mut self, scope: Scope) -> Result<(), ChangeRefused> {
         let is_own = |object: &Object| self.start.objects.iter().any(|it| it.name == object.name);
         if scope.state {
@@ -226,6 +261,7 @@ impl Session {
             self.scene.objects = self.start.objects.iter().chain(added).cloned().collect();
             self.coupled.start_anew(&self.scene, start);
             self.desk.restart(&self.scene);
+            self.sensor_zero = Wrench::zero();
         } else if scope.spawned {
             let objects = self.scene.objects.iter().enumerate();
             let added: Vec<usize> = objects.filter(|(_, it)| !is_own(it)).map(|(i, _)| i).collect();
@@ -319,6 +355,20 @@ impl Session {
     /// The coupled system, to look at.
     pub fn coupled(&self) -> &Coupled {
         &self.coupled
+    }
+
+    /// What a wrist sensor feels that was never set to zero: the wrench of the whole gripper on its
+    /// mount about the flange's origin, flange axes, mean over the last tick.
+    fn sensed(&self) -> Wrench {
+        let to_flange = self.coupled.state.walls[FLANGE].pose.rotation.inverse();
+        let Wrench { force, torque } = self.means.gripper_on_mount;
+        Wrench { force: to_flange * force, torque: to_flange * torque }
+    }
+
+    /// What the wrist sensor reads: what it feels less what it takes for zero.
+    pub fn sensor(&self) -> Wrench {
+        let (felt, zero) = (self.sensed(), self.sensor_zero);
+        Wrench { force: felt.force - zero.force, torque: felt.torque - zero.torque }
     }
 
     /// Means over the last tick.

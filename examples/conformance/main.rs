@@ -80,7 +80,7 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Options, Strin
 }
 
 fn run(options: &Options) -> Result<Vec<Outcome>, String> {
-    let scene = Ros { enabled: true, domain_id: None, lan: false };
+    let scene = Ros { enabled: true, ..Ros::OFF };
     let reach = Reach::choose(&scene, |name| std::env::var(name).ok());
     let node = RosNode::join_as("conformance", &reach.map_err(|it| it.to_string())?);
     let mut client = Client::new(node.map_err(|it| it.to_string())?, options)?;

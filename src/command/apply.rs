@@ -1,6 +1,6 @@
 //! Commands become controls: checked, limited, or refused with a reason.
 
-use super::{Command, CommandCounts, CommandRecord, Limit, Outcome, PoseCommand, Refusal};
+use super::{Command, CommandCounts, CommandRecord, JOINTS, Limit, Outcome, PoseCommand, Refusal};
 use crate::{
     base::{Pose, Quat, Real, Vec3},
     cosim::Inputs,
@@ -155,13 +155,9 @@ impl Desk {
         match command {
             Command::Vacuum { gauge_pa } => {
                 finite("gauge pressure", *gauge_pa)?;
-                let [min, max] = self.gauge_range;
-                let set_pa = gauge_pa.clamp(min, max);
-                self.gauge_setpoint = set_pa;
-                let asked_pa = *gauge_pa;
-                let is_limited = asked_pa < min || asked_pa > max;
-                Ok(is_limited.then_some(Limit::PumpRange { asked_pa, set_pa }))
+                Ok(self.set_gauge(*gauge_pa))
             }
+            Command::Joints { names, positions, .. } => self.set_joints(names, positions, now_ns),
             Command::FlangePose(pose) => {
                 let pose = self.pose_in_world(pose, frames)?;
                 let limit = self.jump(&self.flange, &pose, now_ns);
@@ -182,6 +178,52 @@ impl Desk {
                 Ok(None)
             }
         }
+    }
+
+    fn set_gauge(&mut self, asked_pa: Real) -> Option<Limit> {
+        let [min, max] = self.gauge_range;
+        let set_pa = asked_pa.clamp(min, max);
+        self.gauge_setpoint = set_pa;
+        let is_limited = asked_pa < min || asked_pa > max;
+        is_limited.then_some(Limit::PumpRange { asked_pa, set_pa })
+    }
+
+    /// All joints or none: nothing is set before everything has been checked.
+    fn set_joints(
+        &mut self,
+        names: &[String],
+        positions: &[Real],
+        now_ns: u64,
+    ) -> Result<Option<Limit>, Refusal> {
+        if names.len() != positions.len() {
+            let (n_names, n_positions) = (names.len(), positions.len());
+            return Err(Refusal::JointsWithoutPosition { n_names, n_positions });
+        }
+        let p = self.flange.pose.translation.vector;
+        let (roll, pitch, yaw) = self.flange.pose.rotation.euler_angles();
+        let mut wanted = [Real::NAN, p.x, p.y, p.z, roll, pitch, yaw];
+        let mut moves_flange = false;
+        for (name, position) in names.iter().zip(positions) {
+            finite("joint position, squared,", position * position)?;
+            let i = JOINTS.iter().position(|it| it == name).ok_or_else(|| {
+                Refusal::UnknownJoint { joint: name.clone(), known: JOINTS.join(", ") }
+            })?;
+            wanted[i] = *position;
+            moves_flange |= 0 < i;
+        }
+        let [vacuum, x, y, z, roll, pitch, yaw] = wanted;
+        let mut limit = None;
+        if moves_flange {
+            let rotation = Quat::from_euler_angles(roll, pitch, yaw);
+            let pose = Pose::from_parts(Vec3::new(x, y, z).into(), rotation);
+            limit = self.jump(&self.flange, &pose, now_ns);
+            self.flange = Target { pose, time_ns: now_ns };
+        }
+        if !vacuum.is_nan() {
+            let [min, _] = self.gauge_range;
+            limit = self.set_gauge(vacuum * min).or(limit);
+        }
+        Ok(limit)
     }
 
     fn find(&self, object: &str) -> Result<usize, Refusal> {

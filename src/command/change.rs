@@ -3,9 +3,11 @@
 
 use std::fmt;
 
+use serde::{Deserialize, Serialize};
+
 use crate::{
     base::{Pose, real::Twist},
-    scene::Object,
+    scene::{Object, Scene},
 };
 
 /// One change. Like a command it is a plain value: equal changes at equal ticks give equal bits.
@@ -27,6 +29,15 @@ pub enum Change {
         /// Pose of the flange in the world.
         pose: Pose,
     },
+    /// What the wrist sensor reads now is zero from here on.
+    ZeroForceSensor,
+    /// Changes a property of materials or pump.
+    Turn {
+        /// Which.
+        knob: Knob,
+        /// Its new value, SI.
+        value: f64,
+    },
     /// Adds an object. Its pose is that of its shape's origin.
     Insert(Box<Object>),
     /// Takes an object away.
@@ -44,6 +55,61 @@ impl fmt::Display for Change {
             Self::PlaceFlange { .. } => f.write_str("the gripper put elsewhere"),
             Self::Insert(object) => write!(f, "object `{}` added", object.name),
             Self::Remove { object } => write!(f, "object `{object}` taken away"),
+            Self::ZeroForceSensor => f.write_str("wrist sensor set to zero"),
+            Self::Turn { knob, value } => write!(f, "{knob:?} set to {value}"),
+        }
+    }
+}
+
+/// A property that may change while time goes on. New ones come last: recordings hold their places.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Knob {
+    /// Time constant of pump and line [s].
+    ChamberLag,
+    /// Largest rate of the pressure [Pa/s].
+    ChamberRateMax,
+    /// Dissipation time of contacts between grains [s].
+    GrainDissipationTime,
+    /// Friction between grains.
+    GrainFriction,
+    /// Friction of grains on the membrane.
+    MembraneFriction,
+    /// Friction of all objects on the membrane.
+    ObjectFriction,
+}
+
+impl Knob {
+    /// Its value in a scene, SI.
+    pub fn get(self, scene: &Scene) -> f64 {
+        match self {
+            Self::ChamberLag => scene.chamber.lag,
+            Self::ChamberRateMax => scene.chamber.rate_max,
+            Self::GrainDissipationTime => scene.grains.dissipation_time,
+            Self::GrainFriction => scene.grains.friction,
+            Self::MembraneFriction => scene.membrane.friction,
+            Self::ObjectFriction => scene.objects.first().map_or(0.0, |it| it.friction),
+        }
+    }
+
+    /// Changes a scene.
+    pub fn set(self, scene: &mut Scene, value: f64) {
+        match self {
+            Self::ChamberLag => scene.chamber.lag = value,
+            Self::ChamberRateMax => scene.chamber.rate_max = value,
+            Self::GrainDissipationTime => scene.grains.dissipation_time = value,
+            Self::GrainFriction => scene.grains.friction = value,
+            Self::MembraneFriction => scene.membrane.friction = value,
+            Self::ObjectFriction => scene.objects.iter_mut().for_each(|it| it.friction = value),
+        }
+    }
+
+    /// Smallest and largest sensible value, SI.
+    pub fn range(self) -> [f64; 2] {
+        match self {
+            Self::ChamberLag => [1e-3, 60.0],
+            Self::ChamberRateMax => [1e3, 1e8],
+            Self::GrainDissipationTime => [0.0, 1e-4],
+            Self::GrainFriction | Self::MembraneFriction | Self::ObjectFriction => [0.0, 5.0],
         }
     }
 }

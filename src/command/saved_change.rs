@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use super::change::{Change, Scope};
+use super::change::{Change, Knob, Scope};
 use crate::{
     base::{Real, Vec3, real::Twist},
     cosim::saved_state::{pose, pose_row},
@@ -28,6 +28,8 @@ enum Saved {
     PlaceFlange { pose: [Real; 7] },
     Insert(SavedObject),
     Remove { object: String },
+    ZeroForceSensor,
+    Turn { knob: Knob, value: Real },
 }
 
 #[derive(Serialize, Deserialize)]
@@ -66,6 +68,8 @@ impl Change {
             Self::PlaceFlange { pose } => Saved::PlaceFlange { pose: pose_row(pose) },
             Self::Insert(object) => Saved::Insert(saved_object(object)),
             Self::Remove { object } => Saved::Remove { object: object.clone() },
+            Self::ZeroForceSensor => Saved::ZeroForceSensor,
+            Self::Turn { knob, value } => Saved::Turn { knob: *knob, value: *value },
         };
         postcard::to_stdvec(&saved).expect("numbers and names always serialise")
     }
@@ -85,6 +89,8 @@ impl Change {
             Saved::PlaceFlange { pose: row } => Self::PlaceFlange { pose: pose(&row) },
             Saved::Insert(object) => Self::Insert(Box::new(read_object(object))),
             Saved::Remove { object } => Self::Remove { object },
+            Saved::ZeroForceSensor => Self::ZeroForceSensor,
+            Saved::Turn { knob, value } => Self::Turn { knob, value },
         })
     }
 }
@@ -182,11 +188,14 @@ mod tests {
         changes.push(Change::PlaceObject { object: name(), pose, twist });
         changes.push(Change::PlaceFlange { pose });
         changes.push(Change::Remove { object: name() });
+        changes.push(Change::ZeroForceSensor);
+        changes.push(Change::Turn { knob: Knob::ObjectFriction, value: 0.1 + 0.2 });
         changes.push(Change::Reset(Scope { time: true, state: false, spawned: true }));
         for change in changes {
             let bytes = change.to_bytes();
             assert_eq!(Change::from_bytes(&bytes), Ok(change.clone()));
-            assert!(Change::from_bytes(&bytes[..bytes.len() - 1]).is_err(), "{change}, cut off");
+            let cut = Change::from_bytes(&bytes[..bytes.len() - 1]);
+            assert!(cut.is_err(), "{change}, cut off");
         }
         assert!(Change::from_bytes(&[200]).is_err(), "a kind that there is not");
     }

@@ -1,13 +1,15 @@
 //! The doors to the outside that a scene asks for: recording, streams, ROS 2. A door whose feature
 //! was not built says so when it is asked for.
 
-use std::{path::Path, sync::Arc, time::Duration};
+#[cfg(feature = "bag")]
+use std::time::Duration;
+use std::{path::Path, sync::Arc};
 
 use super::{front::Front, launch::RunError, outlets::Outlets, progress::Progress};
 #[cfg(feature = "bag")]
-use crate::cosim::compile::PHYSICS_VERSION;
+use crate::{bag::recording::INPUTS, cosim::compile::PHYSICS_VERSION, scene::Shape};
 use crate::{
-    scene::{Controller, OnError, Scene, Shape},
+    scene::{Controller, OnError, Scene},
     sources::Source,
     wire::to_ros::Encoder,
 };
@@ -142,6 +144,9 @@ impl Doors<'_> {
             ("substep_s", format!("{:e}", self.substep_s)),
             ("machine", format!("{} {}", std::env::consts::OS, std::env::consts::ARCH)),
         ];
+        let inputs = self.encoder.topics().iter().filter(|it| it.is_input);
+        let inputs: Vec<&str> = inputs.map(|it| it.name.as_str()).collect();
+        facts.push((INPUTS, serde_json::json!(inputs).to_string()));
         facts.extend_from_slice(self.facts);
         let scene_text = crate::scene::to_yaml(self.scene);
         crate::bag::Subject { scene_text, scene_files: self.scene_files(), facts, format }
@@ -219,12 +224,13 @@ impl Doors<'_> {
                 ros::{RosNode, RosSink},
             },
             sources::ros::RosSource,
-            wire::topics::NODE,
+            wire::topics::full_name,
         };
 
         let reach = Reach::choose(&self.scene.outputs.ros, |name| std::env::var(name).ok());
         let reach = reach.map_err(|error| error.to_string())?;
-        let node = RosNode::join(&reach).map_err(|error| error.to_string())?;
+        let node = RosNode::join_as(&self.scene.outputs.ros.node, &reach);
+        let node = node.map_err(|error| error.to_string())?;
         let announced = Arc::new(Announced::default());
         let sink = RosSink::new(&node, self.encoder).map_err(|error| error.to_string())?;
         let sink = sink.announcing(&announced);
@@ -233,16 +239,24 @@ impl Doors<'_> {
         let delivery = Delivery::Latest { depth: 500 };
         outlets.fanout.add(Box::new(sink), delivery).map_err(|error| error.to_string())?;
         outside.sources.push(Box::new(source));
-        let (offers, asked) = asks::asked(NODE, None);
-        let channels = asks::channels(NODE, None);
+        let ros = &self.scene.outputs.ros;
+        let prefix = ros.interfaces_prefix.as_deref();
+        let (mut offers, asked) = asks::asked(&ros.node, prefix);
+        let mut channels = asks::channels(&ros.node, prefix);
+        offers.iter_mut().for_each(|it| it.name = full_name(ros, &it.name));
+        channels.iter_mut().for_each(|it| it.name = full_name(ros, &it.name));
         let bench = RosBench::open(&node, &offers, &channels, &announced);
         let bench = Box::new(bench.map_err(|error| error.to_string())?);
         let is_stopped = matches!(self.scene.controller, Controller::Topics { .. });
-        let distribution = std::env::var("ROS_DISTRO").unwrap_or_default();
+        let version = match self.scene.outputs.ros.interfaces_version {
+            Some(1) => Version::One,
+            Some(2) => Version::Two,
+            _ => Version::of_distribution(&std::env::var("ROS_DISTRO").unwrap_or_default()),
+        };
         let simulator = Simulator::new(self.scene, asked, is_stopped)
             .with_channels(channels.len())
             .beside(self.scene_file)
-            .speaking(Version::of_distribution(&distribution));
+            .speaking(version);
         outside.front = Some(Front::new(simulator, bench, announced));
         Ok(())
     }

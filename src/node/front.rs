@@ -72,6 +72,16 @@ impl Front {
         self.simulator.first_command();
     }
 
+    /// Stops time where it is.
+    pub fn pause(&mut self) {
+        self.simulator.pause();
+    }
+
+    /// True if a question has led to a command that sets a waiting run going.
+    pub fn has_commands(&self) -> bool {
+        self.simulator.has_commands()
+    }
+
     /// Commands that questions have led to.
     pub fn take_commands(&mut self) -> Vec<Command> {
         self.simulator.take_commands()

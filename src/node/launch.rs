@@ -8,6 +8,7 @@ use super::{
     doors::{Doors, Outside, Sizes},
     front::Front,
     judge::Judge,
+    lockstep::Gate,
     orders::Orders,
     outlets::Closed,
     pacer::Pacer,
@@ -21,7 +22,7 @@ use super::{
 use crate::{
     cosim::compile::Compiled,
     physics::health::Diverged,
-    scene::{Controller, Scene},
+    scene::{Controller, Lockstep, Scene},
     sinks::RunStatistics,
     wire::to_ros::Encoder,
 };
@@ -136,8 +137,11 @@ pub fn launch_with(
     let end_ns = end_ns(scene, options.duration);
     progress.running(end_ns);
     let (orders, front) = command(outside);
+    // A script has no commands but its own: nobody waits for others.
+    let gate = Gate::new(if front.is_some() { lockstep(scene) } else { Lockstep::OFF });
     let mut crew = Crew {
         orders,
+        gate,
         front,
         checkpoints: Vec::new(),
         outlets,
@@ -149,6 +153,7 @@ pub fn launch_with(
         end_ns,
         is_real_time: scene.outputs.real_time,
         n_packets: 0,
+        has_missed: false,
         about: RunStatistics { substep_s, seed: scene.seed, ..RunStatistics::default() },
     };
     let start_time_s = since_start.wall_time_s();
@@ -167,11 +172,19 @@ struct Beginning {
 /// The earlier of the scene's and the command line's end [ns].
 fn end_ns(scene: &Scene, duration: Option<f64>) -> Option<u64> {
     let of_scene = match scene.controller {
-        Controller::Topics { duration } => duration,
+        Controller::Topics { duration, .. } => duration,
         Controller::Builtin(_) => None,
     };
     let ends = duration.into_iter().chain(of_scene).map(Duration::from_secs_f64);
     ends.min().map(|end| u64::try_from(end.as_nanos()).unwrap_or(u64::MAX))
+}
+
+/// Whether ticks wait for commands.
+fn lockstep(scene: &Scene) -> Lockstep {
+    match scene.controller {
+        Controller::Topics { lockstep, .. } => lockstep,
+        Controller::Builtin(_) => Lockstep::OFF,
+    }
 }
 
 fn finish(

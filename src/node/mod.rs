@@ -5,11 +5,13 @@ mod doors; // recording, streams, ROS 2
 pub mod front; // the simulator at its bench
 pub mod judge; // what came of a run
 pub mod launch; // scene to a run
+pub mod lockstep; // ticks that wait for a controller
 pub mod orders; // who may command
 pub mod outlets; // where results go
 pub mod pacer; // the only clock
 pub mod plant; // what runs
 pub mod progress; // one line for the terminal
+pub mod ros_args; // what ROS 2 tools put on a command line
 pub mod schedule; // what is due when
 pub mod sealed; // files that are whole or not there
 pub mod shutdown; // Ctrl-C
@@ -21,6 +23,7 @@ use std::{fmt, mem, sync::Arc, time::Duration};
 use self::{
     front::Front,
     judge::Judge,
+    lockstep::{Gate, Missed},
     orders::Orders,
     outlets::Outlets,
     pacer::Pacer,
@@ -30,7 +33,6 @@ use self::{
     shutdown::Shutdown,
 };
 use crate::{
-    command::Command,
     simulator::World,
     sinks::{Packet, RunStatistics},
     snapshot::{Snapshot, checkpoint::Checkpoint},
@@ -52,6 +54,8 @@ pub enum Ending {
     RecordingFailed,
     /// A client of the simulator told it to quit.
     Quit,
+    /// In lockstep no command came in time, and the scene says to end then.
+    NoCommand,
 }
 
 impl fmt::Display for Ending {
@@ -62,6 +66,7 @@ impl fmt::Display for Ending {
             Self::Interrupted => "interrupted",
             Self::RecordingFailed => "recording failed",
             Self::Quit => "told to quit",
+            Self::NoCommand => "no command in time",
         })
     }
 }
@@ -70,6 +75,8 @@ impl fmt::Display for Ending {
 pub struct Crew {
     /// Who commands.
     pub orders: Orders,
+    /// Whether ticks wait for commands.
+    pub gate: Gate,
     /// Who may ask and change, if anybody.
     pub front: Option<Front>,
     /// Where results go.
@@ -94,6 +101,8 @@ pub struct Crew {
     pub n_packets: u64,
     /// What the next packet keeps besides.
     pub checkpoints: Vec<Checkpoint>,
+    /// True once a command was missed that the run cannot go on without.
+    pub has_missed: bool,
 }
 
 /// How a run went, as far as clocks and plant know.
@@ -120,12 +129,12 @@ pub fn run<P: Plant>(plant: &mut P, crew: &mut Crew) -> Report<P::Fault> {
             break Ok(ending);
         }
         seen = crew.attend(plant, seen); // questions between two ticks
+        crew.listen(&seen.snapshot); // outside to plain values
         if !crew.may_tick() {
             crew.stand_still(plant, &seen, &mut pacer);
             continue;
         }
-        let commands = crew.commands(&seen.snapshot); // outside to plain values
-        if let Err(fault) = plant.tick(&commands) {
+        if let Err(fault) = plant.tick(&crew.gate.pass()) {
             break Err(fault); // the core cannot go on, nobody can
         }
         let time_ns = seen.snapshot.time_ns + crew.tick_ns;
@@ -133,7 +142,7 @@ pub fn run<P: Plant>(plant: &mut P, crew: &mut Crew) -> Report<P::Fault> {
         let run_time_ns = crew.run_time_ns(&snapshot);
         crew.pace(&mut pacer, run_time_ns); // the only clock
         crew.keep(plant, crew.schedule.checkpoint(run_time_ns));
-        seen = crew.pack(snapshot, &pacer);
+        seen = Arc::new(crew.pack(snapshot, &pacer));
         crew.outlets.publish(&plant.view(&seen.snapshot), &seen); // never fails the run
         crew.ticked(&seen);
     };
@@ -155,13 +164,31 @@ impl Crew {
     }
 
     fn may_tick(&self) -> bool {
-        self.front.as_ref().map_or(!self.orders.is_waiting(), |it| it.simulator().may_tick())
+        match &self.front {
+            None => !self.orders.is_waiting() && self.gate.is_open(false),
+            Some(front) => {
+                let simulator = front.simulator();
+                simulator.may_tick() && self.gate.is_open(simulator.is_stepping())
+            }
+        }
+    }
+
+    /// Takes the commands that have come. While time stands still they wait where they came in,
+    /// where the oldest give way; a lockstep needs to see them.
+    fn listen(&mut self, seen: &Snapshot) {
+        let may_tick =
+            self.front.as_ref().map_or(!self.orders.is_waiting(), |it| it.simulator().may_tick());
+        if may_tick {
+            let mut commands = self.orders.drain(seen);
+            commands.extend(self.front.iter_mut().flat_map(Front::take_commands));
+            self.gate.offer(commands, seen.time_ns);
+        }
     }
 
     /// Answers questions, and shows what they have changed.
     fn attend<P: Plant>(&mut self, plant: &mut P, seen: Arc<Packet>) -> Arc<Packet> {
         let Some(front) = &mut self.front else { return seen };
-        if !self.orders.is_waiting() {
+        if !self.orders.is_waiting() || front.has_commands() {
             front.first_command();
         }
         let changed = {
@@ -187,17 +214,22 @@ impl Crew {
         if self.is_waiting() && pacer.is_due(WAITING_RATE) {
             self.outlets.publish(&plant.view(&seen.snapshot), seen);
         }
+        let patience = if self.gate.is_lockstep() { pacer::NAP } else { pacer::PAUSE };
         match &mut self.front {
-            Some(front) => front.wait(pacer::PAUSE),
+            Some(front) => front.wait(patience),
             None => pacer::pause(),
         }
         pacer.stand_still();
-    }
-
-    fn commands(&mut self, seen: &Snapshot) -> Vec<Command> {
-        let mut commands = self.orders.drain(seen);
-        commands.extend(self.front.iter_mut().flat_map(Front::take_commands));
-        commands
+        let is_playing = self.front.as_ref().is_none_or(|it| it.simulator().may_tick());
+        let missed = if is_playing { self.gate.miss(pacer.stood_s()) } else { None };
+        if let Some(missed) = missed {
+            self.progress.say(&format!("no command for {:.3} s of wall time", pacer.stood_s()));
+            match (missed, &mut self.front) {
+                (Missed::Ended, _) => self.has_missed = true,
+                (Missed::Paused, Some(front)) => front.pause(),
+                _ => {}
+            }
+        }
     }
 
     /// Steps that someone waits for are not paced.
@@ -238,6 +270,9 @@ impl Crew {
         if self.front.as_ref().is_some_and(|it| it.simulator().is_quitting()) {
             return Some(Ending::Quit);
         }
+        if self.has_missed {
+            return Some(Ending::NoCommand);
+        }
         if self.orders.is_done() {
             return Some(Ending::Finished);
         }
@@ -250,7 +285,7 @@ impl Crew {
     }
 
     /// Judges a snapshot, shows it, and adds statistics where they are due.
-    fn pack(&mut self, snapshot: Snapshot, pacer: &Pacer) -> Arc<Packet> {
+    fn pack(&mut self, snapshot: Snapshot, pacer: &Pacer) -> Packet {
         self.judge.look(&snapshot, Duration::from_nanos(self.tick_ns).as_secs_f64());
         let phase = self.orders.phase().map_or("", |phase| phase.name());
         self.progress.tick(&snapshot, phase, pacer);
@@ -263,7 +298,7 @@ impl Crew {
             sinks: self.outlets.counters(),
             ..self.about.clone()
         });
-        Arc::new(self.number(Packet::new(snapshot, run)))
+        self.number(Packet::new(snapshot, run))
     }
 }
 

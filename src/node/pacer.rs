@@ -18,6 +18,8 @@ pub struct Pacer {
     origin_ns: u64,
     /// When time last went on.
     last: Instant,
+    /// How long time has stood still.
+    stood: Duration,
     /// When something was last shown while time stood still.
     shown: Option<Instant>,
     is_real_time: bool,
@@ -36,8 +38,16 @@ impl Pacer {
     pub fn start_at(origin_ns: u64, is_real_time: bool) -> Self {
         let start = Instant::now();
         let marks = VecDeque::from([(start, origin_ns)]);
-        let time_ns = origin_ns;
-        Self { start, origin_ns, last: start, shown: None, is_real_time, time_ns, marks }
+        Self {
+            start,
+            origin_ns,
+            last: start,
+            stood: Duration::ZERO,
+            shown: None,
+            is_real_time,
+            time_ns: origin_ns,
+            marks,
+        }
     }
 
     /// Time stands still: the wall time since it last went on does not count.
@@ -47,6 +57,12 @@ impl Pacer {
         self.start += stood;
         self.marks.iter_mut().for_each(|(mark, _)| *mark += stood);
         self.last = now;
+        self.stood += stood;
+    }
+
+    /// Wall time for which time has stood still since it last went on [s].
+    pub fn stood_s(&self) -> f64 {
+        self.stood.as_secs_f64()
     }
 
     /// True `rate` times a second of wall time.
@@ -65,6 +81,7 @@ impl Pacer {
             thread::sleep(due.saturating_duration_since(Instant::now()));
         }
         self.last = Instant::now();
+        self.stood = Duration::ZERO;
         self.mark(self.last);
     }
 
@@ -193,6 +210,9 @@ pub fn wall_ns() -> u64 {
 
 /// How long the run waits for someone before it looks around.
 pub const PAUSE: Duration = Duration::from_millis(5);
+
+/// The same while a tick waits for a command.
+pub const NAP: Duration = Duration::from_micros(50);
 
 /// A short pause while the run waits for someone.
 pub fn pause() {

@@ -161,7 +161,9 @@ fn crew(outside: Vec<Box<dyn Source>>) -> Crew {
     Crew {
         front: None,
         checkpoints: Vec::new(),
+        gate: Gate::new(scene::Lockstep::OFF),
         n_packets: 0,
+        has_missed: false,
         orders: Orders::new(&scene, outside),
         outlets: Outlets::default(),
         schedule: Schedule::new(&scene.outputs, TICK_NS),

@@ -1,6 +1,9 @@
 //! Objects from files and texts that others name: scene files, whose object is taken, and URDF.
 
-use std::path::{Path, PathBuf};
+use std::{
+    path::{Path, PathBuf},
+    time::SystemTime,
+};
 
 use super::{Object, Scene, text, urdf};
 
@@ -79,6 +82,18 @@ pub fn files(folder: &Path, formats: &[&str]) -> Vec<PathBuf> {
     let mut files: Vec<PathBuf> = entries.map(|it| it.path()).filter(is_meant).collect();
     files.sort();
     files
+}
+
+/// Folders, and when something in them last changed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Shelf(Vec<(PathBuf, Option<SystemTime>)>);
+
+impl Shelf {
+    /// The folders as they are now.
+    pub fn of(folders: &[PathBuf]) -> Self {
+        let changed = |it: &PathBuf| std::fs::metadata(it).and_then(|it| it.modified()).ok();
+        Self(folders.iter().map(|it| (it.clone(), changed(it))).collect())
+    }
 }
 
 /// The object of a scene's text. It is lifted far above everything, because its own place does not

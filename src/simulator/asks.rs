@@ -5,6 +5,11 @@ use crate::{
     wire::messages::{
         ActionType, RosAction, RosService, ServiceType,
         action_msgs::srv::CancelGoal,
+        control_msgs::action::{GripperCommand, ParallelGripperCommand},
+        rcl_interfaces::srv::{
+            DescribeParameters, GetParameterTypes, GetParameters, ListParameters, SetParameters,
+            SetParametersAtomically,
+        },
         simulation_interfaces::{
             action::SimulateSteps,
             srv::{
@@ -15,6 +20,7 @@ use crate::{
                 StepSimulation,
             },
         },
+        std_srvs::srv::{SetBool, Trigger},
     },
 };
 
@@ -42,6 +48,14 @@ pub enum Ask {
     GetNamedPoseBounds,
     GetCurrentWorld,
     GetAvailableWorlds,
+    GripCommand,
+    ZeroForceSensor,
+    DescribeParameters,
+    GetParameters,
+    GetParameterTypes,
+    ListParameters,
+    SetParameters,
+    SetParametersAtomically,
 }
 
 /// What may be asked by an action.
@@ -49,6 +63,10 @@ pub enum Ask {
 pub enum Action {
     /// Many steps, with feedback.
     SimulateSteps,
+    /// `control_msgs/GripperCommand`.
+    Gripper,
+    /// `control_msgs/ParallelGripperCommand`.
+    ParallelGripper,
 }
 
 /// What a service is asked for.
@@ -65,7 +83,7 @@ pub enum Asked {
 }
 
 /// Name below the node, type.
-const ASKS: [(Ask, &str, ServiceType); 20] = [
+const ASKS: [(Ask, &str, ServiceType); 28] = [
     (Ask::GetSimulatorFeatures, "get_simulator_features", GetSimulatorFeatures::TYPE),
     (Ask::GetSimulationState, "get_simulation_state", GetSimulationState::TYPE),
     (Ask::SetSimulationState, "set_simulation_state", SetSimulationState::TYPE),
@@ -86,10 +104,21 @@ const ASKS: [(Ask, &str, ServiceType); 20] = [
     (Ask::GetNamedPoseBounds, "get_named_pose_bounds", GetNamedPoseBounds::TYPE),
     (Ask::GetCurrentWorld, "get_current_world", GetCurrentWorld::TYPE),
     (Ask::GetAvailableWorlds, "get_available_worlds", GetAvailableWorlds::TYPE),
+    (Ask::GripCommand, "grip_cmd", SetBool::TYPE),
+    (Ask::ZeroForceSensor, "zero_ftsensor", Trigger::TYPE),
+    (Ask::DescribeParameters, "describe_parameters", DescribeParameters::TYPE),
+    (Ask::GetParameters, "get_parameters", GetParameters::TYPE),
+    (Ask::GetParameterTypes, "get_parameter_types", GetParameterTypes::TYPE),
+    (Ask::ListParameters, "list_parameters", ListParameters::TYPE),
+    (Ask::SetParameters, "set_parameters", SetParameters::TYPE),
+    (Ask::SetParametersAtomically, "set_parameters_atomically", SetParametersAtomically::TYPE),
 ];
 
-const ACTIONS: [(Action, &str, ActionType); 1] =
-    [(Action::SimulateSteps, "simulate_steps", SimulateSteps::TYPE)];
+const ACTIONS: [(Action, &str, ActionType); 3] = [
+    (Action::SimulateSteps, "simulate_steps", SimulateSteps::TYPE),
+    (Action::Gripper, "gripper_cmd", GripperCommand::TYPE),
+    (Action::ParallelGripper, "parallel_gripper_cmd", ParallelGripperCommand::TYPE),
+];
 
 impl Asked {
     /// For messages to people.
@@ -112,7 +141,10 @@ pub fn asked(node: &str, prefix: Option<&str>) -> (Vec<Offer>, Vec<Asked>) {
         asked.push(what);
     };
     for place in std::iter::once(node).chain(prefix) {
-        for (ask, name, service_type) in ASKS {
+        let is_standard = |service_type: &ServiceType| {
+            place == node || service_type.name.starts_with("simulation_interfaces/")
+        };
+        for (ask, name, service_type) in ASKS.into_iter().filter(|it| is_standard(&it.2)) {
             offer(format!("{place}/{name}"), service_type, Asked::Service(ask));
         }
         for (action, name, of) in ACTIONS {

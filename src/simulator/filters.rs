@@ -8,7 +8,9 @@ use crate::wire::messages::simulation_interfaces::{
 };
 
 /// Memory that a name filter may take when compiled; matching takes linear time in any case.
-const REGEX_BYTES_MAX: usize = 1 << 20;
+const REGEX_BYTES_MAX: usize = 1 << 18;
+/// Characters that a name filter may have.
+const FILTER_MAX: usize = 1000;
 
 impl Simulator {
     /// The entities that pass, in their order.
@@ -20,6 +22,10 @@ impl Simulator {
         entities: Vec<Entity>,
         filters: &EntityFilters,
     ) -> Result<Vec<Entity>, Told> {
+        if FILTER_MAX < filters.filter.len() {
+            let why = format!("the name filter has more than {FILTER_MAX} characters");
+            return Err(failed(Told::RESULT_OPERATION_FAILED, why));
+        }
         let name = RegexBuilder::new(&filters.filter).size_limit(REGEX_BYTES_MAX).build();
         let name = name.map_err(|error| {
             let why = format!("filter `{}` is no regular expression: {error}", filters.filter);

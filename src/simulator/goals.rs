@@ -12,15 +12,17 @@ use crate::{
     services::{Asker, Outgoing},
     snapshot::Snapshot,
     wire::{
-        actions::{
-            FeedbackMessage, GetResultRequest, GetResultResponse, SendGoalRequest, SendGoalResponse,
-        },
+        actions::{GetResultRequest, GetResultResponse, SendGoalRequest, SendGoalResponse},
         cdr::Cdr,
         messages::{
             action_msgs::{
                 CancelGoalRequest, CancelGoalResponse, GoalInfo, GoalStatus, GoalStatusArray,
             },
             builtin_interfaces::Time,
+            control_msgs::{
+                GripperCommandGoal, GripperCommandResult, ParallelGripperCommandGoal,
+                ParallelGripperCommandResult,
+            },
             simulation_interfaces::{
                 Result as Told, SimulateStepsFeedback, SimulateStepsGoal, SimulateStepsResult,
             },
@@ -72,6 +74,18 @@ impl Simulator {
     ) -> Result<Cdr, Unreadable> {
         let stamp = stamp(seen.time_ns);
         let (id, begun) = match action {
+            Action::Gripper => {
+                let request: SendGoalRequest<GripperCommandGoal> = body.read()?;
+                let id = request.goal_id.uuid;
+                let is_new = self.goals.find(id).is_none();
+                (id, is_new && self.begin_grip(id, &request.goal, seen))
+            }
+            Action::ParallelGripper => {
+                let request: SendGoalRequest<ParallelGripperCommandGoal> = body.read()?;
+                let id = request.goal_id.uuid;
+                let is_new = self.goals.find(id).is_none();
+                (id, is_new && self.begin_parallel_grip(id, &request.goal, seen))
+            }
             Action::SimulateSteps => {
                 let request: SendGoalRequest<SimulateStepsGoal> = body.read()?;
                 let id = request.goal_id.uuid;
@@ -85,10 +99,7 @@ impl Simulator {
                 Goal { id, action, stamp: stamp.clone(), status, result: None, waiting: vec![] };
             self.goals.add(goal);
             self.tell_status(action);
-            if matches!(
-                body.read(),
-                Ok(SendGoalRequest { goal: SimulateStepsGoal { steps: 0 }, .. })
-            ) {
+            if action == Action::SimulateSteps && !self.running.is_stepping() {
                 self.goal_stepped(id, 0, 0);
             }
         }
@@ -112,7 +123,12 @@ impl Simulator {
         Ok(goal.result.clone())
     }
 
-    pub(super) fn cancel_goals(&mut self, action: Action, body: &Cdr) -> Result<Cdr, Unreadable> {
+    pub(super) fn cancel_goals(
+        &mut self,
+        action: Action,
+        body: &Cdr,
+        seen: &Snapshot,
+    ) -> Result<Cdr, Unreadable> {
         let CancelGoalRequest { goal_info } = body.read()?;
         let ids = match self.goals.to_cancel(action, &goal_info) {
             Ok(ids) => ids,
@@ -126,6 +142,7 @@ impl Simulator {
                 let goal_id = UUID { uuid: id };
                 goals_canceling.push(GoalInfo { goal_id, stamp: goal.stamp.clone() });
             }
+            self.cancel_grip(id, seen);
             if let Some((done, left)) = self.cancel_steps(id) {
                 let why = format!("cancelled after {done} steps, {left} were left");
                 let result = failed(Told::RESULT_OPERATION_FAILED, why);
@@ -141,8 +158,7 @@ impl Simulator {
     pub(super) fn goal_stepped(&mut self, id: GoalId, done: u64, left: u64) {
         if done <= 1 || left == 0 || done.is_multiple_of(FEEDBACK_EVERY) {
             let feedback = SimulateStepsFeedback { completed_steps: done, remaining_steps: left };
-            let message = FeedbackMessage { goal_id: UUID { uuid: id }, feedback };
-            self.tell(Action::SimulateSteps, 0, &Cdr::of(&message));
+            self.tell_feedback(Action::SimulateSteps, id, &Cdr::of(&feedback));
         }
         if left == 0 {
             let result = SimulateStepsResult { result: ok() };
@@ -165,6 +181,13 @@ impl Simulator {
         self.tell_status(action);
         let answers = waiting.into_iter().map(|asker| Outgoing::Answer(asker, answer.clone()));
         self.out.extend(answers);
+    }
+
+    /// Publishes how far a goal is. Its id comes first, sixteen bytes, so that what follows is
+    /// aligned as if it stood alone.
+    pub(super) fn tell_feedback(&mut self, action: Action, goal: GoalId, feedback: &Cdr) {
+        let bytes = [&goal[..], &feedback.bytes].concat();
+        self.tell(action, 0, &Cdr { bytes, is_big_endian: false });
     }
 
     fn tell_status(&mut self, action: Action) {
@@ -228,6 +251,14 @@ impl Goal {
 /// What those are told who wait for a goal that is not there.
 fn unknown_goal(action: Action) -> Cdr {
     match action {
+        Action::Gripper => Cdr::of(&GetResultResponse {
+            status: GoalStatus::STATUS_UNKNOWN,
+            result: GripperCommandResult::default(),
+        }),
+        Action::ParallelGripper => Cdr::of(&GetResultResponse {
+            status: GoalStatus::STATUS_UNKNOWN,
+            result: ParallelGripperCommandResult::default(),
+        }),
         Action::SimulateSteps => Cdr::of(&GetResultResponse {
             status: GoalStatus::STATUS_UNKNOWN,
             result: SimulateStepsResult { result: failed(Told::RESULT_NOT_FOUND, "no such goal") },

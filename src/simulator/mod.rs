@@ -14,6 +14,8 @@ mod bounds; // how far things reach
 mod entities; // what is there
 mod filters; // which of it is meant
 mod goals; // actions
+mod gripper; // as drivers of vacuum grippers know theirs
+mod parameters; // as ROS 2 tools know them
 mod places; // places with names, and other scenes
 mod running; // states, steps, resets
 mod spawning; // objects in and out
@@ -27,7 +29,7 @@ use std::{
 pub use asks::{Ask, Asked, asked};
 use serde::{Serialize, de::DeserializeOwned};
 
-use self::{goals::Goals, running::Running, tags::Register};
+use self::{goals::Goals, gripper::Grip, running::Running, tags::Register};
 use crate::{
     base::real::Twist,
     command::{
@@ -35,10 +37,13 @@ use crate::{
         change::{Change, ChangeRefused},
     },
     physics::boundary::shape::Aabb,
-    scene::Scene,
+    scene::{Scene, resource::Shelf},
     services::{Asker, Call, Outgoing},
     snapshot::Snapshot,
-    wire::{cdr::Cdr, messages::simulation_interfaces::Result as Told},
+    wire::{
+        cdr::Cdr,
+        messages::simulation_interfaces::{Result as Told, Spawnable, WorldResource},
+    },
 };
 
 /// What can be looked at and changed between two ticks.
@@ -94,6 +99,11 @@ pub struct Simulator {
     running: Running,
     register: Register,
     goals: Goals,
+    grip: Option<Grip>,
+    /// Lists that were made, and of what.
+    spawnables: Option<(Shelf, Vec<Spawnable>)>,
+    worlds: Option<(Shelf, Vec<WorldResource>)>,
+    is_monotonic: bool,
     /// Velocities at the ends of the last two ticks, with their times [ns].
     twists: [(u64, Vec<(String, Twist)>); 2],
     out: Vec<Outgoing>,
@@ -119,6 +129,10 @@ impl Simulator {
             running: Running::new(is_stopped),
             register: Register::new(scene),
             goals: Goals::default(),
+            grip: None,
+            spawnables: None,
+            worlds: None,
+            is_monotonic: scene.outputs.ros.monotonic_clock,
             twists: Default::default(),
             out: Vec::new(),
             commands: Vec::new(),
@@ -164,7 +178,9 @@ impl Simulator {
         let ask = match asked {
             Asked::Service(ask) => ask,
             Asked::SendGoal(action) => return self.send_goal(action, body, world.seen).map(Some),
-            Asked::CancelGoal(action) => return self.cancel_goals(action, body).map(Some),
+            Asked::CancelGoal(action) => {
+                return self.cancel_goals(action, body, world.seen).map(Some);
+            }
             Asked::GetResult(action) => return self.get_result(action, body, asker),
         };
         let answer = match ask {
@@ -191,6 +207,16 @@ impl Simulator {
             Ask::GetNamedPoseBounds => reply(body, |it| self.get_named_pose_bounds(&it))?,
             Ask::GetCurrentWorld => Cdr::of(&self.get_current_world(world)),
             Ask::GetAvailableWorlds => reply(body, |it| self.get_available_worlds(&it))?,
+            Ask::GripCommand => reply(body, |it| self.grip_command(&it))?,
+            Ask::DescribeParameters => reply(body, |it| self.describe_parameters(&it))?,
+            Ask::GetParameters => reply(body, |it| self.get_parameters(&it))?,
+            Ask::GetParameterTypes => reply(body, |it| self.get_parameter_types(&it))?,
+            Ask::ListParameters => reply(body, |it| self.list_parameters(&it))?,
+            Ask::SetParameters => reply(body, |it| self.set_parameters(&it, world))?,
+            Ask::SetParametersAtomically => {
+                reply(body, |it| self.set_parameters_atomically(&it, world))?
+            }
+            Ask::ZeroForceSensor => Cdr::of(&self.zero_force_sensor(world)),
         };
         Ok(Some(answer))
     }
@@ -225,6 +251,17 @@ impl Simulator {
         self.twists.swap(0, 1);
         self.twists[1] = (seen.time_ns, entities::twists(seen));
         self.steps_ticked();
+        self.grip_ticked(seen);
+    }
+
+    /// Stops time where it is.
+    pub fn pause(&mut self) {
+        self.running.pause();
+    }
+
+    /// True if there are some.
+    pub fn has_commands(&self) -> bool {
+        !self.commands.is_empty()
     }
 
     /// Commands that questions have led to.

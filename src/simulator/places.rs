@@ -4,7 +4,10 @@ use super::{Simulator, Version, World, bounds, entities::told_pose, failed, ok};
 use crate::{
     base::{Pose, Vec3},
     physics::boundary::shape::Aabb,
-    scene::{self, Scene, resource},
+    scene::{
+        self, Scene,
+        resource::{self, Shelf},
+    },
     wire::messages::simulation_interfaces::{
         Bounds, GetAvailableWorldsRequest, GetAvailableWorldsResponse, GetCurrentWorldResponse,
         GetNamedPoseBoundsRequest, GetNamedPoseBoundsResponse, GetNamedPosesRequest,
@@ -82,7 +85,7 @@ impl Simulator {
     }
 
     pub(super) fn get_available_worlds(
-        &self,
+        &mut self,
         request: &GetAvailableWorldsRequest,
     ) -> GetAvailableWorldsResponse {
         let mut folders = vec![self.folder.clone()];
@@ -97,13 +100,19 @@ impl Simulator {
                 }
             }
         }
-        let files = folders.iter().flat_map(|folder| resource::files(folder, &["yaml"]));
-        let worlds = files.filter_map(|file| {
-            let scene = scene::load(&file, &[]).ok()?;
-            let world = world_of(&scene, format!("file://{}", file.display()));
-            has_tags(&world.tags, &request.filter).then_some(world)
-        });
-        GetAvailableWorldsResponse { result: ok(), worlds: worlds.collect() }
+        // Reading them all takes a while: a list is made again only if a folder has changed.
+        let shelf = Shelf::of(&folders);
+        if self.worlds.as_ref().is_none_or(|it| it.0 != shelf) {
+            let files = folders.iter().flat_map(|folder| resource::files(folder, &["yaml"]));
+            let worlds = files.filter_map(|file| {
+                let scene = scene::load(&file, &[]).ok()?;
+                Some(world_of(&scene, format!("file://{}", file.display())))
+            });
+            self.worlds = Some((shelf, worlds.collect()));
+        }
+        let worlds = self.worlds.iter().flat_map(|it| &it.1);
+        let worlds = worlds.filter(|it| has_tags(&it.tags, &request.filter)).cloned().collect();
+        GetAvailableWorldsResponse { result: ok(), worlds }
     }
 }
 

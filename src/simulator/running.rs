@@ -85,6 +85,10 @@ impl Running {
         self.state == SimulationState::STATE_PLAYING || self.stepping.is_some()
     }
 
+    pub(super) fn pause(&mut self) {
+        self.state = SimulationState::STATE_PAUSED;
+    }
+
     pub(super) fn is_stepping(&self) -> bool {
         self.stepping.is_some()
     }
@@ -117,7 +121,8 @@ impl Running {
 
 impl Simulator {
     pub(super) fn features(&self) -> GetSimulatorFeaturesResponse {
-        let features: Vec<u16> = FEATURES.map(u16::from).to_vec();
+        let is_there = |it: &u8| !self.is_monotonic || *it != F::SIMULATION_RESET_TIME;
+        let features = FEATURES.into_iter().filter(is_there).map(u16::from).collect();
         let custom_info = format!(
             "jamgrip {}; ticks of {} ns",
             env!("CARGO_PKG_VERSION"),
@@ -156,7 +161,7 @@ impl Simulator {
             S::STATE_PLAYING | S::STATE_PAUSED => {}
             S::STATE_STOPPED | S::STATE_QUITTING => {
                 self.end_steps("the simulation was stopped");
-                let reset = Change::Reset(Scope::ALL);
+                let reset = Change::Reset(Scope { time: !self.is_monotonic, ..Scope::ALL });
                 if target == S::STATE_STOPPED
                     && let Err(error) = self.change(&reset, world)
                 {
@@ -185,6 +190,12 @@ impl Simulator {
         let has = |bit: u8| request.scope & bit != 0;
         let scope = match request.scope {
             R::SCOPE_DEFAULT | R::SCOPE_ALL => Scope::ALL,
+            R::SCOPE_TIME if self.is_monotonic => {
+                let why = "outputs.ros.monotonic_clock is true: time never goes back";
+                return ResetSimulationResponse {
+                    result: failed(Told::RESULT_FEATURE_UNSUPPORTED, why),
+                };
+            }
             scope if scope & !known == 0 => Scope {
                 time: has(R::SCOPE_TIME),
                 state: has(R::SCOPE_STATE),
@@ -201,6 +212,7 @@ impl Simulator {
             let why = "steps are being made: wait for them, cancel them, or stop";
             return ResetSimulationResponse { result: failed(Told::RESULT_INCORRECT_STATE, why) };
         }
+        let scope = Scope { time: scope.time && !self.is_monotonic, ..scope };
         let result = match self.change(&Change::Reset(scope), world) {
             Ok(()) => {
                 if scope.spawned {

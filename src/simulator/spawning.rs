@@ -13,7 +13,7 @@ use crate::{
     cosim::compile::body,
     scene::{
         Object,
-        resource::{self, ResourceFault},
+        resource::{self, ResourceFault, Shelf},
     },
     wire::{
         cdr::Cdr,
@@ -178,7 +178,7 @@ impl Simulator {
     }
 
     /// The list in the wire format that clients of this version read.
-    pub(super) fn get_spawnables(&self, request: &GetSpawnablesRequest) -> Cdr {
+    pub(super) fn get_spawnables(&mut self, request: &GetSpawnablesRequest) -> Cdr {
         let answer = self.spawnables(request);
         match self.version {
             Version::Two => Cdr::of(&answer),
@@ -193,7 +193,7 @@ impl Simulator {
         }
     }
 
-    fn spawnables(&self, request: &GetSpawnablesRequest) -> GetSpawnablesResponse {
+    fn spawnables(&mut self, request: &GetSpawnablesRequest) -> GetSpawnablesResponse {
         let mut folders = vec![self.folder.clone()];
         for source in &request.sources {
             match resource::path(source, &self.folder).filter(|it| it.is_dir()) {
@@ -205,6 +205,11 @@ impl Simulator {
                 }
             }
         }
+        // Reading them all takes a while: a list is made again only if a folder has changed.
+        let shelf = Shelf::of(&folders);
+        if let Some((_, spawnables)) = self.spawnables.as_ref().filter(|it| it.0 == shelf) {
+            return GetSpawnablesResponse { result: ok(), spawnables: spawnables.clone() };
+        }
         let files = folders.iter().flat_map(|folder| resource::files(folder, &resource::FORMATS));
         let spawnables = files.take(FILES_MAX).filter_map(|file| {
             let uri = format!("file://{}", file.display());
@@ -215,7 +220,9 @@ impl Simulator {
                 spawn_bounds: bounds::told(&bounds::extent(&self.scene, &object)),
             })
         });
-        GetSpawnablesResponse { result: ok(), spawnables: spawnables.collect() }
+        let spawnables: Vec<Spawnable> = spawnables.collect();
+        self.spawnables = Some((shelf, spawnables.clone()));
+        GetSpawnablesResponse { result: ok(), spawnables }
     }
 }
 

@@ -33,9 +33,6 @@ use crate::wire::{
     topics::{Common, Message, Qos, Topic, common},
 };
 
-/// Name of the node, in the root namespace.
-pub const NODE_NAME: &str = "jamgrip";
-
 /// What of the middleware's own log is worth a line, as a filter for `env_logger`: it warns about
 /// every larger datagram, and reports an error when it leaves a multicast group that a loopback
 /// interface never had.
@@ -49,7 +46,7 @@ pub enum RosError {
     Off,
     /// The node could not be made.
     #[error(
-        "node /{NODE_NAME} could not join ROS 2 domain {domain_id}: {reason}; is there a network \
+        "the node could not join ROS 2 domain {domain_id}: {reason}; is there a network \
          interface, and are there fewer than 120 participants in this domain? --no-ros runs without"
     )]
     Join {
@@ -122,10 +119,10 @@ impl RosNode {
     /// # Errors
     /// When discovery is off, or there is no socket to be had.
     pub fn join(reach: &Reach) -> Result<Arc<Self>, RosError> {
-        Self::join_as(NODE_NAME, reach)
+        Self::join_as("/jamgrip", reach)
     }
 
-    /// Joins under another name: for controllers and tests.
+    /// Joins under another name, with or without a namespace.
     ///
     /// # Errors
     /// As for `join`.
@@ -142,7 +139,9 @@ impl RosNode {
         };
         let participant = builder.build().map_err(|it| refused(&it))?;
         let context = Context::from_domain_participant(participant).map_err(|it| refused(&it))?;
-        let name = NodeName::new("/", name).map_err(|it| refused(&format!("{it:?}")))?;
+        let (namespace, name) = name.rsplit_once('/').unwrap_or(("", name));
+        let namespace = if namespace.is_empty() { "/" } else { namespace };
+        let name = NodeName::new(namespace, name).map_err(|it| refused(&format!("{it:?}")))?;
         let options = NodeOptions::new().enable_rosout(true).start_parameter_services(false);
         let node = context.new_node(name, options).map_err(|it| refused(&format!("{it:?}")))?;
         Ok(Arc::new(Self { node: Mutex::new(node), context }))
@@ -289,6 +288,9 @@ impl Sink for RosSink {
     fn write(&mut self, packet: &Packet) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
         let messages = packet.messages(&self.encoder);
         let sent = self.send(messages);
+        if self.clock.is_none() {
+            self.send(&self.encoder.ready(packet.snapshot.time_ns))?;
+        }
         self.announced.note(packet.number);
         self.clock = messages.iter().find(|it| it.topic == common(Common::Clock)).cloned();
         sent.map_err(Into::into)

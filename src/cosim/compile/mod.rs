@@ -224,6 +224,18 @@ pub fn body(scene: &Scene, object: &Object) -> Result<(BodyModel, Bulk), Compile
     Ok((model, bulk))
 }
 
+/// Takes materials and pump from `scene` again; shapes and steps stay.
+pub fn retune(scene: &Scene, model: &mut Model) {
+    let laws = Laws::new(scene);
+    (model.grain_law, model.membrane_law) = (laws.grain, laws.membrane);
+    model.walls[FLANGE].law = laws.plate;
+    model.chamber = ChamberModel::new(&scene.chamber, model.substep);
+    for (object, body) in scene.objects.iter().zip(&mut model.bodies) {
+        let on_object = law::Surface::of_membrane(&scene.membrane, object.friction);
+        body.law = PairLaw::between(&scene.membrane.material, &object.material, on_object);
+    }
+}
+
 /// The longest stable substep of `scene` with an object that was not there when it was compiled [s].
 pub fn critical_step_with(scene: &Scene, model: &Model, body: &BodyModel) -> Real {
     critical_step(scene, &model.membrane, &Laws::new(scene), std::slice::from_ref(body))
