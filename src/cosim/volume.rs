@@ -57,9 +57,10 @@ impl Volume {
             Self::Hull { points } => {
                 let points: Vec<Vector> =
                     points.iter().map(|p| Vector::new(p.x, p.y, p.z)).collect();
-                let hull = ConvexPolyhedron::from_convex_hull(&points).ok_or(
-                    "these points span no convex hull: give at least four that are not flat",
-                )?;
+                // Flat ones may pass as a hull without a volume.
+                let hull = ConvexPolyhedron::from_convex_hull(&points)
+                    .filter(|hull| hull.mass_properties(1.0).mass() > 0.0)
+                    .ok_or("these points span no convex hull: give at least four that are not flat")?;
                 (Box::new(hull), Pose::identity().into())
             }
         })

@@ -129,8 +129,8 @@ pub fn run<P: Plant>(plant: &mut P, crew: &mut Crew) -> Report<P::Fault> {
             break Ok(ending);
         }
         seen = crew.attend(plant, seen); // questions between two ticks
-        crew.listen(&seen.snapshot); // outside to plain values
-        if !crew.may_tick() {
+        // Outside to plain values.
+        if !crew.listen(&seen.snapshot) {
             crew.stand_still(plant, &seen, &mut pacer);
             continue;
         }
@@ -163,26 +163,20 @@ impl Crew {
         self.front.as_ref().map_or(self.orders.is_waiting(), |it| it.simulator().is_waiting())
     }
 
-    fn may_tick(&self) -> bool {
-        match &self.front {
-            None => !self.orders.is_waiting() && self.gate.is_open(false),
-            Some(front) => {
-                let simulator = front.simulator();
-                simulator.may_tick() && self.gate.is_open(simulator.is_stepping())
-            }
-        }
-    }
-
-    /// Takes the commands that have come. While time stands still they wait where they came in,
-    /// where the oldest give way; a lockstep needs to see them.
-    fn listen(&mut self, seen: &Snapshot) {
-        let may_tick =
-            self.front.as_ref().map_or(!self.orders.is_waiting(), |it| it.simulator().may_tick());
-        if may_tick {
+    /// Takes the commands that have come; true if the next tick may begin. While time stands still
+    /// they wait where they came in, where the oldest give way; a lockstep needs to see them.
+    fn listen(&mut self, seen: &Snapshot) -> bool {
+        // Asked once: a first command that comes right after is for the next look.
+        let (is_playing, is_stepping) = match &self.front {
+            None => (!self.orders.is_waiting(), false),
+            Some(front) => (front.simulator().may_tick(), front.simulator().is_stepping()),
+        };
+        if is_playing {
             let mut commands = self.orders.drain(seen);
             commands.extend(self.front.iter_mut().flat_map(Front::take_commands));
             self.gate.offer(commands, seen.time_ns);
         }
+        is_playing && self.gate.is_open(is_stepping)
     }
 
     /// Answers questions, and shows what they have changed.
