@@ -81,10 +81,6 @@ pub(crate) struct Replay {
     /// Takes cues from standard input while it plays
     #[arg(long, conflicts_with_all = ["verify", "from"])]
     pub(crate) cues: bool,
-    /// With --verify, computes so many numbers at once at most: 1, 4 or 8; the result is the same
-    /// [default: as many as the processor can]
-    #[arg(long, value_name = "N", requires = "verify", value_parser = ["1", "4", "8"])]
-    pub(crate) lanes: Option<String>,
     /// With --verify, fills the bag again from scene and seed too, in place of the recorded start
     #[arg(long, requires = "verify", conflicts_with = "start")]
     pub(crate) settle: bool,

@@ -20,4 +20,4 @@ pub mod node; // the running thing
 #[cfg(feature = "bag")]
 pub mod replay; // recordings, run again
 pub mod lab; // runs experiments: threads, files, reports
-pub mod bench; // how fast it is
+pub mod benchmarks; // how fast it is

@@ -17,7 +17,8 @@ use std::{
 use clap::Parser;
 use cli::{Action, Cli};
 use jamgrip::{
-    bench::BenchError,
+    base::lanes,
+    benchmarks::BenchError,
     lab::fault::LabError,
     node::{
         cache::Cache,
@@ -37,6 +38,9 @@ const WRONG: u8 = 2;
 fn main() -> ExitCode {
     let cli = Cli::parse();
     env_logger::Builder::from_env(env_logger::Env::default().default_filter_or(LOG_FILTER)).init();
+    if let Some(width) = cli.lanes {
+        lanes::limit(width);
+    }
     let outcome = match cli.action {
         Action::Run(args) => run(&args),
         #[cfg(feature = "bag")]
@@ -47,6 +51,8 @@ fn main() -> ExitCode {
         Action::Experiment(args) => trials::experiment(&args),
         Action::Validate(args) => trials::validate(&args),
         Action::Bench(args) => timing::bench(&args),
+        #[cfg(all(feature = "ros", feature = "shm"))]
+        Action::BenchListener { prefix, seconds } => timing::listen(&prefix, seconds),
         Action::Report { from, to } => trials::report(&from, &to),
     };
     outcome.unwrap_or_else(|error| {

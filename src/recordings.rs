@@ -11,7 +11,6 @@ use std::{
 
 use jamgrip::{
     bag::{check, info::Info, recover},
-    base::lanes::{self, Width},
     lab::bag_page,
     node::{
         cache::Cache,
@@ -76,11 +75,6 @@ pub(crate) fn run_by(
 fn verify(args: &Replay) -> Result<ExitCode, Box<dyn Error>> {
     let shutdown = Shutdown::listen()?;
     let progress = Progress::new(args.json);
-    match args.lanes.as_deref() {
-        Some("1") => lanes::limit(Width::One),
-        Some("4") => lanes::limit(Width::Four),
-        _ => {}
-    }
     let again = Again::open(&args.bag)?;
     let verdict = verify::verify(
         &again,

@@ -7,11 +7,14 @@ use std::{
 };
 
 use jamgrip::{
-    bench::{self, CASES, Options},
+    benchmarks::{self, CASES, Options, sheet},
     node::cache::Cache,
 };
 
 use crate::cli::Bench;
+
+/// A case is not worth measuring, or could not run.
+const FAILED: u8 = 1;
 
 pub(crate) fn bench(args: &Bench) -> Result<ExitCode, Box<dyn Error>> {
     let mut stdout = io::stdout().lock();
@@ -25,21 +28,41 @@ pub(crate) fn bench(args: &Bench) -> Result<ExitCode, Box<dyn Error>> {
         n_threads: args.n_threads(),
         seconds: args.seconds,
         cache: args.cache.clone().map_or_else(Cache::of_user, Cache::new),
+        with_peers: args.peers,
         is_quiet: args.json,
     };
-    let cases = bench::chosen(&args.cases)?;
-    let mut lines = Vec::new();
+    let cases = benchmarks::chosen(&args.cases)?;
+    let (mut lines, mut has_failed) = (Vec::new(), false);
     for case in cases {
-        let figures = bench::run(case, &options)?;
+        let figures = match benchmarks::run(case, &options) {
+            Ok(figures) => figures,
+            Err(error) => {
+                // The others can be measured all the same.
+                writeln!(io::stderr().lock(), "{error}")?;
+                has_failed = true;
+                continue;
+            }
+        };
         if args.json {
             lines.push(serde_json::to_string(&figures)?);
         } else {
             write!(stdout, "{}", figures.to_text())?;
             stdout.flush()?;
         }
+        if let Some(out) = &args.out {
+            // Row by row: an interrupted evening keeps what was measured.
+            sheet::add(out, &[figures])?;
+        }
     }
     if args.json {
         writeln!(stdout, "[\n{}\n]", lines.join(",\n"))?;
     }
+    Ok(if has_failed { ExitCode::from(FAILED) } else { ExitCode::SUCCESS })
+}
+
+#[cfg(all(feature = "ros", feature = "shm"))]
+pub(crate) fn listen(prefix: &str, seconds: f64) -> Result<ExitCode, Box<dyn Error>> {
+    let heard = benchmarks::listen(prefix, seconds).map_err(|error| error.to_string())?;
+    writeln!(io::stdout().lock(), "{heard}")?;
     Ok(ExitCode::SUCCESS)
 }

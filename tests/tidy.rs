@@ -62,7 +62,7 @@ const DOORS: &[(&str, &[&str])] = &[
     ("comfy_table", &["node/summary.rs", "lab/table.rs"]),
     ("plotters", &["lab/plot.rs", "lab/axis.rs"]),
     ("maud", &["lab/report.rs", "lab/bag_page.rs"]),
-    ("csv", &["lab/folder.rs"]),
+    ("csv", &["lab/folder.rs", "benchmarks/sheet.rs"]),
     ("ctrlc", &["node/shutdown.rs", "node/launch.rs"]),
     ("clap", &["src/cli.rs", "src/cli_bags.rs", "src/main.rs"]),
 ];
@@ -105,7 +105,7 @@ fn foreign_crates_enter_by_their_doors() {
 #[test]
 fn every_file_opens_with_a_doc_line_and_stays_short() {
     let mut faults = Vec::new();
-    for file in ["src", "tests", "examples"].into_iter().flat_map(rust_files) {
+    for file in ["src", "tests", "benches", "examples"].into_iter().flat_map(rust_files) {
         let (text, place) = (read(&file), file.display());
         if !text.starts_with("//!") {
             faults.push(format!("{place}: first line must be `//! one idea`"));
@@ -181,9 +181,10 @@ fn paths_in_the_docs_exist() {
     for doc in ["README.md", "ARCHITECTURE.md", "bags/README.md"] {
         let Ok(text) = fs::read_to_string(doc) else { continue };
         for word in text.split('`').skip(1).step_by(2) {
-            let is_ours = ["src/", "tests/", "launch_configs/", "msgs/", "examples/", "bags/"]
-                .iter()
-                .any(|folder| word.starts_with(folder));
+            let is_ours =
+                ["src/", "tests/", "benches/", "launch_configs/", "msgs/", "examples/", "bags/"]
+                    .iter()
+                    .any(|folder| word.starts_with(folder));
             if is_ours && !word.contains([' ', '<', '*']) && !Path::new(word).exists() {
                 faults.push(format!("{doc}: `{word}` does not exist"));
             }

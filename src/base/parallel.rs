@@ -281,6 +281,19 @@ pub fn for_each<T: Send>(out: &mut [T], write: impl Fn(usize, &mut T) + Sync) {
 /// Parts of this many elements keep the widest registers full.
 pub const PART: usize = 64;
 
+/// `write(start, part of out)` for parts that cover a slice; they begin at multiples of `PART`.
+pub fn for_parts<T: Send>(out: &mut [T], write: impl Fn(usize, &mut [T]) + Sync) {
+    let n = out.len();
+    let out = Shared::new(out);
+    split(n.div_ceil(PART), &|parts| {
+        let range = parts.start * PART..n.min(parts.end * PART);
+        #[expect(unsafe_code, reason = "see `Shared`")]
+        // SAFETY: `split` gives out each part once, while `out` is borrowed.
+        let part = unsafe { out.part(&range) };
+        write(range.start, part);
+    });
+}
+
 /// `write(start, part of a, part of b)` for parts that cover two slices of the same length; they begin
 /// at multiples of `PART`.
 pub fn for_parts_of_two<A: Send, B: Send>(

@@ -162,6 +162,12 @@ fn ratio(time_ns: u64, wall: Duration) -> f64 {
     if wall == 0.0 { 0.0 } else { Duration::from_nanos(time_ns).as_secs_f64() / wall }
 }
 
+/// Wall time since 1970 [ns], the same for all processes of this host.
+pub fn wall_ns() -> u64 {
+    let since_epoch = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+    u64::try_from(since_epoch.as_nanos()).unwrap_or(u64::MAX)
+}
+
 /// A short pause while the run waits for someone.
 pub fn pause() {
     thread::sleep(Duration::from_millis(5));

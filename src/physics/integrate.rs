@@ -106,23 +106,28 @@ fn advance_membrane(
     let dt = model.substep;
     let MembraneState { positions, velocities } = &mut state.membrane;
     let mut unused = vec![(); positions.len()];
-    parallel::largest_of_three(positions, velocities, &mut unused, |start, positions, velocities, _| {
-        let mut furthest = [0.0; 2];
-        for (k, (position, velocity)) in positions.iter_mut().zip(velocities).enumerate() {
-            let (v, before) = (start + k, *position);
-            let holder = model.membrane.holders[v];
-            if holder != FREE {
-                let wall = &controls.walls[holder as usize];
-                *position = sums::held_position(model, wall, v);
-                *velocity = sums::wall_velocity(wall, position);
-            } else {
-                let force = scratch.membrane.forces[v] + scratch.vertex_forces[v];
-                *velocity += force * (dt / model.membrane.masses[v]) + model.gravity * dt;
-                *position += *velocity * dt;
+    parallel::largest_of_three(
+        positions,
+        velocities,
+        &mut unused,
+        |start, positions, velocities, _| {
+            let mut furthest = [0.0; 2];
+            for (k, (position, velocity)) in positions.iter_mut().zip(velocities).enumerate() {
+                let (v, before) = (start + k, *position);
+                let holder = model.membrane.holders[v];
+                if holder != FREE {
+                    let wall = &controls.walls[holder as usize];
+                    *position = sums::held_position(model, wall, v);
+                    *velocity = sums::wall_velocity(wall, position);
+                } else {
+                    let force = scratch.membrane.forces[v] + scratch.vertex_forces[v];
+                    *velocity += force * (dt / model.membrane.masses[v]) + model.gravity * dt;
+                    *position += *velocity * dt;
+                }
+                let built = &scratch.neighbours.vertex_positions[v];
+                carried.apart(built, &before, position, &mut furthest);
             }
-            let built = &scratch.neighbours.vertex_positions[v];
-            carried.apart(built, &before, position, &mut furthest);
-        }
-        furthest
-    })
+            furthest
+        },
+    )
 }

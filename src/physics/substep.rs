@@ -24,7 +24,13 @@ pub static STAGES: &[(&str, Stage)] = &[
     ("contact_membrane", |model, _, state, scratch| {
         let mut springs = std::mem::take(&mut state.springs.patches);
         let Scratch { neighbours, grain_rows, candidates, patch_forces, .. } = scratch;
-        sheet::forces(model, state, &mut springs, neighbours, (grain_rows, candidates, patch_forces));
+        sheet::forces(
+            model,
+            state,
+            &mut springs,
+            neighbours,
+            (grain_rows, candidates, patch_forces),
+        );
         state.springs.patches = springs;
     }),
     ("contact_spheres", |model, _, state, scratch| {

@@ -2,7 +2,12 @@
 //! the neighbour lists are built.
 
 use jamgrip::{
-    base::{Pose, Vec3, digest::Digest, parallel},
+    base::{
+        Pose, Vec3,
+        digest::Digest,
+        lanes::{self, Width},
+        parallel,
+    },
     command::Command,
     cosim::{Coupled, Inputs},
     session::Session,
@@ -39,6 +44,21 @@ fn one_two_and_seven_threads_give_the_same_bits_and_so_does_a_second_run() {
     for n_threads in [1, 2, 7] {
         // Oracle: the first run, to the last bit.
         assert_eq!(script(&mut coarse::session(n_threads, &[])), expected, "{n_threads} threads");
+    }
+}
+
+#[test]
+fn registers_of_any_width_give_the_same_bits() {
+    let mut runs = Vec::new();
+    for width in [Width::One, Width::Four, Width::Eight] {
+        // A processor that is not as wide takes what it has. Tests beside this one may meet the limit
+        // too: it changes nothing, as is shown here.
+        lanes::limit(width);
+        runs.push((lanes::width(), script(&mut coarse::session(1, &[]))));
+    }
+    // Oracle: plain numbers, one at a time, to the last bit.
+    for (width, digests) in &runs {
+        assert_eq!(*digests, runs[0].1, "{width:?}");
     }
 }
 

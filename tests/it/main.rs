@@ -7,6 +7,7 @@ mod bags; // recordings, read back by independent libraries
 mod bags_damaged; // killed, cut off, full disks, and what is saved of it
 #[cfg(feature = "bag")]
 mod bags_played; // a recording published again
+mod bench; // how fast it is told to be
 mod by_tick; // a made-up system whose numbers follow from its tick
 mod coarse; // a coarse gripper for tests of the physics
 mod commands; // commands from ROS 2 messages

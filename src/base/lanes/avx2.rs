@@ -188,6 +188,16 @@ impl Lanes for Four {
     }
 
     #[inline(always)]
+    fn to_rows_of_4([a, b, c, d]: [Self; 4], rows: &mut [[f64; 4]]) {
+        let rows = &mut rows[..4];
+        unsafe {
+            for (row, value) in rows.iter_mut().zip(transposed([a.0, b.0, c.0, d.0])) {
+                _mm256_storeu_pd(row.as_mut_ptr(), value);
+            }
+        }
+    }
+
+    #[inline(always)]
     fn to_rows_of_8(columns: [Self; 8], rows: &mut [[f64; 8]]) {
         let rows = &mut rows[..4];
         let [a, b, c, d, e, f, g, h] = columns;

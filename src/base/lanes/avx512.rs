@@ -200,6 +200,20 @@ impl Lanes for Eight {
     }
 
     #[inline(always)]
+    fn to_rows_of_4([a, b, c, d]: [Self; 4], rows: &mut [[f64; 4]]) {
+        let rows = &mut rows[..8];
+        unsafe {
+            // The transpose of each half is the same both ways.
+            let columns = columns_of_4([a.0, b.0, c.0, d.0]);
+            for (k, column) in columns.into_iter().enumerate() {
+                _mm256_storeu_pd(rows[k].as_mut_ptr(), _mm512_castpd512_pd256(column.0));
+                let high = _mm512_extractf64x4_pd::<1>(column.0);
+                _mm256_storeu_pd(rows[k + 4].as_mut_ptr(), high);
+            }
+        }
+    }
+
+    #[inline(always)]
     fn to_rows_of_8(columns: [Self; 8], rows: &mut [[f64; 8]]) {
         let rows = &mut rows[..8];
         let [a, b, c, d, e, f, g, h] = columns;

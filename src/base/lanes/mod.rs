@@ -13,7 +13,6 @@ mod one;
 mod vector;
 
 use std::{
-    fmt,
     ops::{Add, Div, Mul, Neg, Sub},
     sync::atomic::{AtomicU8, Ordering},
 };
@@ -62,6 +61,8 @@ pub trait Lanes:
     fn from_rows_of_3(rows: &[[f64; 3]]) -> [Self; 3];
     /// Writes three columns as the first `N` rows of three.
     fn to_rows_of_3(columns: [Self; 3], rows: &mut [[f64; 3]]);
+    /// Writes four columns as the first `N` rows of four.
+    fn to_rows_of_4(columns: [Self; 4], rows: &mut [[f64; 4]]);
     /// Writes eight columns as the first `N` rows of eight.
     fn to_rows_of_8(columns: [Self; 8], rows: &mut [[f64; 8]]);
 }
@@ -101,16 +102,6 @@ pub enum Width {
     Four = 4,
     /// Eight lanes.
     Eight = 8,
-}
-
-impl fmt::Display for Width {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::One => "1 lane",
-            Self::Four => "4 lanes (AVX2)",
-            Self::Eight => "8 lanes (AVX-512)",
-        })
-    }
 }
 
 /// The widest that may be used.

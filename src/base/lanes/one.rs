@@ -77,6 +77,11 @@ impl Lanes for f64 {
     }
 
     #[inline(always)]
+    fn to_rows_of_4(columns: [Self; 4], rows: &mut [[f64; 4]]) {
+        rows[0] = columns;
+    }
+
+    #[inline(always)]
     fn to_rows_of_8(columns: [Self; 8], rows: &mut [[f64; 8]]) {
         rows[0] = columns;
     }

@@ -1,5 +1,7 @@
 //! Every width gives the bits of plain numbers.
 
+use std::cmp::Ordering;
+
 use super::*;
 use crate::base::random::{Random, Stream};
 
@@ -53,6 +55,7 @@ impl Kernel for All<'_> {
 struct Moves<'a> {
     from: &'a [f64],
     to_3: &'a mut [[f64; 3]; 8],
+    to_4: &'a mut [[f64; 4]; 8],
     to_8: &'a mut [[f64; 8]; 8],
     columns: &'a mut [Vec<f64>],
 }
@@ -69,6 +72,7 @@ impl Kernel for Moves<'_> {
             let [x, y, z] = three;
             L::to_rows_of_3([y, z, x], &mut self.to_3[start..]);
             let [a, b, c, d] = four;
+            L::to_rows_of_4([d, a, c, b], &mut self.to_4[start..]);
             L::to_rows_of_8([a, b, c, d, x, y, z, a + x], &mut self.to_8[start..]);
             for (row, column) in self.columns.iter_mut().zip(three.into_iter().chain(four)) {
                 column.store(&mut row[start..]);
@@ -136,7 +140,7 @@ fn operations_have_the_bits_of_plain_numbers() {
                     one(a <= b),
                     one(a < b && b < 1.0),
                     one(a < b || b < 1.0),
-                    one(!(a < b)),
+                    one(a.partial_cmp(&b).is_none_or(Ordering::is_ge)),
                 ];
                 for (operation, expected) in expected.into_iter().enumerate() {
                     // The sign of something that is no number is nobody's business.
@@ -147,7 +151,7 @@ fn operations_have_the_bits_of_plain_numbers() {
                     assert_eq!(
                         bits(&[found]),
                         bits(&[expected]),
-                        "{width}, operation {operation} of {a} and {b}: {found}"
+                        "{width:?}, operation {operation} of {a} and {b}: {found}"
                     );
                 }
             }
@@ -162,20 +166,26 @@ fn rows_come_in_and_go_out_unchanged() {
     let (three, _) = from.as_chunks::<3>();
     let (four, _) = from.as_chunks::<4>();
     at_every_width(|width| {
-        let (mut to_3, mut to_8) = ([[0.0; 3]; 8], [[0.0; 8]; 8]);
+        let (mut to_3, mut to_4, mut to_8) = ([[0.0; 3]; 8], [[0.0; 4]; 8], [[0.0; 8]; 8]);
         let mut columns = vec![vec![0.0; 8]; 7];
-        let moves =
-            Moves { from: &from, to_3: &mut to_3, to_8: &mut to_8, columns: &mut columns };
+        let moves = Moves {
+            from: &from,
+            to_3: &mut to_3,
+            to_4: &mut to_4,
+            to_8: &mut to_8,
+            columns: &mut columns,
+        };
         if !run_at(width, moves) {
             return;
         }
         for lane in 0..8 {
             // Oracle: plain indexing.
             let ([x, y, z], [a, b, c, d]) = (three[lane], four[lane * 5 % 6]);
-            assert_eq!(bits(&to_3[lane]), bits(&[y, z, x]), "{width}");
-            assert_eq!(bits(&to_8[lane]), bits(&[a, b, c, d, x, y, z, a + x]), "{width}");
+            assert_eq!(bits(&to_3[lane]), bits(&[y, z, x]), "{width:?}");
+            assert_eq!(bits(&to_4[lane]), bits(&[d, a, c, b]), "{width:?}");
+            assert_eq!(bits(&to_8[lane]), bits(&[a, b, c, d, x, y, z, a + x]), "{width:?}");
             let column: Vec<f64> = columns.iter().map(|column| column[lane]).collect();
-            assert_eq!(bits(&column), bits(&[x, y, z, a, b, c, d]), "{width}");
+            assert_eq!(bits(&column), bits(&[x, y, z, a, b, c, d]), "{width:?}");
         }
     });
 }

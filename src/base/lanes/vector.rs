@@ -1,6 +1,6 @@
 //! A vector in each lane.
 
-use std::ops::{Add, Mul, Neg, Sub};
+use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::Lanes;
 use crate::base::Vec3;
@@ -103,6 +103,14 @@ impl<L: Lanes> Mul<L> for Vector<L> {
     #[inline(always)]
     fn mul(self, factor: L) -> Self {
         Self::new(self.x * factor, self.y * factor, self.z * factor)
+    }
+}
+
+impl<L: Lanes> Div<L> for Vector<L> {
+    type Output = Self;
+    #[inline(always)]
+    fn div(self, divisor: L) -> Self {
+        Self::new(self.x / divisor, self.y / divisor, self.z / divisor)
     }
 }
 

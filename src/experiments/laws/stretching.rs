@@ -14,7 +14,7 @@ use crate::{
             MembraneModel, MembraneScratch, MembraneState, Sheet, forces,
             mesh::Mesh,
             pressure,
-            stretch::{self, Spring},
+            stretch::{self, Spring, tension},
         },
     },
 };
@@ -100,7 +100,7 @@ fn ring_down(scene: &Scene, record: &mut Record) {
     let dt = period / real(n_steps);
     let (mut stretch, mut rate) = (0.01 * edge, 0.0);
     for _ in 0..n_steps {
-        rate -= 2.0 * spring.tension(edge + stretch, rate) / mass * dt;
+        rate -= 2.0 * tension(spring.numbers(), edge + stretch, rate) / mass * dt;
         stretch += rate * dt;
     }
     record.set("C2.ring_down", stretch / (0.01 * edge), "1");

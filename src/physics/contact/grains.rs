@@ -181,16 +181,7 @@ impl Pairs<'_> {
         let on_first = normal * force.normal + force.tangential;
         let couple = normal.cross(force.tangential);
         let signed_normal = (-force.normal).or_where(force.slides, force.normal);
-        [
-            on_first.x,
-            on_first.y,
-            on_first.z,
-            couple.x,
-            couple.y,
-            couple.z,
-            overlap,
-            signed_normal,
-        ]
-        .map(|it| it.or_where(touches, zero))
+        [on_first.x, on_first.y, on_first.z, couple.x, couple.y, couple.z, overlap, signed_normal]
+            .map(|it| it.or_where(touches, zero))
     }
 }

@@ -70,7 +70,8 @@ pub fn forces(
     parallel::for_listed_of_two(&lists.sheet_grains, patch_forces, springs, |s, force, patches| {
         let mut touched = ArrayVec::new();
         touching(state, lists, candidates, s, &mut touched);
-        let grain = Grain { model, state, i: lists.sheet_grains[s] as usize, found: &candidates.found };
+        let grain =
+            Grain { model, state, i: lists.sheet_grains[s] as usize, found: &candidates.found };
         grain.meet(&touched, patches, force);
     });
 }
@@ -89,8 +90,8 @@ impl Grain<'_> {
         self.state.grains.radii[self.i]
     }
 
-    /// From the sheet to the centre [m].
-    fn from_membrane(&self, contact: &Touched) -> Vec3 {
+    /// From the closest point to the centre [m].
+    fn arm(&self, contact: &Touched) -> Vec3 {
         let [.., x, y, z, _] = self.found[contact.place];
         Vec3::new(x, y, z)
     }
@@ -109,7 +110,8 @@ impl Grain<'_> {
             self.passes(touched, &mut passes);
             shares = sharing::shares(&minima, &mut passes, self.radius());
         }
-        let before: ArrayVec<Patch, N_PATCHES> = patches.slots[..patches.n].iter().copied().collect();
+        let before: ArrayVec<Patch, N_PATCHES> =
+            patches.slots[..patches.n].iter().copied().collect();
         patches.n = minima.len();
         result.n = minima.len();
         result.torque = Vec3::zeros();
@@ -120,7 +122,7 @@ impl Grain<'_> {
             let contact = Contact {
                 triangle: it.triangle,
                 weights: [w0, w1, w2],
-                from_membrane: self.from_membrane(it),
+                from_membrane: self.arm(it),
                 overlap: minimum.overlap,
             };
             let spring = spring_of(&before, &minimum.normal);
@@ -139,7 +141,7 @@ impl Grain<'_> {
         let distance = contact.distance_squared.sqrt();
         Minimum {
             place,
-            normal: self.from_membrane(contact) * distance.recip(),
+            normal: self.arm(contact) * distance.recip(),
             overlap: self.radius() - distance,
             distance_squared: contact.distance_squared,
         }

@@ -18,7 +18,7 @@
 
 use super::bridson_2003::Fold;
 use super::{FREE, Facet, Link, MembraneModel};
-use crate::base::{Real, Vec3};
+use crate::base::{Real, Vec3, lanes::Vector};
 
 /// Iterations for the first eigenvalue: about a percent, whatever its neighbours.
 const N_FIRST: usize = 150;
@@ -32,7 +32,7 @@ const MARGIN: Real = 1.02;
 /// The sheet as a linear force law with weights on its stiffness and its damping.
 struct Linear<'a> {
     model: &'a MembraneModel,
-    folds: Vec<Option<Fold>>,
+    folds: Vec<Option<Fold<Real>>>,
     contact_stiffness: Real,
 }
 
@@ -63,7 +63,7 @@ fn irregular(n: usize) -> Vec<Vec3> {
 }
 
 /// The hinge of `link` in the reference shape; `None` on the boundary.
-fn fold(model: &MembraneModel, link: &Link) -> Option<Fold> {
+fn fold(model: &MembraneModel, link: &Link) -> Option<Fold<Real>> {
     let mesh = &model.mesh;
     let [t1, t2] = link.triangles.map(|t| Facet::new(&mesh.positions, &mesh.triangles[t as usize]));
     link.is_hinge().then(|| link.fold(&mesh.positions, [&t1, &t2]))
@@ -108,7 +108,7 @@ impl Linear<'_> {
             let edge = r4 - r3;
             let length = edge.norm();
             let along = edge / length;
-            let spring = stiff * link.spring.stiffness + damp * link.spring.damping;
+            let spring = stiff * link.law.spring.stiffness + damp * link.law.spring.damping;
             let pull = along * (spring * along.dot(&(x[at[3]] - x[at[2]])));
             y[at[2]] -= pull;
             y[at[3]] += pull;
@@ -117,9 +117,9 @@ impl Linear<'_> {
             let half_cosine = (1.0 - fold.half_sine * fold.half_sine).max(0.0).sqrt();
             let elastic = 0.5 * half_cosine * model.sheet.bending_stiffness * fold.slenderness;
             let hinge = stiff * elastic + damp * model.sheet.bending_damping * length;
-            let turn = fold.project(link.corners(x));
+            let turn = fold.project(link.corners(x).map(|x| Vector::from(*x)));
             for (vertex, force) in at.into_iter().zip(fold.spread(hinge * turn)) {
-                y[vertex] += force;
+                y[vertex] += Vec3::from(force);
             }
         }
         y

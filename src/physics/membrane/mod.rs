@@ -1,8 +1,6 @@
 //! The flexible bag: a mesh of springs and hinges under pressure.
 //!
-//! `forces` is three passes, each of which writes its own elements from read-only data: the normal
-//! of every facet, the four forces of every link (an edge with its spring and its hinge), and the
-//! sum at every vertex in a fixed order. The bits do not depend on the number of threads.
+//! Its forces stand in `forces`.
 
 pub mod mesh;
 mod icosphere;
@@ -13,17 +11,22 @@ pub mod bridson_2003;
 pub mod pressure;
 pub mod critical_step;
 pub mod contact_geometry;
+mod forces;
 #[cfg(test)]
 mod tests;
 
 use std::ops::Range;
 
 use bridson_2003::Fold;
+pub use forces::forces;
 use mesh::{Mesh, area_normal};
 use stretch::Spring;
 
 use crate::{
-    base::{Real, Vec3, parallel},
+    base::{
+        Real, Vec3,
+        lanes::{Lanes, Vector},
+    },
     scene,
 };
 
@@ -92,7 +95,7 @@ pub struct MembraneModel {
     /// Springs and hinges, numbered like the edges.
     links: Vec<Link>,
     /// Twice the reference areas at each hinge [m²] if these are to be taken; else empty.
-    first_areas: Vec<[Real; 2]>,
+    first_areas: [Vec<Real>; 2],
 }
 
 /// An edge with all that its forces need, in one place in memory.
@@ -102,6 +105,13 @@ struct Link {
     vertices: [u32; 4],
     /// Triangles 1 and 2; on the boundary twice 0.
     triangles: [u32; 2],
+    law: LinkLaw,
+}
+
+/// What a link's forces depend on besides its shape.
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+struct LinkLaw {
     spring: Spring,
     /// sin θ⁰/2.
     rest_half_sine: Real,
@@ -117,7 +127,8 @@ pub struct MembraneState {
 }
 
 /// A triangle's orientation at one instant.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
 pub struct Facet {
     /// Outward normal, as long as twice the area [m²].
     pub area_normal: Vec3,
@@ -140,13 +151,51 @@ impl Facet {
     }
 }
 
+/// Orientations of triangles, one in each lane.
+#[derive(Clone, Copy, Debug)]
+pub struct Side<L> {
+    /// Outward normal, as long as twice the area [m²].
+    pub area_normal: Vector<L>,
+    /// One over that length [1/m²].
+    pub inverse_norm: L,
+}
+
+impl<L: Lanes> Side<L> {
+    /// Of the triangle with these corners.
+    #[inline(always)]
+    fn new([a, b, c]: [Vector<L>; 3]) -> Self {
+        let area_normal = (b - a).cross(c - a);
+        Self { area_normal, inverse_norm: L::splat(1.0) / area_normal.dot(area_normal).sqrt() }
+    }
+}
+
+impl From<&Facet> for Side<Real> {
+    fn from(facet: &Facet) -> Self {
+        Self { area_normal: facet.area_normal.into(), inverse_norm: facet.inverse_norm }
+    }
+}
+
+/// Position [m] and velocity [m/s] of a vertex, each with a fourth number without meaning.
+#[derive(Clone, Copy, Debug, Default)]
+#[repr(C, align(64))]
+pub struct VertexRow {
+    /// Position [m].
+    pub place: [Real; 4],
+    /// Velocity [m/s].
+    pub velocity: [Real; 4],
+}
+
 /// What `forces` computes anew in every substep.
 #[derive(Clone, Debug)]
 pub struct MembraneScratch {
     /// Orientation of each triangle. Written by `forces`.
     pub facets: Vec<Facet>,
-    /// Forces of each link on its four vertices [N]. Written by `forces`.
-    link_forces: Vec<[Vec3; 4]>,
+    /// What laws need of each vertex. Written by `forces`.
+    pub vertices: Vec<VertexRow>,
+    /// Forces of each link on its first two vertices [N], four numbers each. Written by `forces`.
+    wing_forces: Vec<[Real; 8]>,
+    /// The same for the ends of its edge.
+    end_forces: Vec<[Real; 8]>,
     /// Force of springs, hinges and pressure on each vertex [N]. Written by `forces`.
     pub forces: Vec<Vec3>,
 }
@@ -167,8 +216,10 @@ impl MembraneModel {
             let mut link = Link {
                 vertices: [ends[0], ends[1], ends[0], ends[1]],
                 triangles: [0; 2],
-                spring: Spring::new(length, stiffness, sheet.spring_damping, masses),
-                rest_half_sine: 0.0,
+                law: LinkLaw {
+                    spring: Spring::new(length, stiffness, sheet.spring_damping, masses),
+                    rest_half_sine: 0.0,
+                },
             };
             if let Some(hinge) = mesh.hinges.get(e) {
                 link.vertices = hinge.vertices;
@@ -177,7 +228,7 @@ impl MembraneModel {
                     .triangles
                     .map(|t| Facet::new(&mesh.positions, &mesh.triangles[t as usize]));
                 let fold = link.fold(&mesh.positions, [&facets[0], &facets[1]]);
-                link.rest_half_sine = fold.half_sine;
+                link.law.rest_half_sine = fold.half_sine;
             }
             links.push(link);
         }
@@ -188,7 +239,7 @@ impl MembraneModel {
             holders,
             contact: SheetContact::Triangles,
             links,
-            first_areas: Vec::new(),
+            first_areas: [Vec::new(), Vec::new()],
             sheet,
             mesh,
         }
@@ -198,7 +249,8 @@ impl MembraneModel {
     pub fn bend_by_first_areas(&mut self) {
         let mesh = &self.mesh;
         let twice = |t: u32| area_normal(&mesh.positions, &mesh.triangles[t as usize]).norm();
-        self.first_areas = mesh.hinges.iter().map(|hinge| hinge.triangles.map(twice)).collect();
+        self.first_areas =
+            [0, 1].map(|side| mesh.hinges.iter().map(|it| twice(it.triangles[side])).collect());
     }
 
     /// Makes every spring's rest length `scale` times its length in the reference shape.
@@ -211,7 +263,7 @@ impl MembraneModel {
         for (link, ends) in self.links.iter_mut().zip(&self.mesh.edges) {
             if ends.iter().all(|&v| part.contains(&(v as usize))) {
                 let [a, b] = ends.map(|v| self.mesh.positions[v as usize]);
-                link.spring.rest_length = scale * (b - a).norm();
+                link.law.spring.rest_length = scale * (b - a).norm();
             }
         }
     }
@@ -221,7 +273,7 @@ impl MembraneModel {
         for link in &mut self.links[..self.mesh.hinges.len()] {
             let facets =
                 link.triangles.map(|t| Facet::new(positions, &self.mesh.triangles[t as usize]));
-            link.rest_half_sine = link.fold(positions, [&facets[0], &facets[1]]).half_sine;
+            link.law.rest_half_sine = link.fold(positions, [&facets[0], &facets[1]]).half_sine;
         }
     }
 
@@ -243,10 +295,12 @@ impl Link {
         self.vertices.map(|v| &vectors[v as usize])
     }
 
-    fn fold(&self, positions: &[Vec3], facets: [&Facet; 2]) -> Fold {
+    fn fold(&self, positions: &[Vec3], facets: [&Facet; 2]) -> Fold<Real> {
         let r = self.corners(positions);
         let edge = r[3] - r[2];
-        Fold::new(r, facets, &edge, [edge.norm(), 1.0 / edge.norm()])
+        let lengths = [edge.norm(), 1.0 / edge.norm()];
+        let corners = r.map(|corner| Vector::from(*corner));
+        Fold::new(corners, facets.map(Side::from), edge.into(), lengths)
     }
 }
 
@@ -266,84 +320,10 @@ impl MembraneScratch {
         let facet = Facet { area_normal: Vec3::zeros(), inverse_norm: 0.0 };
         Self {
             facets: vec![facet; model.mesh.triangles.len()],
-            link_forces: vec![[Vec3::zeros(); 4]; model.links.len()],
+            vertices: vec![VertexRow::default(); model.mesh.n_vertices()],
+            wing_forces: vec![[0.0; 8]; model.links.len()],
+            end_forces: vec![[0.0; 8]; model.links.len()],
             forces: vec![Vec3::zeros(); model.mesh.n_vertices()],
         }
     }
-}
-
-/// Forces of springs, hinges and `gauge_pressure` [Pa] on every vertex, into `scratch.forces`.
-pub fn forces(
-    model: &MembraneModel,
-    state: &MembraneState,
-    gauge_pressure: Real,
-    scratch: &mut MembraneScratch,
-) {
-    face(model, &state.positions, &mut scratch.facets);
-    pull_and_fold(model, state, &scratch.facets, &mut scratch.link_forces);
-    gather(model, gauge_pressure, &scratch.facets, &scratch.link_forces, &mut scratch.forces);
-}
-
-/// Orientation of every triangle.
-fn face(model: &MembraneModel, positions: &[Vec3], facets: &mut [Facet]) {
-    let triangles = &model.mesh.triangles;
-    parallel::for_each(facets, |t, facet| *facet = Facet::new(positions, &triangles[t]));
-}
-
-/// Forces of every spring and hinge on their vertices.
-fn pull_and_fold(
-    model: &MembraneModel,
-    state: &MembraneState,
-    facets: &[Facet],
-    link_forces: &mut [[Vec3; 4]],
-) {
-    let n_hinges = model.mesh.hinges.len();
-    let (elastic, dissipative) = (model.sheet.bending_stiffness, model.sheet.bending_damping);
-    parallel::for_each(link_forces, |l, out| {
-        let link = &model.links[l];
-        let (r, v) = (link.corners(&state.positions), link.corners(&state.velocities));
-        let (edge, rate) = (r[3] - r[2], v[3] - v[2]);
-        let length = edge.norm();
-        let inverse = 1.0 / length;
-        let along = edge * inverse;
-        let pull = along * link.spring.tension(length, along.dot(&rate));
-        let mut forces = [Vec3::zeros(); 4];
-        if l < n_hinges {
-            let sides = link.triangles.map(|t| &facets[t as usize]);
-            let mut fold = Fold::new(r, sides, &edge, [length, inverse]);
-            if let Some(&first) = model.first_areas.get(l) {
-                fold = fold.with_areas(first, sides, length);
-            }
-            let opened = fold.half_sine - link.rest_half_sine;
-            let speed = fold.project(v);
-            forces =
-                fold.spread(elastic * fold.slenderness * opened - dissipative * length * speed);
-        }
-        forces[2] += pull;
-        forces[3] -= pull;
-        *out = forces;
-    });
-}
-
-/// Sum at every vertex: the air's load, then links in the order of their numbers.
-fn gather(
-    model: &MembraneModel,
-    gauge_pressure: Real,
-    facets: &[Facet],
-    link_forces: &[[Vec3; 4]],
-    forces: &mut [Vec3],
-) {
-    let of_slot = link_forces.as_flattened();
-    let mesh = &model.mesh;
-    parallel::for_each(forces, |vertex, force| {
-        let mut load = Vec3::zeros();
-        for &t in mesh.triangles_of_vertex.of(vertex) {
-            load += facets[t as usize].area_normal;
-        }
-        let mut sum = load * (gauge_pressure / 6.0);
-        for &slot in mesh.slots_of_vertex.of(vertex) {
-            sum += of_slot[slot as usize];
-        }
-        *force = sum;
-    });
 }

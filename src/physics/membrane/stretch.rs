@@ -15,10 +15,11 @@
 //! ratio 1/3. A boundary edge has one triangle instead of two and gets k/2, so that the sheet is
 //! the same up to its border. Valid for small strains on nearly equilateral triangles.
 
-use crate::base::Real;
+use crate::base::{Real, lanes::Lanes};
 
 /// A damped spring.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
 pub struct Spring {
     /// Rest length [m].
     pub rest_length: Real,
@@ -35,11 +36,17 @@ impl Spring {
         Self { rest_length, stiffness, damping: 2.0 * damping_ratio * (stiffness * mass).sqrt() }
     }
 
-    /// Tension [N] at `length` [m] growing with `rate` [m/s]; it pulls both ends together.
-    #[inline(always)]
-    pub fn tension(&self, length: Real, rate: Real) -> Real {
-        self.stiffness * (length - self.rest_length) + self.damping * rate
+    /// Rest length [m], stiffness [N/m] and damping [N s/m].
+    pub fn numbers(&self) -> [Real; 3] {
+        [self.rest_length, self.stiffness, self.damping]
     }
+}
+
+/// Tension [N] of springs, given as rest length, stiffness and damping, at `length` [m] growing with
+/// `rate` [m/s]; it pulls both ends together.
+#[inline(always)]
+pub fn tension<L: Lanes>([rest_length, stiffness, damping]: [L; 3], length: L, rate: L) -> L {
+    stiffness * (length - rest_length) + damping * rate
 }
 
 /// Stiffness k = √3/2 E d of an edge inside a sheet [N/m].

@@ -5,7 +5,7 @@ use super::super::mesh::Mesh;
 use super::super::{Facet, MembraneModel, MembraneState, Sheet};
 use super::{forces_on, model_of, rubber, shaken, totals};
 use crate::base::random::{Random, Stream};
-use crate::base::{Real, Vec3};
+use crate::base::{Real, Vec3, lanes::Vector};
 
 /// Two triangles about an edge, arbitrary but not degenerate, with given velocities.
 fn random_hinge(random: &mut Random) -> MembraneState {
@@ -23,7 +23,7 @@ fn hinge_model(sheet: Sheet) -> MembraneModel {
 }
 
 /// Fold of the only hinge, and its angle by the arctangent.
-fn fold_of(model: &MembraneModel, positions: &[Vec3]) -> (Fold, Real) {
+fn fold_of(model: &MembraneModel, positions: &[Vec3]) -> (Fold<Real>, Real) {
     let link = &model.links[0];
     let facets = link.triangles.map(|t| Facet::new(positions, &model.mesh.triangles[t as usize]));
     let (n1, n2) = (facets[0].normal(), facets[1].normal());
@@ -41,7 +41,7 @@ fn the_fold_vectors_are_the_gradient_of_the_angle() {
         let (fold, angle) = fold_of(&model, &state.positions);
         // Oracle: sin of half the arctangent's angle. Tolerance: rounding.
         assert!((fold.half_sine - (0.5 * angle).sin()).abs() < 1e-14);
-        let u = fold.spread(1.0);
+        let u = fold.spread(1.0).map(Vec3::from);
         // Oracle: C3 a, no net force and no net torque. Tolerance: rounding of numbers of order 1–10.
         let torque: Vec3 = (0..4).map(|i| state.positions[i].cross(&u[i])).sum();
         assert!(u.iter().sum::<Vec3>().norm() < 1e-14 && torque.norm() < 1e-13);
@@ -62,7 +62,7 @@ fn the_fold_vectors_are_the_gradient_of_the_angle() {
         let v: [&Vec3; 4] = std::array::from_fn(|i| &state.velocities[i]);
         let direct: Real = (0..4).map(|i| u[i].dot(v[i])).sum();
         // Oracle: the definition Σ u·v. Tolerance: rounding of terms of order 10.
-        assert!((fold.project(v) - direct).abs() < 1e-13);
+        assert!((fold.project(v.map(|v| Vector::from(*v))) - direct).abs() < 1e-13);
     }
 }
 
@@ -94,8 +94,8 @@ fn bending_restores_from_both_sides_and_leaves_lengths_alone() {
         assert!((angle.abs() - rest.abs()).abs() < 1e-15);
         let bend = |positions: &[Vec3]| {
             let (fold, angle) = fold_of(&model, positions);
-            let opened = fold.half_sine - model.links[0].rest_half_sine;
-            (fold.spread(1e-3 * fold.slenderness * opened), angle)
+            let opened = fold.half_sine - model.links[0].law.rest_half_sine;
+            (fold.spread(1e-3 * fold.slenderness * opened).map(Vec3::from), angle)
         };
         // Oracle: C3 c, no force at the rest angle. Tolerance: rounding.
         assert!(bend(&at_rest).0[0].norm() < 1e-18);
@@ -125,7 +125,7 @@ fn the_restoring_moment_does_not_depend_on_the_mesh_size() {
         positions[0].z += 0.3 * size;
         let (fold, _) = fold_of(&model, &positions);
         let force = fold.u1 * (fold.slenderness * fold.half_sine);
-        (positions[0] - positions[2]).cross(&force).x
+        (positions[0] - positions[2]).cross(&force.into()).x
     };
     // Oracle: C3 g. Tolerance: rounding.
     assert!((moment(1e-3) / moment(1.0) - 1.0).abs() < 1e-13);

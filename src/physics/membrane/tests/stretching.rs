@@ -73,7 +73,7 @@ fn a_pair_rings_down_as_a_damped_oscillator() {
     let dt = period / Real::from(n_steps);
     let (mut x, mut v) = ([0.0, 3e-3 + 1e-5], [0.0, 0.0]);
     for _ in 0..n_steps {
-        let tension = spring.tension(x[1] - x[0], v[1] - v[0]);
+        let tension = stretch::tension(spring.numbers(), x[1] - x[0], v[1] - v[0]);
         v[0] += tension / masses[0] * dt;
         v[1] -= tension / masses[1] * dt;
         x[0] += v[0] * dt;

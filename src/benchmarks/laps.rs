@@ -4,12 +4,15 @@ use std::collections::BTreeMap;
 
 use super::{
     BenchError, Case, Figures, Options,
+    cases::Kind,
     figures::Stage,
+    peers::Peers,
     prepare::{self, Subject},
+    process,
     soundness::Seen,
 };
 use crate::{
-    base::{Real, digest::Digest, parallel},
+    base::{Real, digest::Digest, lanes, parallel},
     node::pacer::Stopwatch,
     physics::{
         System,
@@ -35,6 +38,8 @@ pub(super) struct Work {
 pub(super) struct Lap {
     /// Time on the clock for the measured substeps [s].
     pub(super) wall_s: Real,
+    /// Processor time of all threads for them [s], if the system tells it.
+    pub(super) processor_s: Option<Real>,
     /// Contacts between grains, the mean of before and after.
     pub(super) n_contacts: Real,
     /// How often the lists were built.
@@ -59,8 +64,20 @@ impl<'a> Course<'a> {
     pub(super) fn new(case: &'a Case, options: &'a Options) -> Result<Self, BenchError> {
         let pool = parallel::pool(options.n_threads)?;
         let subject = prepare::subject(case, options, &pool)?;
-        super::memory::forget_peak();
+        process::forget_peak();
         Ok(Self { case, options, subject, pool, laps: Vec::new() })
+    }
+
+    /// The other codes on the same packing, if they are wanted and it is one.
+    pub(super) fn peers(&self) -> Result<Option<Peers>, BenchError> {
+        let Kind::Grains(boxed) = &self.case.kind else { return Ok(None) };
+        if !self.options.with_peers {
+            return Ok(None);
+        }
+        let of_case = (self.case.work, &self.case.limits);
+        let peers = Peers::new(boxed, &self.subject.system, of_case, self.options.n_threads);
+        let fault = |fault| BenchError::Peer { case: self.case.name.to_owned(), fault };
+        peers.map(Some).map_err(fault)
     }
 
     /// True when there are enough laps.
@@ -98,7 +115,7 @@ impl<'a> Course<'a> {
     }
 
     /// What came out, with one more lap for the shares of the stages.
-    pub(super) fn figures(self) -> Result<Figures, BenchError> {
+    pub(super) fn figures(self, peers: Option<&Peers>) -> Result<Figures, BenchError> {
         let work = self.case.work;
         let mut times = vec![0.0; STAGES.len()];
         let (by_stages, end) =
@@ -113,11 +130,14 @@ impl<'a> Course<'a> {
             })
             .collect();
         let system = &self.subject.system;
+        let speeds = Figures::of_laps(&self.laps, work, self.options.n_threads);
+        let ours = speeds.contact_steps_per_s_per_core;
         Ok(Figures {
             case: self.case.name.to_owned(),
             n_grains: system.state.grains.len(),
             n_vertices: system.state.membrane.positions.len(),
             threads: self.options.n_threads,
+            lanes: lanes::width() as u8,
             substep_s: system.model.substep,
             digest: format!("{:016x}", by_stages.digest),
             digest_after_steps: work.n_warm + work.n_steps,
@@ -126,8 +146,10 @@ impl<'a> Course<'a> {
             n_lap_steps: work.n_steps,
             stages,
             phases: BTreeMap::new(),
-            peak_rss_bytes: super::memory::peak(),
-            ..Figures::of_laps(&self.laps, work, self.options.n_threads)
+            peak_rss_bytes: process::peak(),
+            peers: peers.map_or_else(Vec::new, |it| it.figures(ours)),
+            peers_missing: peers.map_or_else(Vec::new, |it| it.missing.clone()),
+            ..speeds
         }
         .with_speed_of_time()
         .seeing(&by_stages.seen))
@@ -144,6 +166,7 @@ fn lap(subject: &Subject, work: Work, times: Option<&mut Vec<Real>>) -> (Lap, Sy
     }
     let before = look(&system);
     let n_builds = system.scratch.neighbours.n_builds;
+    let processor = process::processor_s();
     let mut watch = Stopwatch::start();
     if let Some(times) = times {
         for _ in 0..work.n_steps {
@@ -158,9 +181,11 @@ fn lap(subject: &Subject, work: Work, times: Option<&mut Vec<Real>>) -> (Lap, Sy
         }
     }
     let wall_s = watch.total_s();
+    let processor_s = process::processor_s().zip(processor).map(|(after, before)| after - before);
     let seen = look(&system);
     let lap = Lap {
         wall_s,
+        processor_s,
         n_contacts: 0.5 * (real(before.n_grain_contacts) + real(seen.n_grain_contacts)),
         n_builds: system.scratch.neighbours.n_builds - n_builds,
         digest: digest(&system),

@@ -8,15 +8,22 @@
 
 mod cases; // what is measured
 pub mod figures; // what is told of a case
+#[cfg(all(feature = "ros", feature = "shm"))]
+mod latency; // of the loop
 mod laps; // stepping and timing
 mod lift; // a whole session
-mod memory; // how much of it
 mod packing; // grains in a box
+mod peers; // the same in other codes
 mod prepare; // states to start from
+mod process; // what the system tells
+pub mod sheet; // figures kept over time
 mod soundness; // is it worth measuring?
 
 pub use cases::{CASES, Case};
 pub use figures::Figures;
+#[cfg(all(feature = "ros", feature = "shm"))]
+pub use latency::{Latency, LatencyError, PrivateError, listen};
+pub use peers::{PeerError, PeerFigures};
 pub use soundness::Unsound;
 
 use crate::{
@@ -33,6 +40,8 @@ pub struct Options {
     pub seconds: f64,
     /// Where states to start from are kept.
     pub cache: Cache,
+    /// True runs other codes on the same packings, if they are installed.
+    pub with_peers: bool,
     /// True tells nothing on standard error while a state is made ready.
     pub is_quiet: bool,
 }
@@ -98,6 +107,21 @@ pub enum BenchError {
     /// The grains find no place to grow from.
     #[error("packing: {0}")]
     NoRoom(#[from] crate::physics::packing::scatter::NoRoom),
+    /// Another code does not do what it should.
+    #[error("{case}: {fault}")]
+    Peer {
+        /// The case.
+        case: String,
+        /// What is wrong.
+        fault: PeerError,
+    },
+    /// The loop's latencies cannot be measured.
+    #[cfg(all(feature = "ros", feature = "shm"))]
+    #[error("latency: {fault}")]
+    Latency {
+        /// Why.
+        fault: LatencyError,
+    },
     /// The operating system gives no threads.
     #[error("solver threads: {0}; use fewer with --threads")]
     Threads(#[from] rayon::ThreadPoolBuildError),
@@ -135,15 +159,24 @@ pub fn chosen(names: &[String]) -> Result<Vec<&'static Case>, BenchError> {
 /// # Errors
 /// If it cannot be started, or is not worth measuring.
 pub fn run(case: &Case, options: &Options) -> Result<Figures, BenchError> {
-    memory::forget_peak();
+    process::forget_peak();
     match &case.kind {
         cases::Kind::Lift => lift::run(case, options),
+        #[cfg(all(feature = "ros", feature = "shm"))]
+        cases::Kind::Latency => latency::run(case, options),
         cases::Kind::Grains(..) | cases::Kind::Experiment(..) => {
             let mut course = laps::Course::new(case, options)?;
+            let mut peers = course.peers()?;
             while !course.is_over() {
                 course.lap()?;
+                // In turns, so that a busy minute of the machine hits both.
+                if let Some(peers) = &mut peers {
+                    peers
+                        .lap()
+                        .map_err(|fault| BenchError::Peer { case: case.name.to_owned(), fault })?;
+                }
             }
-            course.figures()
+            course.figures(peers.as_ref())
         }
     }
 }

@@ -4,7 +4,10 @@ use std::{collections::BTreeMap, fmt::Write};
 
 use serde::{Deserialize, Serialize};
 
+#[cfg(all(feature = "ros", feature = "shm"))]
+use super::Latency;
 use super::{
+    PeerFigures,
     laps::{Lap, Work},
     soundness::Seen,
 };
@@ -12,6 +15,9 @@ use crate::{
     base::Real,
     physics::measure::{real, real_of},
 };
+
+/// Stages below this share are not shown to people.
+const SHARE_SHOWN: Real = 5e-4;
 
 /// One case, measured.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -24,6 +30,8 @@ pub struct Figures {
     pub n_vertices: usize,
     /// Solver threads.
     pub threads: usize,
+    /// Numbers computed side by side, at most.
+    pub lanes: u8,
     /// Length of a substep [s].
     pub substep_s: Real,
     /// Substeps per second, the median of all laps.
@@ -32,6 +40,9 @@ pub struct Figures {
     pub steps_per_s_best: Real,
     /// Slowest over fastest lap, less one.
     pub spread: Real,
+    /// Processor time over wall time and threads: below one, others had the processors; null where the
+    /// system does not tell.
+    pub processor_share: Option<Real>,
     /// Contacts between grains times substeps per second and thread.
     pub contact_steps_per_s_per_core: Real,
     /// Its inverse [ns].
@@ -72,6 +83,13 @@ pub struct Figures {
     pub stages: Vec<Stage>,
     /// Real-time factor of each phase of a session.
     pub phases: BTreeMap<String, Real>,
+    /// Latencies of the loop.
+    #[cfg(all(feature = "ros", feature = "shm"))]
+    pub latencies: Vec<Latency>,
+    /// Other codes on the same packing.
+    pub peers: Vec<PeerFigures>,
+    /// Other codes that are not installed, with the remedy.
+    pub peers_missing: Vec<String>,
 }
 
 /// The time of one stage.
@@ -101,6 +119,10 @@ impl Figures {
             steps_per_s,
             steps_per_s_best: n_steps / best,
             spread: worst / best - 1.0,
+            processor_share: processor_share(
+                laps.iter().map(|lap| (lap.wall_s, lap.processor_s)),
+                n_threads,
+            ),
             contact_steps_per_s_per_core: contact_steps,
             ns_per_contact_step: 1e9 / contact_steps,
             n_laps: laps.len(),
@@ -134,17 +156,41 @@ impl Figures {
         text
     }
 
+    #[cfg(all(feature = "ros", feature = "shm"))]
+    fn write_latencies(&self, text: &mut String) -> std::fmt::Result {
+        for it in &self.latencies {
+            writeln!(
+                text,
+                "  {}: p50 {:.0} us, p99 {:.0} us, p99.9 {:.0} us, at most {:.0} us, {} samples, {} lost",
+                it.path, it.p50_us, it.p99_us, it.p999_us, it.max_us, it.n, it.n_lost
+            )?;
+        }
+        Ok(())
+    }
+
     fn write(&self, text: &mut String) -> std::fmt::Result {
-        let Self { case, n_grains, n_vertices, threads, n_laps, digest, .. } = self;
-        writeln!(text, "{case}: {n_grains} grains, {n_vertices} vertices, {threads} threads")?;
+        #[cfg(all(feature = "ros", feature = "shm"))]
+        if !self.latencies.is_empty() {
+            let Self { case, threads, real_time_factor, .. } = self;
+            writeln!(
+                text,
+                "{case}: a loop of 1 kHz, {threads} solver threads, real-time factor {real_time_factor:.4}"
+            )?;
+            return self.write_latencies(text);
+        }
+        let Self { case, n_grains, n_vertices, threads, lanes, n_laps, n_lap_steps, .. } = self;
         writeln!(
             text,
-            "  {:.1} steps/s (best {:.1}, spread {:.1} %, {n_laps} laps of {} steps), step {:.3e} s, \
-             real-time factor {:.4}",
+            "{case}: {n_grains} grains, {n_vertices} vertices, threads: {threads}, lanes: {lanes}"
+        )?;
+        let processors = or_unknown(self.processor_share, |it| format!("{:.0} %", 100.0 * it));
+        writeln!(
+            text,
+            "  {:.1} steps/s (best {:.1}, spread {:.1} %, {n_laps} laps of {n_lap_steps} steps, processors \
+             {processors}), step {:.3e} s, real-time factor {:.4}",
             self.steps_per_s,
             self.steps_per_s_best,
             100.0 * self.spread,
-            self.n_lap_steps,
             self.substep_s,
             self.real_time_factor
         )?;
@@ -160,34 +206,74 @@ impl Figures {
             self.n_body_contacts,
             self.n_builds_per_lap
         )?;
-        let shown = self.stages.iter().filter(|stage| 0.0005 <= stage.share);
-        let stages: Vec<String> = shown
-            .map(|it| {
-                format!("{} {:.1} % ({:.1} us)", it.name, 100.0 * it.share, it.ns_per_step / 1e3)
-            })
-            .collect();
-        if !stages.is_empty() {
-            writeln!(text, "  {}", stages.join(", "))?;
-        }
-        if !self.phases.is_empty() {
-            let phases: Vec<String> =
-                self.phases.iter().map(|(name, factor)| format!("{name} {factor:.3}")).collect();
-            writeln!(text, "  real-time factor by phase: {}", phases.join(", "))?;
-        }
-        let memory = self.peak_rss_bytes.map_or_else(
-            || "memory unknown".to_owned(),
-            |bytes| format!("{:.0} MiB", real_of(bytes) / 1_048_576.0),
-        );
+        self.write_shares(text)?;
+        self.write_peers(text)?;
+        let memory = |bytes| format!("{:.0} MiB", real_of(bytes) / 1_048_576.0);
         writeln!(
             text,
-            "  digest {digest} after {} steps from {}; overlap at most {:.4} radii, kinetic energy \
-             {:.3e} J; {memory}",
+            "  digest {} after {} steps from {}; overlap at most {:.4} radii, kinetic energy {:.3e} J; \
+             memory {}",
+            self.digest,
             self.digest_after_steps,
             self.start_digest,
             self.overlap_ratio_max,
-            self.kinetic_energy_j
+            self.kinetic_energy_j,
+            or_unknown(self.peak_rss_bytes, memory)
         )
     }
+
+    fn write_shares(&self, text: &mut String) -> std::fmt::Result {
+        let shown = self.stages.iter().filter(|stage| SHARE_SHOWN <= stage.share);
+        let stage = |it: &Stage| {
+            format!("{} {:.1} % ({:.1} us)", it.name, 100.0 * it.share, it.ns_per_step / 1e3)
+        };
+        let stages: Vec<String> = shown.map(stage).collect();
+        writeln!(text, "  {}", stages.join(", "))?;
+        if self.phases.is_empty() {
+            return Ok(());
+        }
+        let phase = |(name, factor): (&String, &Real)| format!("{name} {factor:.3}");
+        let phases: Vec<String> = self.phases.iter().map(phase).collect();
+        writeln!(text, "  real-time factor by phase: {}", phases.join(", "))
+    }
+
+    fn write_peers(&self, text: &mut String) -> std::fmt::Result {
+        for it in &self.peers {
+            writeln!(
+                text,
+                "  {:.2} x {}: {:.2} M contact-steps/s per core (spread {:.1} %), {:.0} contacts, kinetic \
+                 energy {:.3e} J; {}",
+                it.ratio,
+                it.peer,
+                it.contact_steps_per_s_per_core / 1e6,
+                100.0 * it.spread,
+                it.n_contacts,
+                it.kinetic_energy_j,
+                it.version
+            )?;
+        }
+        for line in &self.peers_missing {
+            writeln!(text, "  {line}")?;
+        }
+        Ok(())
+    }
+}
+
+fn or_unknown<T>(value: Option<T>, text: impl FnOnce(T) -> String) -> String {
+    value.map_or_else(|| "unknown".to_owned(), text)
+}
+
+/// Processor time over wall time [s] and threads.
+pub(super) fn processor_share(
+    laps: impl Iterator<Item = (Real, Option<Real>)>,
+    n_threads: usize,
+) -> Option<Real> {
+    let (mut wall, mut processor) = (0.0, 0.0);
+    for (wall_s, processor_s) in laps {
+        wall += wall_s;
+        processor += processor_s?;
+    }
+    Some(processor / (wall * real(n_threads)))
 }
 
 /// The middle of sorted values.

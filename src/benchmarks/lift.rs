@@ -4,12 +4,12 @@ use std::{collections::BTreeMap, path::Path};
 
 use super::{
     BenchError, Case, Figures, Options,
-    figures::{Stage, median},
-    memory,
+    figures::{Stage, median, processor_share as share},
+    process,
     soundness::{Seen, check_lift},
 };
 use crate::{
-    base::Real,
+    base::{Real, lanes},
     cosim::compile::Compiled,
     node::{
         judge::Judge,
@@ -23,7 +23,7 @@ use crate::{
         measure::{real, real_of},
         membrane::mesh::Mesh,
     },
-    scene::{self, Scene},
+    scene::{self, Scene, SceneError},
     session::Session,
     snapshot::take,
 };
@@ -37,6 +37,8 @@ struct Lap {
     session: Session,
     /// Time on the clock [s].
     wall_s: Real,
+    /// Processor time for it [s], if the system tells it.
+    processor_s: Option<Real>,
     /// Of commands, ticks and snapshots [s].
     parts: [Real; 3],
     /// Wall and simulated time of each phase [s].
@@ -49,13 +51,13 @@ struct Lap {
 
 /// Runs whole sessions, one at least.
 pub(super) fn run(case: &Case, options: &Options) -> Result<Figures, BenchError> {
-    let scene = scene::parse(SCENE.1, SCENE.0, Path::new("launch_configs"), &[])?;
+    let scene = scene(&[])?;
     let mut laps: Vec<Lap> = Vec::new();
     let mut start_digest = 0;
     while laps.is_empty() || laps.iter().map(|lap| lap.wall_s).sum::<Real>() < options.seconds {
         let session = session(&scene, options)?;
         start_digest = session.digest();
-        memory::forget_peak();
+        process::forget_peak();
         let lap = lap(case, &scene, session)?;
         let digests = (laps.first().map(|first| first.session.digest()), lap.session.digest());
         if let (Some(expected), found) = digests
@@ -69,7 +71,13 @@ pub(super) fn run(case: &Case, options: &Options) -> Result<Figures, BenchError>
     figures(case, options, &laps, start_digest)
 }
 
-fn session(scene: &Scene, options: &Options) -> Result<Session, BenchError> {
+/// The default scene with these changes.
+pub(super) fn scene(overrides: &[String]) -> Result<Scene, SceneError> {
+    scene::parse(SCENE.1, SCENE.0, Path::new("launch_configs"), overrides)
+}
+
+/// A session at its first tick.
+pub(super) fn session(scene: &Scene, options: &Options) -> Result<Session, BenchError> {
     let compiled = Compiled::new(scene, options.n_threads).map_err(start::StartError::from)?;
     let progress = Progress::new(options.is_quiet);
     let started = start::start(compiled, options.n_threads, &options.cache, &progress);
@@ -86,6 +94,7 @@ fn lap(case: &Case, scene: &Scene, mut session: Session) -> Result<Lap, BenchErr
     let mut seen = take::snapshot(&session, schedule.parts(0));
     let (mut parts, mut phases) = ([0.0; 3], BTreeMap::<String, [Real; 2]>::new());
     let (mut judge, mut n_contact_ticks) = (Judge::default(), 0.0);
+    let processor = process::processor_s();
     let whole = Stopwatch::start();
     let mut watch = Stopwatch::start();
     while !orders.is_done() {
@@ -107,7 +116,8 @@ fn lap(case: &Case, scene: &Scene, mut session: Session) -> Result<Lap, BenchErr
         phase[0] += drained + ticked + taken;
         phase[1] += tick_s;
     }
-    Ok(Lap { session, wall_s: whole.total_s(), parts, phases, judge, n_contact_ticks })
+    let processor_s = process::processor_s().zip(processor).map(|(after, before)| after - before);
+    Ok(Lap { session, wall_s: whole.total_s(), processor_s, parts, phases, judge, n_contact_ticks })
 }
 
 fn figures(
@@ -141,10 +151,15 @@ fn figures(
         n_grains: coupled.state.grains.len(),
         n_vertices: mesh.n_vertices(),
         threads: options.n_threads,
+        lanes: lanes::width() as u8,
         substep_s: coupled.model.substep,
         steps_per_s,
         steps_per_s_best: real_of(n_steps) / times[0],
         spread: times[times.len() - 1] / times[0] - 1.0,
+        processor_share: share(
+            laps.iter().map(|lap| (lap.wall_s, lap.processor_s)),
+            options.n_threads,
+        ),
         contact_steps_per_s_per_core: contact_steps,
         ns_per_contact_step: 1e9 / contact_steps,
         digest: format!("{:016x}", last.session.digest()),
@@ -153,7 +168,7 @@ fn figures(
         n_lap_steps: n_steps,
         n_laps: laps.len(),
         n_builds_per_lap: coupled.scratch.neighbours.n_builds,
-        peak_rss_bytes: memory::peak(),
+        peak_rss_bytes: process::peak(),
         stages: ["commands", "ticks", "snapshots"]
             .into_iter()
             .zip(&last.parts)

@@ -32,7 +32,7 @@ pub(super) struct Seen {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Limits {
     /// Contacts between grains, per grain, at least.
-    contacts_per_grain: Real,
+    pub(super) contacts_per_grain: Real,
     /// Largest overlap over the mean radius.
     overlap_ratio: Real,
     /// Speed of the grains, from and to [m/s].
@@ -158,4 +158,66 @@ pub(super) fn check_lift(verdict: &Verdict) -> Result<(), Unsound> {
 
 fn unsound(what: &'static str, found: Real, expected: String) -> Result<(), Unsound> {
     Err(Unsound { what, found, expected })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        benchmarks::packing::{Boxed, Phase},
+        physics::{System, boundary::wall::WallShape},
+    };
+
+    /// A small box like those that are measured, after a substep.
+    fn packed() -> System {
+        let boxed = Boxed { n_grains: 300, n_tiles: [1; 3], phase: Phase::Rest };
+        let mut system = boxed.system(boxed.grow().unwrap());
+        system.step();
+        system
+    }
+
+    fn fault(system: &System) -> Option<&'static str> {
+        let seen = Seen::of(&system.model, &system.state, &system.scratch);
+        // Of 300 grains a third lies at a wall: they have fewer partners than in larger boxes.
+        let limits = Limits { contacts_per_grain: 2.0, ..Limits::PACKED_AT_REST };
+        seen.check(&limits).err().map(|it| it.what)
+    }
+
+    /// Oracle: what was done to the box. A state that would be fast for the wrong reason is refused.
+    #[test]
+    fn only_a_box_that_is_what_it_says_is_measured() {
+        let packed = packed();
+        assert_eq!(fault(&packed), None);
+
+        // All grains far apart: no list, no contact.
+        let mut emptied = packed.clone();
+        emptied.state.grains.positions.iter_mut().for_each(|it| *it *= 3.0);
+        emptied.step();
+        assert_eq!(fault(&emptied), Some("contacts between grains per grain"));
+
+        // The walls are gone.
+        let mut open = packed.clone();
+        for (wall, model) in open.controls.walls.iter_mut().zip(&open.model.walls) {
+            let WallShape::Plane { normal } = model.shape else { panic!("a box has planes") };
+            wall.pose.translation.vector -= normal;
+        }
+        open.state.walls.clone_from(&open.controls.walls);
+        open.step();
+        assert_eq!(fault(&open), Some("contacts with walls"));
+
+        // Grains larger by a fifth in the same places.
+        let mut crowded = packed.clone();
+        crowded.state.grains.radii.iter_mut().for_each(|it| *it *= 1.2);
+        crowded.model.radius_max *= 1.2;
+        crowded.scratch.neighbours.is_built = false;
+        crowded.step();
+        assert_eq!(fault(&crowded), Some("largest overlap over radius"));
+
+        // It has exploded, and then there are no numbers any more.
+        let mut hot = packed.clone();
+        hot.state.grains.velocities[7].z = 100.0;
+        assert_eq!(fault(&hot), Some("speed of the grains [m/s]"));
+        hot.state.grains.velocities[7].z = f64::NAN;
+        assert_eq!(fault(&hot), Some("speed of the grains [m/s]"));
+    }
 }
