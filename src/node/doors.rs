@@ -1,13 +1,13 @@
 //! The doors to the outside that a scene asks for: recording, streams, ROS 2. A door whose feature
 //! was not built says so when it is asked for.
 
-use std::{sync::Arc, time::Duration};
+use std::sync::Arc;
 
 use super::{launch::RunError, outlets::Outlets, progress::Progress};
 #[cfg(feature = "bag")]
 use crate::cosim::compile::PHYSICS_VERSION;
 use crate::{
-    scene::{Controller, OnError, Scene, Shape},
+    scene::{Controller, OnError, Scene},
     sources::Source,
     wire::to_ros::Encoder,
 };
@@ -115,7 +115,7 @@ impl Doors<'_> {
     #[cfg(feature = "bag")]
     fn subject(&self) -> crate::bag::Subject {
         let bag = &self.scene.outputs.bag;
-        let whole_ns = |time: f64| Duration::from_secs_f64(time).as_nanos();
+        let whole_ns = |time: f64| std::time::Duration::from_secs_f64(time).as_nanos();
         let format = crate::bag::Format {
             compression: bag.compression,
             split_bytes: bag.split_size.map(|mebibytes| mebibytes << 20),
@@ -140,7 +140,7 @@ impl Doors<'_> {
     fn scene_files(&self) -> Vec<(String, Vec<u8>)> {
         let mut files = Vec::new();
         for object in &self.scene.objects {
-            let Shape::Mesh { file, .. } = &object.shape else { continue };
+            let crate::scene::Shape::Mesh { file, .. } = &object.shape else { continue };
             match std::fs::read(file) {
                 Ok(bytes) => {
                     let name = file.file_name().unwrap_or_default().to_string_lossy();
