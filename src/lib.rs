@@ -16,6 +16,8 @@ pub mod wire; // bytes for the outside
 pub mod bag; // what a recording is, written and read
 pub mod sinks; // where snapshots go
 pub mod sources; // where commands come from
+pub mod services; // where questions come in and answers go out
+pub mod simulator; // what ROS 2 users may ask of a simulator
 pub mod node; // the running thing
 #[cfg(feature = "bag")]
 pub mod replay; // recordings, run again

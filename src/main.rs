@@ -23,6 +23,7 @@ use jamgrip::{
     node::{
         cache::Cache,
         launch::{Finished, Options, launch},
+        ros_args::{self, RosArgs},
     },
     scene::{self, Scene, SceneError},
 };
@@ -36,13 +37,24 @@ const FAILED: u8 = 1;
 const WRONG: u8 = 2;
 
 fn main() -> ExitCode {
-    let cli = Cli::parse();
-    env_logger::Builder::from_env(env_logger::Env::default().default_filter_or(LOG_FILTER)).init();
+    let (line, ros_args) = match ros_args::split(std::env::args()) {
+        Ok(split) => split,
+        Err(error) => {
+            drop(writeln!(io::stderr().lock(), "{error}"));
+            return ExitCode::from(WRONG);
+        }
+    };
+    let cli = Cli::parse_from(line);
+    let filter = ros_args.log_level.as_deref().map_or_else(
+        || LOG_FILTER.to_owned(),
+        |level| LOG_FILTER.replacen("warn", if level == "fatal" { "error" } else { level }, 1),
+    );
+    env_logger::Builder::from_env(env_logger::Env::default().default_filter_or(filter)).init();
     if let Some(width) = cli.lanes {
         lanes::limit(width);
     }
     let outcome = match cli.action {
-        Action::Run(args) => run(&args),
+        Action::Run(args) => run(&args, &ros_args),
         #[cfg(feature = "bag")]
         Action::Replay(args) => recordings::replay(&args),
         #[cfg(feature = "bag")]
@@ -59,17 +71,22 @@ fn main() -> ExitCode {
         // If standard error is gone there is nobody to tell.
         drop(writeln!(io::stderr().lock(), "{error}"));
         let is_of_command_line = error.is::<SceneError>()
+            || error.is::<ros_args::RosArgsError>()
             || error.downcast_ref::<BenchError>().is_some_and(BenchError::is_of_command_line)
             || error.downcast_ref::<LabError>().is_some_and(LabError::is_of_command_line);
         ExitCode::from(if is_of_command_line { WRONG } else { FAILED })
     })
 }
 
-fn run(args: &cli::Run) -> Result<ExitCode, Box<dyn Error>> {
-    let scene = scene::load(&args.scene.scene, &args.overrides())?;
+fn run(args: &cli::Run, ros_args: &RosArgs) -> Result<ExitCode, Box<dyn Error>> {
+    let mut overrides = ros_args.overrides()?;
+    overrides.extend(args.overrides());
+    let mut scene = scene::load(&args.scene.scene, &overrides)?;
+    ros_args.rename(&mut scene.outputs.ros);
     let options = Options {
         n_threads: args.n_threads(),
         duration: args.duration,
+        scene_file: args.scene.scene.clone(),
         cache: args.cache.clone().map_or_else(Cache::of_user, Cache::new),
         is_quiet: args.json,
         facts: Vec::new(),

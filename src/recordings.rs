@@ -128,6 +128,7 @@ fn branch(args: &Replay, from: f64) -> Result<ExitCode, Box<dyn Error>> {
     let options = Options {
         n_threads: args.n_threads(),
         duration: args.end,
+        scene_file: args.bag.clone(),
         cache: args.cache.clone().map_or_else(Cache::of_user, Cache::new),
         is_quiet: args.json,
         facts: Vec::new(),
@@ -201,7 +202,7 @@ fn on_stage(
 ) -> Result<Performance, Box<dyn Error>> {
     use jamgrip::{replay::stage::RosStage, scene::Ros, sinks::reach::Reach};
 
-    let anywhere = Ros { enabled: true, domain_id: None, lan: false };
+    let anywhere = Ros { enabled: true, ..Ros::OFF };
     let reach = Reach::choose(&anywhere, |name| std::env::var(name).ok())?;
     let mut stage = RosStage::join(&reach, options.clock_rate.is_some())?;
     let played = perform(&mut stage)?;

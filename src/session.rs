@@ -7,29 +7,47 @@ use crate::{
     command::{
         Command, CommandRecord,
         apply::{Desk, Frames},
+        change::{Change, ChangeRefused, Knob, Scope},
     },
     cosim::{
         Coupled, FLANGE, Inputs, Means,
-        compile::Compiled,
+        compile::{Compiled, retune},
         rapier_world::RapierWorld,
         saved_state::{self, SavedStateError},
     },
     physics::{
         State,
+        boundary::body::BodyMotion,
         fill::{self, Progress},
         health::{self, Diverged},
         measure,
     },
-    scene::Scene,
+    scene::{Object, Scene},
 };
+
+/// What a reset goes back to.
+struct Start {
+    /// The settled bag; `None` in a run that was taken up later and was not told.
+    state: Option<State>,
+    /// The scene's own objects.
+    objects: Vec<Object>,
+}
 
 /// A run.
 pub struct Session {
+    /// Its objects are those that are there now.
     scene: Scene,
+    start: Start,
     coupled: Coupled,
     desk: Desk,
     tick: Tick,
+    /// Ticks since the start of the run, whatever became of simulated time.
+    run_tick: Tick,
     means: Means,
+    /// What the wrist sensor takes for zero, flange axes.
+    sensor_zero: Wrench,
+    /// Properties that are not those of the scene any more.
+    turned: Vec<(Knob, f64)>,
     records: Vec<CommandRecord>,
     digest: u64,
     normal_forces: Vec<f64>,
@@ -40,9 +58,13 @@ pub struct Session {
 #[derive(Serialize, Deserialize)]
 struct Saved<'a> {
     tick: u64,
+    run_tick: u64,
     state: &'a [u8],
     world: &'a [u8],
     desk: &'a [u8],
+    /// Force and torque.
+    sensor_zero: [[f64; 3]; 2],
+    turned: Vec<(Knob, f64)>,
 }
 
 impl Session {
@@ -82,16 +104,52 @@ impl Session {
         session.coupled.world.restore(saved.world)?;
         session.desk.restore(saved.desk)?;
         session.tick = Tick(saved.tick);
+        session.run_tick = Tick(saved.run_tick);
+        let [force, torque] = saved.sensor_zero.map(Vec3::from);
+        session.sensor_zero = Wrench { force, torque };
+        saved.turned.iter().for_each(|(knob, value)| session.turn(*knob, *value));
+        if 0 < saved.run_tick {
+            session.start.state = None;
+        }
         session.digest = session.take_digest();
         Ok(session)
     }
 
-    /// Everything that is needed to go on, as bytes.
-    pub fn save(&self) -> Vec<u8> {
+    /// Tells a run that was resumed what a reset goes back to: what `save` wrote at its start.
+    ///
+    /// # Errors
+    /// If the bytes are damaged or of another scene.
+    pub fn remember_start(&mut self, bytes: &[u8]) -> Result<(), SavedStateError> {
+        let corrupt = SavedStateError::Corrupt { n_bytes: bytes.len() };
+        let saved: Saved<'_> =
+            postcard::from_bytes(saved_state::unsealed(bytes)?).map_err(|_| corrupt)?;
+        let state = saved_state::read(saved.state)?;
+        let now = &self.coupled.state;
+        saved_state::same_counts(&[
+            ("grains", state.grains.len(), now.grains.len()),
+            ("vertices", state.membrane.positions.len(), now.membrane.positions.len()),
+        ])?;
+        self.start.state = Some(state);
+        Ok(())
+    }
+
+    /// Everything that is needed to go on, as bytes; nothing while there are other objects than the
+    /// scene's own, or in another order.
+    pub fn save(&self) -> Option<Vec<u8>> {
+        let names = |objects: &[Object]| objects.iter().map(|it| it.name.clone()).collect();
+        let (there, own): (Vec<_>, Vec<_>) =
+            (names(&self.scene.objects), names(&self.start.objects));
+        if there != own {
+            return None;
+        }
         let (state, world) = (saved_state::write(&self.coupled.state), self.coupled.world.save());
         let desk = self.desk.save();
-        let saved = Saved { tick: self.tick.0, state: &state, world: &world, desk: &desk };
-        saved_state::sealed(postcard::to_stdvec(&saved).expect("bytes always serialise"))
+        let (tick, run_tick) = (self.tick.0, self.run_tick.0);
+        let Wrench { force, torque } = self.sensor_zero;
+        let sensor_zero = [force, torque].map(Into::into);
+        let (state, world, desk, turned) = (&state, &world, &desk, self.turned.clone());
+        let saved = Saved { tick, run_tick, state, world, desk, sensor_zero, turned };
+        Some(saved_state::sealed(postcard::to_stdvec(&saved).expect("bytes always serialise")))
     }
 
     fn start(compiled: Compiled, mut state: State) -> Self {
@@ -101,23 +159,22 @@ impl Session {
 
     fn assemble(compiled: Compiled, state: State) -> Self {
         let Compiled { scene, model, plan, bulks, limits, pool, .. } = compiled;
+        let start = Start { state: Some(state.clone()), objects: scene.objects.clone() };
         let step = plan.tick / measure::real(plan.n_substeps / plan.n_per_exchange);
         let world = RapierWorld::new(&scene, &model, bulks, step);
         let (n_objects, n_grains) = (scene.objects.len(), state.grains.positions.len());
         let desk = Desk::new(&scene);
         let coupled = Coupled::new(model, plan, state, world, limits);
-        let still = vec![Wrench::zero(); n_objects];
         let mut session = Self {
             scene,
+            start,
             coupled,
             desk,
             tick: Tick(0),
-            means: Means {
-                membrane_on_objects: still.clone(),
-                contacts_on_objects: still,
-                objects_on_gripper: Wrench::zero(),
-                gripper_on_mount: Wrench::zero(),
-            },
+            run_tick: Tick(0),
+            means: no_forces(n_objects),
+            sensor_zero: Wrench::zero(),
+            turned: Vec::new(),
             records: Vec::new(),
             digest: 0,
             // Nothing is known of forces before the first tick.
@@ -139,10 +196,109 @@ impl Session {
         self.records = records;
         self.advance(&inputs);
         self.tick = self.tick.next();
+        self.run_tick = self.run_tick.next();
         let Coupled { model, state, scratch, .. } = &self.coupled;
         self.normal_forces = measure::normal_forces(state, scratch);
         self.digest = self.take_digest();
         health::check(model, state, scratch, self.tick.0)
+    }
+
+    /// Changes the world between two ticks.
+    ///
+    /// # Errors
+    /// If the change cannot be made; nothing is changed then.
+    pub fn change(&mut self, change: &Change) -> Result<(), ChangeRefused> {
+        match change {
+            Change::Reset(scope) => self.reset(*scope)?,
+            Change::PlaceObject { object, pose, twist } => {
+                let i = self.find(object)?;
+                let motion = BodyMotion { pose: *pose, twist: *twist };
+                self.coupled.place_object(&self.scene, i, &motion)?;
+                self.desk.release(i);
+            }
+            Change::PlaceFlange { pose } => {
+                self.coupled.place_flange(&self.scene, pose)?;
+                self.desk.place_flange(*pose, self.time_ns());
+            }
+            Change::ZeroForceSensor => {
+                self.sensor_zero = self.sensed();
+                self.records.clear();
+                return Ok(());
+            }
+            Change::Turn { knob, value } => {
+                self.turn(*knob, *value);
+                self.records.clear();
+                return Ok(());
+            }
+            Change::Insert(object) => self.insert(object)?,
+            Change::Remove { object } => {
+                let i = self.find(object)?;
+                self.remove(i);
+            }
+        }
+        self.means = no_forces(self.scene.objects.len());
+        self.normal_forces.fill(0.0);
+        self.records.clear();
+        self.digest = self.take_digest();
+        Ok(())
+    }
+
+    fn turn(&mut self, knob: Knob, value: f64) {
+        knob.set(&mut self.scene, value);
+        if knob == Knob::ObjectFriction {
+            self.start.objects.iter_mut().for_each(|it| it.friction = value);
+        }
+        retune(&self.scene, &mut self.coupled.model);
+        self.turned.retain(|(other, _)| *other != knob);
+        self.turned.push((knob, value));
+    }
+
+    fn reset(&mut self, scope: Scope) -> Result<(), ChangeRefused> {
+        let is_own = |object: &Object| self.start.objects.iter().any(|it| it.name == object.name);
+        if scope.state {
+            let start = self.start.state.as_ref().ok_or(ChangeRefused::StartUnknown)?;
+            let added = self.scene.objects.iter().filter(|it| !scope.spawned && !is_own(it));
+            self.scene.objects = self.start.objects.iter().chain(added).cloned().collect();
+            self.coupled.start_anew(&self.scene, start);
+            self.desk.restart(&self.scene);
+            self.sensor_zero = Wrench::zero();
+        } else if scope.spawned {
+            let objects = self.scene.objects.iter().enumerate();
+            let added: Vec<usize> = objects.filter(|(_, it)| !is_own(it)).map(|(i, _)| i).collect();
+            added.into_iter().rev().for_each(|i| self.remove(i));
+        }
+        if scope.time {
+            self.tick = Tick(0);
+            self.desk.restart_time();
+        } else if scope.state {
+            self.desk.place_flange(self.scene.flange.pose, self.time_ns());
+        }
+        Ok(())
+    }
+
+    fn insert(&mut self, object: &Object) -> Result<(), ChangeRefused> {
+        let mut names = self.scene.objects.iter().chain(&self.start.objects);
+        if names.any(|it| it.name == object.name) {
+            return Err(ChangeRefused::NameTaken { object: object.name.clone() });
+        }
+        self.coupled.insert(&self.scene, object)?;
+        self.scene.objects.push(object.clone());
+        self.desk.insert(object);
+        Ok(())
+    }
+
+    fn remove(&mut self, i: usize) {
+        self.coupled.remove(i);
+        self.scene.objects.remove(i);
+        self.desk.remove(i);
+    }
+
+    fn find(&self, object: &str) -> Result<usize, ChangeRefused> {
+        let objects = &self.scene.objects;
+        objects.iter().position(|it| it.name == object).ok_or_else(|| {
+            let known: Vec<&str> = objects.iter().map(|it| it.name.as_str()).collect();
+            ChangeRefused::UnknownObject { object: object.to_owned(), known: known.join(", ") }
+        })
     }
 
     fn advance(&mut self, inputs: &Inputs) {
@@ -176,6 +332,16 @@ impl Session {
         self.tick.time_ns(self.scene.time.tick_ns)
     }
 
+    /// Ticks since the start of the run, whatever became of simulated time.
+    pub fn run_tick(&self) -> Tick {
+        self.run_tick
+    }
+
+    /// Time of the run [ns]: that of its ticks together.
+    pub fn run_time_ns(&self) -> u64 {
+        self.run_tick.time_ns(self.scene.time.tick_ns)
+    }
+
     /// Digest of the whole state.
     pub fn digest(&self) -> u64 {
         self.digest
@@ -189,6 +355,20 @@ impl Session {
     /// The coupled system, to look at.
     pub fn coupled(&self) -> &Coupled {
         &self.coupled
+    }
+
+    /// What a wrist sensor feels that was never set to zero: the wrench of the whole gripper on its
+    /// mount about the flange's origin, flange axes, mean over the last tick.
+    fn sensed(&self) -> Wrench {
+        let to_flange = self.coupled.state.walls[FLANGE].pose.rotation.inverse();
+        let Wrench { force, torque } = self.means.gripper_on_mount;
+        Wrench { force: to_flange * force, torque: to_flange * torque }
+    }
+
+    /// What the wrist sensor reads: what it feels less what it takes for zero.
+    pub fn sensor(&self) -> Wrench {
+        let (felt, zero) = (self.sensed(), self.sensor_zero);
+        Wrench { force: felt.force - zero.force, torque: felt.torque - zero.torque }
     }
 
     /// Means over the last tick.
@@ -214,5 +394,15 @@ impl Session {
     /// The settled start state as bytes for a cache. Only meaningful before the first tick.
     pub fn start_state(&self) -> Vec<u8> {
         saved_state::write(&self.coupled.state)
+    }
+}
+
+/// Before a first tick nothing is known of forces.
+fn no_forces(n_objects: usize) -> Means {
+    Means {
+        membrane_on_objects: vec![Wrench::zero(); n_objects],
+        contacts_on_objects: vec![Wrench::zero(); n_objects],
+        objects_on_gripper: Wrench::zero(),
+        gripper_on_mount: Wrench::zero(),
     }
 }

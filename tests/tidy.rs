@@ -48,13 +48,19 @@ const DIMENSIONLESS: &[&str] = &[
 const DOORS: &[(&str, &[&str])] = &[
     (
         "rapier3d_f64",
-        &["cosim/rapier_world.rs", "physics/boundary/polyhedron.rs", "physics/boundary/tests.rs"],
+        &[
+            "cosim/rapier_world.rs",
+            "cosim/volume.rs",
+            "physics/boundary/polyhedron.rs",
+            "physics/boundary/tests.rs",
+        ],
     ),
     ("serde_saphyr", &["scene/yaml.rs"]),
     ("stl_io", &["scene/mesh_file.rs"]),
     ("tobj", &["scene/mesh_file.rs"]),
+    ("urdf_rs", &["scene/urdf.rs"]),
     ("ros2_client", &["sinks/ros.rs", "sources/ros.rs"]),
-    ("rustdds", &["sinks/ros.rs", "sources/ros.rs"]),
+    ("rustdds", &["sinks/ros.rs", "sources/ros.rs", "services/ros.rs"]),
     ("iceoryx2", &["wire/rows.rs", "sinks/shm.rs"]),
     ("mcap", &["bag/writer.rs", "bag/reader.rs", "bag/recover.rs", "bag/check.rs"]),
     ("zstd", &["bag/writer.rs", "bag/reader.rs"]),

@@ -18,10 +18,13 @@ use super::{
 use crate::wire::{
     messages::{
         RosMessage,
-        jamgrip_msgs::{StateDigest, Statistics},
+        jamgrip_msgs::{StateDigest, Statistics, WorldChange},
     },
     topics::{NODE, Topic},
 };
+
+/// The fact that names the topics of commands, in the order of the list of topics.
+pub const INPUTS: &str = "inputs";
 
 /// What a recording says about its run before anything happens in it.
 #[derive(Clone, Debug, Default)]
@@ -48,6 +51,8 @@ pub struct Course {
     pub is_every_tick: bool,
     /// Commands in the order they took effect.
     pub commands: Vec<Order>,
+    /// What was done to the world between ticks, in this order.
+    pub changes: Vec<Alteration>,
     /// Where all that is needed to go on is kept, ascending.
     pub checkpoints: Vec<Place>,
     /// What is wrong with the files.
@@ -67,6 +72,19 @@ pub struct Order {
     pub topic: String,
     /// The body in CDR.
     pub cdr: Vec<u8>,
+}
+
+/// A change of the world as it was recorded.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Alteration {
+    /// The tick after which it was made.
+    pub tick: u64,
+    /// What was done, in words.
+    pub what: String,
+    /// The same as bytes that `Change::from_bytes` reads.
+    pub change: Vec<u8>,
+    /// Digest of the state after it, and after others that were made with it.
+    pub digest: Option<u64>,
 }
 
 /// Where a checkpoint is.
@@ -119,13 +137,20 @@ impl Recording {
         self.facts.get("version").map(String::as_str).or_else(by_library).unwrap_or("unknown")
     }
 
+    /// The topics of commands, where the recording says which: a node may have other names than the
+    /// scene says.
+    pub fn inputs(&self) -> Option<Vec<String>> {
+        serde_json::from_str(self.facts.get(INPUTS)?).ok()
+    }
+
     /// Reads all files: digests, commands on those of `topics` that are inputs, places of
     /// checkpoints. A tick has `tick_ns` nanoseconds.
     ///
     /// # Errors
     /// If a file cannot be opened.
     pub fn course(&self, topics: &[Topic], tick_ns: u64) -> io::Result<Course> {
-        let inputs = topics.iter().filter(|it| it.is_input).map(|it| it.name.clone()).collect();
+        let names = || topics.iter().filter(|it| it.is_input).map(|it| it.name.clone()).collect();
+        let inputs = self.inputs().unwrap_or_else(names);
         self.read_course(Inputs::Named(inputs), tick_ns)
     }
 
@@ -134,7 +159,7 @@ impl Recording {
     /// # Errors
     /// If a file cannot be opened.
     pub fn course_of_all(&self, tick_ns: u64) -> io::Result<Course> {
-        self.read_course(Inputs::ByName, tick_ns)
+        self.read_course(self.inputs().map_or(Inputs::ByName, Inputs::Named), tick_ns)
     }
 
     fn read_course(&self, inputs: Inputs, tick_ns: u64) -> io::Result<Course> {
@@ -142,6 +167,7 @@ impl Recording {
             inputs,
             tick_ns,
             links: chain::topic_name(),
+            changes: chain::changes_topic_name(),
             statistics: statistics_topic(),
             chain: self.scene_text.as_deref().map(Chain::new),
             sparse: Vec::new(),
@@ -163,6 +189,17 @@ impl Course {
     /// The last checkpoint at or before a tick.
     pub fn checkpoint_before(&self, tick: u64) -> Option<&Place> {
         self.checkpoints.iter().rev().find(|place| place.tick <= tick)
+    }
+
+    /// The digest of the state after a tick.
+    pub fn digest_of(&self, tick: u64) -> Option<u64> {
+        let found = self.digests.binary_search_by_key(&tick, |(at, _)| *at).ok()?;
+        Some(self.digests[found].1)
+    }
+
+    /// What was done to the world after a tick.
+    pub fn changes_after(&self, tick: u64) -> impl Iterator<Item = &Alteration> {
+        self.changes.iter().filter(move |it| it.tick == tick)
     }
 
     /// The last tick whose digest is known.
@@ -202,7 +239,10 @@ impl Inputs {
     fn contains(&self, topic: &str) -> bool {
         match self {
             Self::Named(names) => names.iter().any(|it| it == topic),
-            Self::ByName => topic.starts_with(NODE) && topic.ends_with("_cmd"),
+            Self::ByName => {
+                let is_command = topic.ends_with("_cmd") || topic.ends_with("/joint_commands");
+                topic.starts_with(NODE) && is_command
+            }
         }
     }
 }
@@ -212,6 +252,7 @@ struct Clerk {
     inputs: Inputs,
     tick_ns: u64,
     links: String,
+    changes: String,
     statistics: String,
     chain: Option<Chain>,
     sparse: Vec<(u64, u64)>,
@@ -241,6 +282,13 @@ impl Clerk {
             if let Ok(link) = StateDigest::from_cdr(cdr) {
                 self.link(&link);
             }
+        } else if *topic == self.changes {
+            if let Some(chain) = &mut self.chain {
+                chain.command(topic, cdr);
+            }
+            if let Ok(WorldChange { tick, what, change }) = WorldChange::from_cdr(cdr) {
+                self.course.changes.push(Alteration { tick, what, change, digest: None });
+            }
         } else if *topic == self.statistics {
             if let Ok(it) = Statistics::from_cdr(cdr) {
                 self.sparse.push((it.tick, it.state_digest));
@@ -256,16 +304,22 @@ impl Clerk {
 
     fn link(&mut self, link: &StateDigest) {
         let course = &mut self.course;
-        if let Some((last, _)) = course.digests.last()
+        let last = course.digests.last().map(|(tick, _)| *tick);
+        let is_of_change = last == Some(link.tick);
+        if let Some(last) = last
+            && !is_of_change
             && link.tick != last + 1
         {
-            course.gap_after = course.gap_after.or(Some(*last));
+            course.gap_after = course.gap_after.or(Some(last));
         }
         let fits = self.chain.as_mut().is_none_or(|it| it.link(link.tick, link.digest) == *link);
         if !fits {
             course.broken_at = course.broken_at.or(Some(link.tick));
         }
-        course.digests.push((link.tick, link.digest));
+        match course.changes.last_mut() {
+            Some(change) if is_of_change => change.digest = Some(link.digest),
+            _ => course.digests.push((link.tick, link.digest)),
+        }
     }
 
     fn finish(mut self) -> Course {

@@ -19,6 +19,9 @@ use crate::{
 /// Stages below this share are not shown to people.
 const SHARE_SHOWN: Real = 5e-4;
 
+/// Share of the processors below which others were at work.
+const SHARE_OWN: Real = 0.9;
+
 /// One case, measured.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Figures {
@@ -208,6 +211,12 @@ impl Figures {
         )?;
         self.write_shares(text)?;
         self.write_peers(text)?;
+        if self.processor_share.is_some_and(|it| it < SHARE_OWN) {
+            writeln!(
+                text,
+                "  others had the processors: speeds and ratios say little; measure on a quiet machine"
+            )?;
+        }
         let memory = |bytes| format!("{:.0} MiB", real_of(bytes) / 1_048_576.0);
         writeln!(
             text,

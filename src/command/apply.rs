@@ -1,10 +1,10 @@
 //! Commands become controls: checked, limited, or refused with a reason.
 
-use super::{Command, CommandCounts, CommandRecord, Limit, Outcome, PoseCommand, Refusal};
+use super::{Command, CommandCounts, CommandRecord, JOINTS, Limit, Outcome, PoseCommand, Refusal};
 use crate::{
     base::{Pose, Quat, Real, Vec3},
     cosim::Inputs,
-    scene::Scene,
+    scene::{Object, Scene},
 };
 
 /// How far a quaternion's length may be from 1.
@@ -49,21 +49,52 @@ pub(super) struct Target {
 impl Desk {
     /// A desk for `scene`: the flange shall stay where it is.
     pub fn new(scene: &Scene) -> Self {
-        let nanoseconds = |time: Real| std::time::Duration::from_secs_f64(time).as_nanos();
         Self {
             names: scene.objects.iter().map(|object| object.name.clone()).collect(),
             gauge_range: [scene.chamber.gauge_min, scene.chamber.gauge_max],
             speed_max: scene.flange.speed_max,
-            drive_timeouts_ns: scene
-                .objects
-                .iter()
-                .map(|o| u64::try_from(nanoseconds(o.drive_timeout)).unwrap_or(u64::MAX))
-                .collect(),
+            drive_timeouts_ns: scene.objects.iter().map(drive_timeout_ns).collect(),
             gauge_setpoint: 0.0,
             flange: Target { pose: scene.flange.pose, time_ns: 0 },
             drives: vec![None; scene.objects.len()],
             counts: CommandCounts::default(),
         }
+    }
+
+    /// Forgets what was commanded, not what was counted.
+    pub fn restart(&mut self, scene: &Scene) {
+        let counts = self.counts;
+        *self = Self { counts, ..Self::new(scene) };
+    }
+
+    /// Makes room for an object that comes last.
+    pub fn insert(&mut self, object: &Object) {
+        self.names.push(object.name.clone());
+        self.drive_timeouts_ns.push(drive_timeout_ns(object));
+        self.drives.push(None);
+    }
+
+    /// Forgets object `i`.
+    pub fn remove(&mut self, i: usize) {
+        self.names.remove(i);
+        self.drive_timeouts_ns.remove(i);
+        self.drives.remove(i);
+    }
+
+    /// Object `i` was put elsewhere: nothing drives it any more.
+    pub fn release(&mut self, i: usize) {
+        self.drives[i] = None;
+    }
+
+    /// The flange was put elsewhere and shall stay there.
+    pub fn place_flange(&mut self, pose: Pose, now_ns: u64) {
+        self.flange = Target { pose, time_ns: now_ns };
+    }
+
+    /// Simulated time has become zero: what was commanded before was commanded at the start.
+    pub fn restart_time(&mut self) {
+        self.flange.time_ns = 0;
+        self.drives.iter_mut().flatten().for_each(|drive| drive.time_ns = 0);
     }
 
     /// How commands fared so far.
@@ -124,13 +155,9 @@ impl Desk {
         match command {
             Command::Vacuum { gauge_pa } => {
                 finite("gauge pressure", *gauge_pa)?;
-                let [min, max] = self.gauge_range;
-                let set_pa = gauge_pa.clamp(min, max);
-                self.gauge_setpoint = set_pa;
-                let asked_pa = *gauge_pa;
-                let is_limited = asked_pa < min || asked_pa > max;
-                Ok(is_limited.then_some(Limit::PumpRange { asked_pa, set_pa }))
+                Ok(self.set_gauge(*gauge_pa))
             }
+            Command::Joints { names, positions, .. } => self.set_joints(names, positions, now_ns),
             Command::FlangePose(pose) => {
                 let pose = self.pose_in_world(pose, frames)?;
                 let limit = self.jump(&self.flange, &pose, now_ns);
@@ -151,6 +178,52 @@ impl Desk {
                 Ok(None)
             }
         }
+    }
+
+    fn set_gauge(&mut self, asked_pa: Real) -> Option<Limit> {
+        let [min, max] = self.gauge_range;
+        let set_pa = asked_pa.clamp(min, max);
+        self.gauge_setpoint = set_pa;
+        let is_limited = asked_pa < min || asked_pa > max;
+        is_limited.then_some(Limit::PumpRange { asked_pa, set_pa })
+    }
+
+    /// All joints or none: nothing is set before everything has been checked.
+    fn set_joints(
+        &mut self,
+        names: &[String],
+        positions: &[Real],
+        now_ns: u64,
+    ) -> Result<Option<Limit>, Refusal> {
+        if names.len() != positions.len() {
+            let (n_names, n_positions) = (names.len(), positions.len());
+            return Err(Refusal::JointsWithoutPosition { n_names, n_positions });
+        }
+        let p = self.flange.pose.translation.vector;
+        let (roll, pitch, yaw) = self.flange.pose.rotation.euler_angles();
+        let mut wanted = [Real::NAN, p.x, p.y, p.z, roll, pitch, yaw];
+        let mut moves_flange = false;
+        for (name, position) in names.iter().zip(positions) {
+            finite("joint position, squared,", position * position)?;
+            let i = JOINTS.iter().position(|it| it == name).ok_or_else(|| {
+                Refusal::UnknownJoint { joint: name.clone(), known: JOINTS.join(", ") }
+            })?;
+            wanted[i] = *position;
+            moves_flange |= 0 < i;
+        }
+        let [vacuum, x, y, z, roll, pitch, yaw] = wanted;
+        let mut limit = None;
+        if moves_flange {
+            let rotation = Quat::from_euler_angles(roll, pitch, yaw);
+            let pose = Pose::from_parts(Vec3::new(x, y, z).into(), rotation);
+            limit = self.jump(&self.flange, &pose, now_ns);
+            self.flange = Target { pose, time_ns: now_ns };
+        }
+        if !vacuum.is_nan() {
+            let [min, _] = self.gauge_range;
+            limit = self.set_gauge(vacuum * min).or(limit);
+        }
+        Ok(limit)
     }
 
     fn find(&self, object: &str) -> Result<usize, Refusal> {
@@ -206,6 +279,11 @@ impl Desk {
         let allowed_m = self.speed_max * (elapsed + 1e-3) + 1e-3;
         (distance_m > allowed_m).then_some(Limit::PoseJump { distance_m, allowed_m })
     }
+}
+
+fn drive_timeout_ns(object: &Object) -> u64 {
+    let nanoseconds = std::time::Duration::from_secs_f64(object.drive_timeout).as_nanos();
+    u64::try_from(nanoseconds).unwrap_or(u64::MAX)
 }
 
 fn finite(field: &'static str, value: Real) -> Result<(), Refusal> {

@@ -4,6 +4,8 @@
 //! recorded too.
 
 pub mod apply;
+pub mod change; // what no body could do by moving
+mod saved_change; // the same as bytes
 mod saved_desk; // what was commanded, as bytes
 
 /// One wish of the outside.
@@ -23,11 +25,36 @@ pub enum Command {
         /// Where it shall be.
         pose: PoseCommand,
     },
+    /// Set-points of the gripper's joints, as `~/joint_states` names them; joints that are not named
+    /// keep theirs.
+    Joints {
+        /// Stamp of the message [ns].
+        stamp_ns: i64,
+        /// Names of the joints.
+        names: Vec<String>,
+        /// Position of each: share of the strongest vacuum, m, rad.
+        positions: Vec<f64>,
+    },
     /// Gives a driven object back to dynamics at once.
     ObjectRelease {
         /// Name of the object.
         object: String,
     },
+}
+
+/// Names of the gripper's joints: the vacuum, then the flange along and about the world's axes.
+pub const JOINTS: [&str; 7] =
+    ["vacuum", "flange_x", "flange_y", "flange_z", "flange_roll", "flange_pitch", "flange_yaw"];
+
+impl Command {
+    /// Stamp of a command that has one [ns].
+    pub fn stamp_ns(&self) -> Option<i64> {
+        match self {
+            Self::FlangePose(pose) | Self::ObjectPose { pose, .. } => Some(pose.stamp_ns),
+            Self::Joints { stamp_ns, .. } => Some(*stamp_ns),
+            Self::Vacuum { .. } | Self::ObjectRelease { .. } => None,
+        }
+    }
 }
 
 /// A pose as it arrived.
@@ -97,6 +124,22 @@ pub enum Refusal {
         frame_id: String,
         /// What there is.
         known: String,
+    },
+    /// The joint is not one of the gripper's.
+    #[error("unknown joint `{joint}`: use some of {known}")]
+    UnknownJoint {
+        /// What was asked for.
+        joint: String,
+        /// What there is.
+        known: String,
+    },
+    /// There is not one position for each joint.
+    #[error("{n_positions} positions for {n_names} joints: send one for each")]
+    JointsWithoutPosition {
+        /// How many joints.
+        n_names: usize,
+        /// How many positions.
+        n_positions: usize,
     },
     /// The object is not one of this scene's.
     #[error("unknown object `{object}`: the scene has {known}")]

@@ -5,10 +5,12 @@
 //! move on with their last velocity. A staggered exchange at the tick itself would be unstable:
 //! a light body between stiff contacts swings faster than 1 kHz.
 
+mod change; // what no body could do by moving
 pub mod compile;
 pub mod flange;
 pub mod rapier_world;
 pub mod saved_state;
+pub mod volume; // whether places overlap
 
 use crate::{
     base::{
@@ -84,13 +86,18 @@ pub struct Coupled {
 impl Coupled {
     /// Couples a settled state with the rigid world. The last body of `model` is the table.
     pub fn new(model: Model, plan: Plan, state: State, world: RapierWorld, limits: Limits) -> Self {
+        let controls = controls(&model, &state, &world);
         let n_objects = model.bodies.len() - 1;
-        let table = BodyMotion { pose: model.table, twist: Twist::zero() };
-        let mut bodies: Vec<BodyMotion> = (0..n_objects).map(|i| world.motion(i)).collect();
-        bodies.push(table);
-        let controls = Controls { gauge_setpoint: state.gauge, walls: state.walls.clone(), bodies };
         let scratch = Scratch::new(&model);
         Self { model, plan, state, scratch, world, controls, limits, n_objects }
+    }
+
+    /// Goes on from another state and another rigid world of the same model.
+    fn restart(&mut self, state: State, world: RapierWorld) {
+        self.controls = controls(&self.model, &state, &world);
+        self.n_objects = self.model.bodies.len() - 1;
+        self.scratch = Scratch::new(&self.model);
+        (self.state, self.world) = (state, world);
     }
 
     /// Number of objects.
@@ -191,6 +198,14 @@ impl Coupled {
             gripper_on_mount: scaled(&sums.on_mount, share),
         }
     }
+}
+
+fn controls(model: &Model, state: &State, world: &RapierWorld) -> Controls {
+    let n_objects = model.bodies.len() - 1;
+    let table = BodyMotion { pose: model.table, twist: Twist::zero() };
+    let mut bodies: Vec<BodyMotion> = (0..n_objects).map(|i| world.motion(i)).collect();
+    bodies.push(table);
+    Controls { gauge_setpoint: state.gauge, walls: state.walls.clone(), bodies }
 }
 
 struct Sums {

@@ -6,7 +6,7 @@
 
 use nalgebra::Isometry3;
 use rapier3d_f64::{
-    parry::shape::TriMeshFlags,
+    parry::{query::contact, shape::TriMeshFlags},
     prelude::{
         CoefficientCombineRule, Collider, ColliderBuilder, MassProperties, PhysicsWorld,
         Pose as RapierPose, RigidBodyAdditionalMassProps, RigidBodyBuilder, RigidBodyHandle,
@@ -27,13 +27,13 @@ use crate::{
             body::BodyMotion,
             shape::{Bulk, Surface},
         },
-        model::BodySurface,
+        model::{BodyModel, BodySurface},
     },
-    scene::Scene,
+    scene::{Object, Scene},
 };
 
 /// Half the edge of the table's slab, and half its thickness [m].
-const TABLE_HALF: [Real; 2] = [2.0, 0.1];
+pub const TABLE_HALF: [Real; 2] = [2.0, 0.1];
 /// Length that rapier takes as typical of the bodies [m].
 const LENGTH_UNIT: Real = 0.02;
 
@@ -66,28 +66,75 @@ impl RapierWorld {
             .friction(scene.table.friction)
             .friction_combine_rule(CoefficientCombineRule::Max);
         world.insert(RigidBodyBuilder::fixed().translation(middle), slab);
-        let mut bodies = Vec::new();
-        for ((object, body), bulk) in scene.objects.iter().zip(&model.bodies).zip(&bulks) {
-            let BodySurface::Shape(surface) = &body.surface else { continue };
-            let mut pose = object.pose;
-            pose.translation.vector += object.pose.rotation * bulk.centre_of_mass;
-            let properties = MassProperties::with_principal_inertia_frame(
-                Vector::ZERO,
-                bulk.mass,
-                vector(&bulk.principal_inertia),
-                bulk.principal_axes.into(),
-            );
-            let rigid = RigidBodyBuilder::dynamic()
-                .pose(RapierPose::from(pose))
-                .additional_mass_properties(properties)
-                .can_sleep(false);
-            let collider = collider(surface)
-                .density(0.0)
-                .friction(0.0)
-                .friction_combine_rule(CoefficientCombineRule::Max);
-            bodies.push(world.insert(rigid, collider).0);
+        let mut this = Self { world, bodies: Vec::new(), bulks: Vec::new() };
+        for ((object, body), bulk) in scene.objects.iter().zip(&model.bodies).zip(bulks) {
+            this.insert(object, body, bulk);
         }
-        Self { world, bodies, bulks }
+        this
+    }
+
+    /// Adds an object behind all others, at rest in its own pose.
+    pub fn insert(&mut self, object: &Object, body: &BodyModel, bulk: Bulk) {
+        let BodySurface::Shape(surface) = &body.surface else { return };
+        let properties = MassProperties::with_principal_inertia_frame(
+            Vector::ZERO,
+            bulk.mass,
+            vector(&bulk.principal_inertia),
+            bulk.principal_axes.into(),
+        );
+        let rigid = RigidBodyBuilder::dynamic()
+            .pose(RapierPose::from(centre_pose(object, &bulk)))
+            .additional_mass_properties(properties)
+            .can_sleep(false);
+        let collider = collider(surface)
+            .density(0.0)
+            .friction(0.0)
+            .friction_combine_rule(CoefficientCombineRule::Max);
+        self.bodies.push(self.world.insert(rigid, collider).0);
+        self.bulks.push(bulk);
+    }
+
+    /// Takes object `i` away.
+    pub fn remove(&mut self, i: usize) {
+        self.world.remove_body(self.bodies.remove(i));
+        self.bulks.remove(i);
+    }
+
+    /// Puts object `i` elsewhere and gives it back to dynamics.
+    pub fn place(&mut self, i: usize, motion: &BodyMotion) {
+        let body = &mut self.world.bodies[self.bodies[i]];
+        body.set_body_type(RigidBodyType::Dynamic, true);
+        body.set_position(RapierPose::from(motion.pose), true);
+        body.set_linvel(vector(&motion.twist.linear), true);
+        body.set_angvel(vector(&motion.twist.angular), true);
+    }
+
+    /// Whether a body of this surface at `pose` would overlap the table or an object other than
+    /// `except` by more than `grace` [m]: the object's index, or `None` for the table.
+    pub fn overlap(
+        &self,
+        surface: &Surface,
+        pose: &Pose,
+        except: Option<usize>,
+        grace: Real,
+    ) -> Option<Option<usize>> {
+        let shape = collider(surface).build();
+        let offset: Isometry3<Real> = shape.position_wrt_parent().map_or_else(
+            Isometry3::identity, // no offset
+            |it| (*it).into(),
+        );
+        let here = RapierPose::from(pose * offset);
+        for (_, other) in self.world.colliders.iter() {
+            let whose = other.parent().and_then(|it| self.bodies.iter().position(|b| *b == it));
+            if whose.is_some() && whose == except {
+                continue;
+            }
+            let found = contact(&here, shape.shape(), other.position(), other.shape(), 0.0);
+            if found.is_ok_and(|it| it.is_some_and(|it| it.dist < -grace)) {
+                return Some(whose);
+            }
+        }
+        None
     }
 
     /// How object `i` moves now.
@@ -194,6 +241,13 @@ impl RapierWorld {
             digest.vectors(&[motion.twist.linear, motion.twist.angular]);
         }
     }
+}
+
+/// Pose of an object's centre of mass where its scene puts it.
+pub fn centre_pose(object: &Object, bulk: &Bulk) -> Pose {
+    let mut pose = object.pose;
+    pose.translation.vector += object.pose.rotation * bulk.centre_of_mass;
+    pose
 }
 
 /// The shape for contacts with the table, about the centre of mass.

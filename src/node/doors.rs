@@ -1,11 +1,13 @@
 //! The doors to the outside that a scene asks for: recording, streams, ROS 2. A door whose feature
 //! was not built says so when it is asked for.
 
-use std::sync::Arc;
-
-use super::{launch::RunError, outlets::Outlets, progress::Progress};
 #[cfg(feature = "bag")]
-use crate::cosim::compile::PHYSICS_VERSION;
+use std::time::Duration;
+use std::{path::Path, sync::Arc};
+
+use super::{front::Front, launch::RunError, outlets::Outlets, progress::Progress};
+#[cfg(feature = "bag")]
+use crate::{bag::recording::INPUTS, cosim::compile::PHYSICS_VERSION, scene::Shape};
 use crate::{
     scene::{Controller, OnError, Scene},
     sources::Source,
@@ -26,6 +28,12 @@ pub(super) struct Sizes {
 pub(super) struct Doors<'a> {
     /// What is asked for.
     pub(super) scene: &'a Scene,
+    /// Where it is from.
+    #[cfg_attr(
+        not(feature = "ros"),
+        expect(dead_code, reason = "without ROS 2 nobody asks for others beside it")
+    )]
+    pub(super) scene_file: &'a Path,
     /// Makes messages for all who carry them.
     #[cfg_attr(
         not(any(feature = "ros", feature = "bag")),
@@ -42,8 +50,14 @@ pub(super) struct Doors<'a> {
     pub(super) facts: &'a [(&'static str, String)],
 }
 
-/// Those who may command from outside.
-pub(super) type Outside = Vec<Box<dyn Source>>;
+/// Those who may command and ask from outside.
+#[derive(Default)]
+pub struct Outside {
+    /// Those who command.
+    pub sources: Vec<Box<dyn Source>>,
+    /// Those who ask.
+    pub front: Option<Front>,
+}
 
 impl Doors<'_> {
     /// Opens all of them.
@@ -58,7 +72,7 @@ impl Doors<'_> {
         if self.scene.outputs.stream {
             self.open_stream(&mut outlets, sizes);
         }
-        let mut outside = Outside::new();
+        let mut outside = Outside::default();
         let opened = if self.scene.outputs.ros.enabled {
             self.open_ros(&mut outlets, &mut outside)
         } else {
@@ -115,7 +129,7 @@ impl Doors<'_> {
     #[cfg(feature = "bag")]
     fn subject(&self) -> crate::bag::Subject {
         let bag = &self.scene.outputs.bag;
-        let whole_ns = |time: f64| std::time::Duration::from_secs_f64(time).as_nanos();
+        let whole_ns = |time: f64| Duration::from_secs_f64(time).as_nanos();
         let format = crate::bag::Format {
             compression: bag.compression,
             split_bytes: bag.split_size.map(|mebibytes| mebibytes << 20),
@@ -130,6 +144,9 @@ impl Doors<'_> {
             ("substep_s", format!("{:e}", self.substep_s)),
             ("machine", format!("{} {}", std::env::consts::OS, std::env::consts::ARCH)),
         ];
+        let inputs = self.encoder.topics().iter().filter(|it| it.is_input);
+        let inputs: Vec<&str> = inputs.map(|it| it.name.as_str()).collect();
+        facts.push((INPUTS, serde_json::json!(inputs).to_string()));
         facts.extend_from_slice(self.facts);
         let scene_text = crate::scene::to_yaml(self.scene);
         crate::bag::Subject { scene_text, scene_files: self.scene_files(), facts, format }
@@ -140,7 +157,7 @@ impl Doors<'_> {
     fn scene_files(&self) -> Vec<(String, Vec<u8>)> {
         let mut files = Vec::new();
         for object in &self.scene.objects {
-            let crate::scene::Shape::Mesh { file, .. } = &object.shape else { continue };
+            let Shape::Mesh { file, .. } = &object.shape else { continue };
             match std::fs::read(file) {
                 Ok(bytes) => {
                     let name = file.file_name().unwrap_or_default().to_string_lossy();
@@ -198,23 +215,49 @@ impl Doors<'_> {
     #[cfg(feature = "ros")]
     fn open_ros(&self, outlets: &mut Outlets, outside: &mut Outside) -> Result<(), String> {
         use crate::{
+            services::ros::RosBench,
+            simulator::{Simulator, Version, asks},
             sinks::{
+                announced::Announced,
                 fanout::Delivery,
                 reach::Reach,
                 ros::{RosNode, RosSink},
             },
             sources::ros::RosSource,
+            wire::topics::full_name,
         };
 
         let reach = Reach::choose(&self.scene.outputs.ros, |name| std::env::var(name).ok());
         let reach = reach.map_err(|error| error.to_string())?;
-        let node = RosNode::join(&reach).map_err(|error| error.to_string())?;
+        let node = RosNode::join_as(&self.scene.outputs.ros.node, &reach);
+        let node = node.map_err(|error| error.to_string())?;
+        let announced = Arc::new(Announced::default());
         let sink = RosSink::new(&node, self.encoder).map_err(|error| error.to_string())?;
+        let sink = sink.announcing(&announced);
         let source = RosSource::new(&node, self.encoder).map_err(|error| error.to_string())?;
         // Old states are worth nothing to a controller, but half a second bridges a hiccup.
         let delivery = Delivery::Latest { depth: 500 };
         outlets.fanout.add(Box::new(sink), delivery).map_err(|error| error.to_string())?;
-        outside.push(Box::new(source));
+        outside.sources.push(Box::new(source));
+        let ros = &self.scene.outputs.ros;
+        let prefix = ros.interfaces_prefix.as_deref();
+        let (mut offers, asked) = asks::asked(&ros.node, prefix);
+        let mut channels = asks::channels(&ros.node, prefix);
+        offers.iter_mut().for_each(|it| it.name = full_name(ros, &it.name));
+        channels.iter_mut().for_each(|it| it.name = full_name(ros, &it.name));
+        let bench = RosBench::open(&node, &offers, &channels, &announced);
+        let bench = Box::new(bench.map_err(|error| error.to_string())?);
+        let is_stopped = matches!(self.scene.controller, Controller::Topics { .. });
+        let version = match self.scene.outputs.ros.interfaces_version {
+            Some(1) => Version::One,
+            Some(2) => Version::Two,
+            _ => Version::of_distribution(&std::env::var("ROS_DISTRO").unwrap_or_default()),
+        };
+        let simulator = Simulator::new(self.scene, asked, is_stopped)
+            .with_channels(channels.len())
+            .beside(self.scene_file)
+            .speaking(version);
+        outside.front = Some(Front::new(simulator, bench, announced));
         Ok(())
     }
 

@@ -1,12 +1,14 @@
 //! From a scene to a run and its summary.
 
-use std::{sync::Arc, time::Duration};
+use std::{path::PathBuf, sync::Arc, time::Duration};
 
 use super::{
     Crew, Ending, Report,
     cache::Cache,
-    doors::{Doors, Sizes},
+    doors::{Doors, Outside, Sizes},
+    front::Front,
     judge::Judge,
+    lockstep::Gate,
     orders::Orders,
     outlets::Closed,
     pacer::Pacer,
@@ -20,9 +22,8 @@ use super::{
 use crate::{
     cosim::compile::Compiled,
     physics::health::Diverged,
-    scene::{Controller, Scene},
+    scene::{Controller, Lockstep, Scene},
     sinks::RunStatistics,
-    sources::Source,
     wire::to_ros::Encoder,
 };
 
@@ -33,6 +34,8 @@ pub struct Options {
     pub n_threads: usize,
     /// Simulated time after which the run ends [s].
     pub duration: Option<f64>,
+    /// The file that the scene is from.
+    pub scene_file: PathBuf,
     /// Where settled start states are kept.
     pub cache: Cache,
     /// True shows no progress.
@@ -84,7 +87,9 @@ pub fn launch(scene: &Scene, options: &Options) -> Result<Finished, RunError> {
     let begin = |compiled: Compiled, progress: &Progress| {
         Ok(start::start(compiled, options.n_threads, &options.cache, progress)?)
     };
-    launch_with(scene, options, begin, |outside| Orders::new(scene, outside))
+    launch_with(scene, options, begin, |outside| {
+        (Orders::new(scene, outside.sources), outside.front)
+    })
 }
 
 /// Runs `scene` under the commands of `script` alone, to the end that `options` or the scene name.
@@ -100,11 +105,11 @@ pub fn launch_by(
     let begin = |compiled: Compiled, progress: &Progress| {
         Ok(start::start(compiled, options.n_threads, &options.cache, progress)?)
     };
-    launch_with(scene, options, begin, |_| Orders::from_outside(vec![Box::new(script)]))
+    launch_with(scene, options, begin, |_| (Orders::from_outside(vec![Box::new(script)]), None))
 }
 
 /// Runs `scene` to its end from a session that `begin` makes of the compiled scene, under the
-/// orders that `command` makes of those outside.
+/// orders that `command` makes of those outside. Whoever it leaves out can only look.
 ///
 /// # Errors
 /// If the run cannot begin.
@@ -112,7 +117,7 @@ pub fn launch_with(
     scene: &Scene,
     options: &Options,
     begin: impl FnOnce(Compiled, &Progress) -> Result<Started, RunError>,
-    command: impl FnOnce(Vec<Box<dyn Source>>) -> Orders,
+    command: impl FnOnce(Outside) -> (Orders, Option<Front>),
 ) -> Result<Finished, RunError> {
     let since_start = Pacer::start(false);
     let shutdown = Shutdown::listen()?;
@@ -123,14 +128,22 @@ pub fn launch_with(
     let encoder = Arc::new(Encoder::new(scene, &mesh.triangles, &mesh.positions));
     let sizes = Sizes { n_grains: scene.grains.count, n_vertices: mesh.n_vertices() };
     // Recording first: a folder that cannot be written is noticed before the bag is filled.
-    let facts = &options.facts;
-    let doors = Doors { scene, encoder: &encoder, progress: &progress, substep_s, facts };
-    let (outlets, outside) = doors.open(sizes)?;
+    let (outlets, outside) = {
+        let Options { scene_file, facts, .. } = options;
+        Doors { scene, scene_file, encoder: &encoder, progress: &progress, substep_s, facts }
+            .open(sizes)?
+    };
     let Started { mut session, origin } = begin(compiled, &progress)?;
     let end_ns = end_ns(scene, options.duration);
     progress.running(end_ns);
+    let (orders, front) = command(outside);
+    // A script has no commands but its own: nobody waits for others.
+    let gate = Gate::new(if front.is_some() { lockstep(scene) } else { Lockstep::OFF });
     let mut crew = Crew {
-        orders: command(outside),
+        orders,
+        gate,
+        front,
+        checkpoints: Vec::new(),
         outlets,
         schedule: Schedule::new(&scene.outputs, scene.time.tick_ns),
         judge: Judge::default(),
@@ -139,6 +152,8 @@ pub fn launch_with(
         tick_ns: scene.time.tick_ns,
         end_ns,
         is_real_time: scene.outputs.real_time,
+        n_packets: 0,
+        has_missed: false,
         about: RunStatistics { substep_s, seed: scene.seed, ..RunStatistics::default() },
     };
     let start_time_s = since_start.wall_time_s();
@@ -157,11 +172,19 @@ struct Beginning {
 /// The earlier of the scene's and the command line's end [ns].
 fn end_ns(scene: &Scene, duration: Option<f64>) -> Option<u64> {
     let of_scene = match scene.controller {
-        Controller::Topics { duration } => duration,
+        Controller::Topics { duration, .. } => duration,
         Controller::Builtin(_) => None,
     };
     let ends = duration.into_iter().chain(of_scene).map(Duration::from_secs_f64);
     ends.min().map(|end| u64::try_from(end.as_nanos()).unwrap_or(u64::MAX))
+}
+
+/// Whether ticks wait for commands.
+fn lockstep(scene: &Scene) -> Lockstep {
+    match scene.controller {
+        Controller::Topics { lockstep, .. } => lockstep,
+        Controller::Builtin(_) => Lockstep::OFF,
+    }
 }
 
 fn finish(

@@ -2,13 +2,16 @@
 
 pub mod cache; // settled start states on disk
 mod doors; // recording, streams, ROS 2
+pub mod front; // the simulator at its bench
 pub mod judge; // what came of a run
 pub mod launch; // scene to a run
+pub mod lockstep; // ticks that wait for a controller
 pub mod orders; // who may command
 pub mod outlets; // where results go
 pub mod pacer; // the only clock
 pub mod plant; // what runs
 pub mod progress; // one line for the terminal
+pub mod ros_args; // what ROS 2 tools put on a command line
 pub mod schedule; // what is due when
 pub mod sealed; // files that are whole or not there
 pub mod shutdown; // Ctrl-C
@@ -18,7 +21,9 @@ pub mod summary; // what is left at the end
 use std::{fmt, mem, sync::Arc, time::Duration};
 
 use self::{
+    front::Front,
     judge::Judge,
+    lockstep::{Gate, Missed},
     orders::Orders,
     outlets::Outlets,
     pacer::Pacer,
@@ -28,6 +33,7 @@ use self::{
     shutdown::Shutdown,
 };
 use crate::{
+    simulator::World,
     sinks::{Packet, RunStatistics},
     snapshot::{Snapshot, checkpoint::Checkpoint},
 };
@@ -46,6 +52,10 @@ pub enum Ending {
     Interrupted,
     /// The recording failed, and the scene says to stop then.
     RecordingFailed,
+    /// A client of the simulator told it to quit.
+    Quit,
+    /// In lockstep no command came in time, and the scene says to end then.
+    NoCommand,
 }
 
 impl fmt::Display for Ending {
@@ -55,6 +65,8 @@ impl fmt::Display for Ending {
             Self::TimeUp => "time is up",
             Self::Interrupted => "interrupted",
             Self::RecordingFailed => "recording failed",
+            Self::Quit => "told to quit",
+            Self::NoCommand => "no command in time",
         })
     }
 }
@@ -63,6 +75,10 @@ impl fmt::Display for Ending {
 pub struct Crew {
     /// Who commands.
     pub orders: Orders,
+    /// Whether ticks wait for commands.
+    pub gate: Gate,
+    /// Who may ask and change, if anybody.
+    pub front: Option<Front>,
     /// Where results go.
     pub outlets: Outlets,
     /// What is due when.
@@ -81,6 +97,12 @@ pub struct Crew {
     pub is_real_time: bool,
     /// What statistics say of the scene.
     pub about: RunStatistics,
+    /// Packets given out so far.
+    pub n_packets: u64,
+    /// What the next packet keeps besides.
+    pub checkpoints: Vec<Checkpoint>,
+    /// True once a command was missed that the run cannot go on without.
+    pub has_missed: bool,
 }
 
 /// How a run went, as far as clocks and plant know.
@@ -98,26 +120,31 @@ pub struct Report<Fault> {
 /// Runs `plant` until there is a reason to end. What was recorded is still open afterwards.
 pub fn run<P: Plant>(plant: &mut P, crew: &mut Crew) -> Report<P::Fault> {
     let mut seen = Arc::new(Packet::new(plant.snapshot(Parts::ALL), None));
-    crew.wait_for_orders(plant, &seen);
+    let mut pacer = Pacer::start_at(crew.run_time_ns(&seen.snapshot), crew.is_real_time);
     // The start is kept whatever the rate, at whatever time it is.
-    let mut checkpoints: Vec<_> = crew.checkpoint(plant, true).into_iter().collect();
-    let mut pacer = Pacer::start_at(seen.snapshot.time_ns, crew.is_real_time);
+    crew.keep(plant, true);
+    crew.greet();
     let ending = loop {
         if let Some(ending) = crew.ending(&seen.snapshot) {
             break Ok(ending);
         }
-        let commands = crew.orders.drain(&seen.snapshot); // outside to plain values
-        if let Err(fault) = plant.tick(&commands) {
+        seen = crew.attend(plant, seen); // questions between two ticks
+        // Outside to plain values.
+        if !crew.listen(&seen.snapshot) {
+            crew.stand_still(plant, &seen, &mut pacer);
+            continue;
+        }
+        if let Err(fault) = plant.tick(&crew.gate.pass()) {
             break Err(fault); // the core cannot go on, nobody can
         }
         let time_ns = seen.snapshot.time_ns + crew.tick_ns;
         let snapshot = plant.snapshot(crew.schedule.parts(time_ns)); // a copy
-        pacer.wait_until(time_ns); // the only clock
-        let is_due = crew.schedule.checkpoint(time_ns);
-        checkpoints.extend(crew.checkpoint(plant, is_due));
-        let packet = crew.pack(snapshot, &pacer);
-        seen = Arc::new(packet.with_checkpoints(mem::take(&mut checkpoints)));
+        let run_time_ns = crew.run_time_ns(&snapshot);
+        crew.pace(&mut pacer, run_time_ns); // the only clock
+        crew.keep(plant, crew.schedule.checkpoint(run_time_ns));
+        seen = Arc::new(crew.pack(snapshot, &pacer));
         crew.outlets.publish(&plant.view(&seen.snapshot), &seen); // never fails the run
+        crew.ticked(&seen);
     };
     crew.progress.end();
     let (wall_time_s, real_time_factor) = (pacer.wall_time_s(), pacer.real_time_factor_mean());
@@ -125,31 +152,120 @@ pub fn run<P: Plant>(plant: &mut P, crew: &mut Crew) -> Report<P::Fault> {
 }
 
 impl Crew {
-    /// Shows the start to the outside until it commands something.
-    fn wait_for_orders<P: Plant>(&mut self, plant: &P, start: &Arc<Packet>) {
-        if self.orders.is_waiting() {
+    fn greet(&self) {
+        if self.is_waiting() {
             self.progress.say(&"waiting for a first command");
-        }
-        let mut shown_at = None;
-        let waiting = Pacer::start(false);
-        while self.orders.is_waiting() && !self.shutdown.is_requested() {
-            let now = waiting.wall_time_s();
-            if shown_at.is_none_or(|then| 1.0 <= (now - then) * f64::from(WAITING_RATE)) {
-                self.outlets.publish(&plant.view(&start.snapshot), start);
-                shown_at = Some(now);
-            }
-            pacer::pause();
         }
     }
 
-    /// All that is needed to go on, if it is due and someone keeps it.
-    fn checkpoint<P: Plant>(&self, plant: &P, is_due: bool) -> Option<Checkpoint> {
-        if is_due && self.outlets.bag.is_some() { plant.checkpoint() } else { None }
+    /// True until something sets a run going that shall begin by command.
+    fn is_waiting(&self) -> bool {
+        self.front.as_ref().map_or(self.orders.is_waiting(), |it| it.simulator().is_waiting())
+    }
+
+    /// Takes the commands that have come; true if the next tick may begin. While time stands still
+    /// they wait where they came in, where the oldest give way; a lockstep needs to see them.
+    fn listen(&mut self, seen: &Snapshot) -> bool {
+        // Asked once: a first command that comes right after is for the next look.
+        let (is_playing, is_stepping) = match &self.front {
+            None => (!self.orders.is_waiting(), false),
+            Some(front) => (front.simulator().may_tick(), front.simulator().is_stepping()),
+        };
+        if is_playing {
+            let mut commands = self.orders.drain(seen);
+            commands.extend(self.front.iter_mut().flat_map(Front::take_commands));
+            self.gate.offer(commands, seen.time_ns);
+        }
+        is_playing && self.gate.is_open(is_stepping)
+    }
+
+    /// Answers questions, and shows what they have changed.
+    fn attend<P: Plant>(&mut self, plant: &mut P, seen: Arc<Packet>) -> Arc<Packet> {
+        let Some(front) = &mut self.front else { return seen };
+        if !self.orders.is_waiting() || front.has_commands() {
+            front.first_command();
+        }
+        let changed = {
+            let mut world = World { subject: plant, seen: &seen.snapshot };
+            front.attend(&mut world, self.n_packets)
+        };
+        if changed.changes.is_empty() {
+            return seen;
+        }
+        if changed.is_state_reset || changed.is_time_reset {
+            self.orders.restart();
+            self.judge = Judge::default();
+        }
+        let packet = Packet::new(plant.snapshot(Parts::ALL), None).with_changes(changed.changes);
+        let packet = Arc::new(self.number(packet));
+        self.outlets.publish(&plant.view(&packet.snapshot), &packet);
+        packet
+    }
+
+    /// Time stands still: waits a moment for someone to change that. Who waits for a first command
+    /// is shown the start.
+    fn stand_still<P: Plant>(&mut self, plant: &P, seen: &Arc<Packet>, pacer: &mut Pacer) {
+        if self.is_waiting() && pacer.is_due(WAITING_RATE) {
+            self.outlets.publish(&plant.view(&seen.snapshot), seen);
+        }
+        let patience = if self.gate.is_lockstep() { pacer::NAP } else { pacer::PAUSE };
+        match &mut self.front {
+            Some(front) => front.wait(patience),
+            None => pacer::pause(),
+        }
+        pacer.stand_still();
+        let is_playing = self.front.as_ref().is_none_or(|it| it.simulator().may_tick());
+        let missed = if is_playing { self.gate.miss(pacer.stood_s()) } else { None };
+        if let Some(missed) = missed {
+            self.progress.say(&format!("no command for {:.3} s of wall time", pacer.stood_s()));
+            match (missed, &mut self.front) {
+                (Missed::Ended, _) => self.has_missed = true,
+                (Missed::Paused, Some(front)) => front.pause(),
+                _ => {}
+            }
+        }
+    }
+
+    /// Steps that someone waits for are not paced.
+    fn pace(&self, pacer: &mut Pacer, run_time_ns: u64) {
+        if self.front.as_ref().is_some_and(|it| it.simulator().is_stepping()) {
+            pacer.stand_still();
+        }
+        pacer.wait_until(run_time_ns);
+    }
+
+    fn ticked(&mut self, seen: &Packet) {
+        if let Some(front) = &mut self.front {
+            front.ticked(&seen.snapshot, self.n_packets);
+        }
+    }
+
+    fn number(&mut self, packet: Packet) -> Packet {
+        self.n_packets += 1;
+        packet.numbered(self.n_packets).with_checkpoints(mem::take(&mut self.checkpoints))
+    }
+
+    /// Takes all that is needed to go on, if it is due and someone keeps it, for the next packet.
+    fn keep<P: Plant>(&mut self, plant: &P, is_due: bool) {
+        if is_due && self.outlets.bag.is_some() {
+            self.checkpoints.extend(plant.checkpoint());
+        }
+    }
+
+    /// Time of the run: that of its ticks together, whatever became of simulated time.
+    fn run_time_ns(&self, seen: &Snapshot) -> u64 {
+        seen.run_tick.time_ns(self.tick_ns)
     }
 
     fn ending(&mut self, seen: &Snapshot) -> Option<Ending> {
         if self.shutdown.is_requested() {
             return Some(Ending::Interrupted);
+        }
+        if self.front.as_ref().is_some_and(|it| it.simulator().is_quitting()) {
+            return Some(Ending::Quit);
+        }
+        if self.has_missed {
+            return Some(Ending::NoCommand);
         }
         if self.orders.is_done() {
             return Some(Ending::Finished);
@@ -176,7 +292,7 @@ impl Crew {
             sinks: self.outlets.counters(),
             ..self.about.clone()
         });
-        Packet::new(snapshot, run)
+        self.number(Packet::new(snapshot, run))
     }
 }
 

@@ -18,15 +18,14 @@ pub struct Orders {
 
 struct Builtin {
     machine: PickAndLift,
-    /// Index of the object to pick.
-    object: usize,
+    parameters: scene::PickAndLift,
 }
 
 impl Orders {
     /// The built-in controller, if `scene` asks for it, and `outside`.
     pub fn new(scene: &Scene, outside: Vec<Box<dyn Source>>) -> Self {
         let builtin = match &scene.controller {
-            Controller::Builtin(parameters) => Some(Builtin::new(scene, parameters)),
+            Controller::Builtin(parameters) => Some(Builtin::new(parameters)),
             Controller::Topics { .. } => None,
         };
         Self { builtin, outside }
@@ -43,6 +42,13 @@ impl Orders {
         let mut commands = self.builtin.as_mut().map(|it| it.decide(seen)).unwrap_or_default();
         commands.extend(self.outside.iter_mut().flat_map(|source| source.drain(seen)));
         commands
+    }
+
+    /// The world is at its start again: so is the built-in controller.
+    pub fn restart(&mut self) {
+        if let Some(builtin) = &mut self.builtin {
+            builtin.machine = PickAndLift::new(&builtin.parameters);
+        }
     }
 
     /// What the built-in controller is doing.
@@ -67,13 +73,13 @@ impl Orders {
 }
 
 impl Builtin {
-    fn new(scene: &Scene, parameters: &scene::PickAndLift) -> Self {
-        let object = scene.objects.iter().position(|it| it.name == parameters.object);
-        Self { machine: PickAndLift::new(parameters), object: object.unwrap_or(0) }
+    fn new(parameters: &scene::PickAndLift) -> Self {
+        Self { machine: PickAndLift::new(parameters), parameters: parameters.clone() }
     }
 
     fn decide(&mut self, seen: &Snapshot) -> Vec<Command> {
-        let Some(object) = seen.objects.get(self.object) else { return Vec::new() };
+        let found = seen.objects.iter().find(|it| it.name == self.parameters.object);
+        let Some(object) = found else { return Vec::new() };
         self.machine.decide(&Observation {
             time_s: Duration::from_nanos(seen.time_ns).as_secs_f64(),
             flange_pose: seen.flange.pose,

@@ -11,11 +11,17 @@ use std::{
 /// Wall time over which the present real-time factor is taken.
 const WINDOW: Duration = Duration::from_secs(1);
 
-/// Measures wall time against simulated time.
+/// Measures wall time against the time of the run, which counts on when simulated time is reset.
 pub struct Pacer {
     start: Instant,
     /// Simulated time at the start [ns].
     origin_ns: u64,
+    /// When time last went on.
+    last: Instant,
+    /// How long time has stood still.
+    stood: Duration,
+    /// When something was last shown while time stood still.
+    shown: Option<Instant>,
     is_real_time: bool,
     time_ns: u64,
     /// Wall and simulated time now and then in the last second.
@@ -32,17 +38,51 @@ impl Pacer {
     pub fn start_at(origin_ns: u64, is_real_time: bool) -> Self {
         let start = Instant::now();
         let marks = VecDeque::from([(start, origin_ns)]);
-        Self { start, origin_ns, is_real_time, time_ns: origin_ns, marks }
+        Self {
+            start,
+            origin_ns,
+            last: start,
+            stood: Duration::ZERO,
+            shown: None,
+            is_real_time,
+            time_ns: origin_ns,
+            marks,
+        }
     }
 
-    /// Notes that simulated time has come to `time_ns`, and waits for it in real time.
+    /// Time stands still: the wall time since it last went on does not count.
+    pub fn stand_still(&mut self) {
+        let now = Instant::now();
+        let stood = now - self.last;
+        self.start += stood;
+        self.marks.iter_mut().for_each(|(mark, _)| *mark += stood);
+        self.last = now;
+        self.stood += stood;
+    }
+
+    /// Wall time for which time has stood still since it last went on [s].
+    pub fn stood_s(&self) -> f64 {
+        self.stood.as_secs_f64()
+    }
+
+    /// True `rate` times a second of wall time.
+    pub fn is_due(&mut self, rate: u32) -> bool {
+        let now = Instant::now();
+        let is_due = self.shown.is_none_or(|then| Duration::from_secs(1) / rate <= now - then);
+        self.shown = if is_due { Some(now) } else { self.shown };
+        is_due
+    }
+
+    /// Notes that the run has come to `time_ns`, and waits for it in real time.
     pub fn wait_until(&mut self, time_ns: u64) {
         self.time_ns = time_ns;
         if self.is_real_time {
             let due = self.start + Duration::from_nanos(time_ns - self.origin_ns);
             thread::sleep(due.saturating_duration_since(Instant::now()));
         }
-        self.mark(Instant::now());
+        self.last = Instant::now();
+        self.stood = Duration::ZERO;
+        self.mark(self.last);
     }
 
     fn mark(&mut self, now: Instant) {
@@ -168,9 +208,15 @@ pub fn wall_ns() -> u64 {
     u64::try_from(since_epoch.as_nanos()).unwrap_or(u64::MAX)
 }
 
+/// How long the run waits for someone before it looks around.
+pub const PAUSE: Duration = Duration::from_millis(5);
+
+/// The same while a tick waits for a command.
+pub const NAP: Duration = Duration::from_micros(50);
+
 /// A short pause while the run waits for someone.
 pub fn pause() {
-    thread::sleep(Duration::from_millis(5));
+    thread::sleep(PAUSE);
 }
 
 /// Wall time as a word for folder names, in UTC: `2026-11-22_15-43-50`.

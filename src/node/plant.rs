@@ -4,14 +4,18 @@ use std::error::Error;
 
 use super::schedule::Parts;
 use crate::{
-    command::Command,
+    command::{
+        Command,
+        change::{Change, ChangeRefused},
+    },
     physics::health::Diverged,
     session::Session,
+    simulator::Subject,
     snapshot::{Snapshot, checkpoint::Checkpoint, take, view::View},
 };
 
 /// Something that ticks and can be looked at.
-pub trait Plant {
+pub trait Plant: Subject {
     /// Why it cannot go on.
     type Fault: Error + Send + Sync + 'static;
 
@@ -45,11 +49,21 @@ impl Plant for Session {
     }
 
     fn checkpoint(&self) -> Option<Checkpoint> {
-        let (tick, time_ns, digest) = (self.now(), self.time_ns(), self.digest());
-        Some(Checkpoint { tick, time_ns, digest, bytes: self.save() })
+        let (tick, time_ns, digest) = (self.run_tick(), self.run_time_ns(), self.digest());
+        self.save().map(|bytes| Checkpoint { tick, time_ns, digest, bytes })
     }
 
     fn view<'a>(&'a self, seen: &'a Snapshot) -> View<'a> {
         take::view(self, seen)
+    }
+}
+
+impl Subject for Session {
+    fn look(&self) -> Snapshot {
+        take::snapshot(self, Parts::ALL)
+    }
+
+    fn change(&mut self, change: &Change) -> Result<(), ChangeRefused> {
+        Self::change(self, change)
     }
 }

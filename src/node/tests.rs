@@ -11,8 +11,12 @@ use crate::{
         Pose, Tick, Vec3,
         real::{Twist, Wrench},
     },
-    command::{Command, CommandCounts},
+    command::{
+        Command, CommandCounts,
+        change::{Change, ChangeRefused},
+    },
     scene,
+    simulator::Subject,
     sinks::{Sink, fanout::Delivery},
     snapshot::{BodySnapshot, ChamberSnapshot, JammingSnapshot, ObjectSnapshot, view::View},
     sources::{Source, SourceCounters},
@@ -31,6 +35,16 @@ struct Counter {
 #[derive(Debug, thiserror::Error)]
 #[error("broken")]
 struct Broken;
+
+impl Subject for Counter {
+    fn look(&self) -> Snapshot {
+        snapshot(self.n_ticks)
+    }
+
+    fn change(&mut self, _change: &Change) -> Result<(), ChangeRefused> {
+        Err(ChangeRefused::Unchangeable)
+    }
+}
 
 impl Plant for Counter {
     type Fault = Broken;
@@ -69,6 +83,7 @@ pub(super) fn snapshot(tick: u64) -> Snapshot {
     Snapshot {
         tick: Tick(tick),
         time_ns: tick * TICK_NS,
+        run_tick: Tick(tick),
         flange: at_rest,
         objects: vec![ObjectSnapshot {
             name: "object".to_owned(),
@@ -144,6 +159,11 @@ fn crew(outside: Vec<Box<dyn Source>>) -> Crew {
                 position: [0 m, 0 m, 1 mm] } }";
     let scene = scene::parse(text, "x", std::path::Path::new(""), &[]).unwrap();
     Crew {
+        front: None,
+        checkpoints: Vec::new(),
+        gate: Gate::new(scene::Lockstep::OFF),
+        n_packets: 0,
+        has_missed: false,
         orders: Orders::new(&scene, outside),
         outlets: Outlets::default(),
         schedule: Schedule::new(&scene.outputs, TICK_NS),

@@ -1,8 +1,8 @@
 //! A scene before it is read: every number is NaN, so that nothing forgotten can pass for a value.
 
 use super::{
-    Bag, BagCompression, Chamber, Controller, Flange, Grains, Material, Membrane, Object, OnError,
-    OnFull, Outputs, Ros, Scene, Shape, Table, Time,
+    Bag, BagCompression, Chamber, Controller, Flange, Grains, Lockstep, Material, Membrane, Object,
+    OnError, OnFull, Outputs, Ros, Scene, Shape, Table, Time,
 };
 use crate::base::{Pose, Real, Vec3};
 
@@ -54,7 +54,7 @@ pub(crate) fn scene() -> Scene {
         },
         table: Table { height: NAN, friction: NAN },
         objects: vec![object()],
-        controller: Controller::Topics { duration: None },
+        controller: Controller::Topics { duration: None, lockstep: Lockstep::OFF },
         outputs: outputs(),
     }
 }
@@ -79,7 +79,7 @@ fn outputs() -> Outputs {
         contacts_rate: NAN,
         statistics_rate: NAN,
         grains_count_max: 0,
-        ros: Ros { enabled: false, domain_id: None, lan: false },
+        ros: Ros::OFF,
         stream: false,
         bag: Bag {
             enabled: false,

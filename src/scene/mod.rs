@@ -8,6 +8,8 @@ pub mod fault; // what can be wrong
 pub mod plain; // YAML that is no scene
 pub mod print; // scene to text
 pub mod quantity; // "2 mm"
+pub mod resource; // objects that others name
+pub mod ros_parameters; // files of parameters
 pub mod text; // text to scene
 
 pub(crate) mod blank;
@@ -17,6 +19,7 @@ mod mesh_file;
 mod read;
 pub(crate) mod schema;
 mod tree;
+mod urdf;
 pub(crate) mod walk;
 mod yaml;
 
@@ -237,7 +240,39 @@ pub enum Controller {
     Topics {
         /// Simulated time after which the run ends; `None` runs until it is stopped [s].
         duration: Option<Real>,
+        /// Whether ticks wait for commands.
+        lockstep: Lockstep,
     },
+}
+
+/// Whether ticks wait for commands, and for how long.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lockstep {
+    /// True if they do: a command stamped not before the present time lets time go on.
+    pub is_on: bool,
+    /// How many ticks such a command lets pass.
+    pub steps_per_command: u64,
+    /// Wall time after which a command is missed; `None` waits for ever [s].
+    pub timeout: Option<Real>,
+    /// What is done then.
+    pub on_timeout: OnTimeout,
+}
+
+impl Lockstep {
+    /// Ticks wait for nobody.
+    pub const OFF: Self =
+        Self { is_on: false, steps_per_command: 1, timeout: None, on_timeout: OnTimeout::Hold };
+}
+
+/// What is done when a command is missed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OnTimeout {
+    /// One goes on waiting; it is said once.
+    Hold,
+    /// The simulation is paused.
+    Pause,
+    /// The run ends.
+    End,
 }
 
 /// Parameters of the pick-and-lift state machine.
@@ -311,6 +346,30 @@ pub struct Ros {
     pub domain_id: Option<u16>,
     /// True joins the local network; otherwise only this host.
     pub lan: bool,
+    /// Full name of the node.
+    pub node: String,
+    /// Names that are replaced, and by what; said on the command line only.
+    pub remaps: Vec<(String, String)>,
+    /// Wire format of `simulation_interfaces`, 1 or 2; `None` takes that of `ROS_DISTRO`, else 2.
+    pub interfaces_version: Option<u8>,
+    /// Where else the services of `simulation_interfaces` are offered, such as `/gzserver`.
+    pub interfaces_prefix: Option<String>,
+    /// True keeps time going through resets, so that controllers and frames survive them.
+    pub monotonic_clock: bool,
+}
+
+impl Ros {
+    /// ROS 2 left out, and nothing chosen.
+    pub const OFF: Self = Self {
+        enabled: false,
+        domain_id: None,
+        lan: false,
+        node: String::new(),
+        remaps: Vec::new(),
+        interfaces_version: None,
+        interfaces_prefix: None,
+        monotonic_clock: false,
+    };
 }
 
 /// Recording.

@@ -4,8 +4,8 @@
 //! in `check`.
 
 use super::{
-    Bag, BagCompression, Chamber, Controller, Flange, Grains, Material, Membrane, Object, OnError,
-    OnFull, Outputs, PickAndLift, Ros, Scene, Shape, Table, Time,
+    Bag, BagCompression, Chamber, Controller, Flange, Grains, Lockstep, Material, Membrane, Object,
+    OnError, OnFull, OnTimeout, Outputs, PickAndLift, Ros, Scene, Shape, Table, Time,
     quantity::{
         ACCELERATION, ANGLE, ANGULAR_ACCELERATION, ANGULAR_SPEED, DENSITY, FORCE, FREQUENCY,
         IMPULSE, LENGTH, PRESSURE, PRESSURE_RATE, SPEED, TIME, TORQUE,
@@ -207,9 +207,9 @@ fn controller(walk: &mut impl Walk, controller: &mut Controller, object: &str) {
         Controller::Topics { .. } => "topics",
     };
     let chosen = walk.choice("controller", &["builtin", "topics"], current);
-    let (mut parameters, mut duration) = match controller {
-        Controller::Builtin(parameters) => (parameters.clone(), None),
-        Controller::Topics { duration } => (blank_pick_and_lift(), *duration),
+    let (mut parameters, mut duration, mut in_step) = match controller {
+        Controller::Builtin(parameters) => (parameters.clone(), None, Lockstep::OFF),
+        Controller::Topics { duration, lockstep } => (blank_pick_and_lift(), *duration, *lockstep),
     };
     if walk.is_reading() || chosen == "builtin" {
         walk.section("pick_and_lift", |walk| pick_and_lift(walk, &mut parameters));
@@ -218,11 +218,30 @@ fn controller(walk: &mut impl Walk, controller: &mut Controller, object: &str) {
     if walk.is_reading() || chosen == "topics" {
         walk.section("topics", |walk| {
             walk.quantity_or("duration", "unlimited", Quantity::above_zero(&TIME), &mut duration);
+            lockstep(walk, &mut in_step);
         });
     }
     *controller = match chosen {
-        "topics" => Controller::Topics { duration },
+        "topics" => Controller::Topics { duration, lockstep: in_step },
         _ => Controller::Builtin(parameters),
+    };
+}
+
+fn lockstep(walk: &mut impl Walk, it: &mut Lockstep) {
+    let current = if it.is_on { "wait_command" } else { "none" };
+    it.is_on = walk.choice("lockstep", &["none", "wait_command"], current) == "wait_command";
+    walk.whole("steps_per_command", 1, 1_000_000, &mut it.steps_per_command);
+    let wall = Quantity::above_zero(&TIME);
+    walk.quantity_or("command_timeout", "unlimited", wall, &mut it.timeout);
+    let current = match it.on_timeout {
+        OnTimeout::Hold => "hold",
+        OnTimeout::Pause => "pause",
+        OnTimeout::End => "end",
+    };
+    it.on_timeout = match walk.choice("on_timeout", &["hold", "pause", "end"], current) {
+        "pause" => OnTimeout::Pause,
+        "end" => OnTimeout::End,
+        _ => OnTimeout::Hold,
     };
 }
 
@@ -270,6 +289,12 @@ fn ros(walk: &mut impl Walk, ros: &mut Ros) {
     walk.whole_or("domain_id", "auto", 232, &mut domain);
     ros.domain_id = domain.and_then(|it| u16::try_from(it).ok());
     walk.flag("lan", &mut ros.lan);
+    walk.text("node", &mut ros.node);
+    let mut version = ros.interfaces_version.map(u64::from);
+    walk.whole_or("interfaces_version", "auto", 2, &mut version);
+    ros.interfaces_version = version.and_then(|it| u8::try_from(it).ok());
+    walk.text_or("interfaces_prefix", "none", &mut ros.interfaces_prefix);
+    walk.flag("monotonic_clock", &mut ros.monotonic_clock);
 }
 
 fn bag(walk: &mut impl Walk, bag: &mut Bag) {

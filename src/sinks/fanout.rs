@@ -16,15 +16,14 @@ use std::{
 
 use super::{Packet, Sink, SinkCounters};
 
-/// Time without packets after which a sink may tidy up.
-const IDLE: Duration = Duration::from_secs(1);
 /// Most faults kept until someone takes them; a sink that fails on and on says little new.
 const FAULTS_MAX: usize = 64;
 
 /// What happens when a sink's queue is full.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Delivery {
-    /// The oldest packet is dropped and counted.
+    /// The oldest packet is dropped and counted; one with a change of the world, or all that is
+    /// needed to go on, only if there are no others.
     Latest {
         /// Packets that the queue holds, at least 1.
         depth: usize,
@@ -145,7 +144,8 @@ impl Lane {
                 queue = ignore_poison(self.shared.for_run.wait_while(queue, is_full));
             }
             Delivery::Latest { .. } if is_full(&mut queue) => {
-                queue.packets.pop_front();
+                let oldest = queue.packets.iter().position(|it| !it.is_precious()).unwrap_or(0);
+                queue.packets.remove(oldest);
                 queue.counters.n_dropped += 1;
             }
             Delivery::Latest { .. } => {}
@@ -194,7 +194,7 @@ impl Lane {
 fn serve(mut sink: Box<dyn Sink>, shared: &Shared) {
     let work = AssertUnwindSafe(|| {
         loop {
-            match shared.next() {
+            match shared.next(sink.idle_after()) {
                 Work::Packet(packet) => {
                     let outcome = sink.write(&packet);
                     drop(packet);
@@ -271,10 +271,11 @@ impl Shared {
         ignore_poison(self.queue.lock())
     }
 
-    fn next(&self) -> Work {
+    fn next(&self, patience: Duration) -> Work {
         let queue = self.lock();
         let is_empty = |queue: &mut Queue| queue.packets.is_empty() && !queue.is_closing;
-        let (mut queue, _) = ignore_poison(self.for_sink.wait_timeout_while(queue, IDLE, is_empty));
+        let waited = self.for_sink.wait_timeout_while(queue, patience, is_empty);
+        let (mut queue, _) = ignore_poison(waited);
         match queue.packets.pop_front() {
             Some(packet) => {
                 queue.in_hand = 1;

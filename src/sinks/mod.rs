@@ -3,6 +3,7 @@
 //! A sink runs on its own thread behind a bounded queue, so that a slow or dead reader never slows
 //! or stops the physics. The encoding to ROS 2 messages is made once, by whichever sink asks first.
 
+pub mod announced; // how far packets have been published
 #[cfg(feature = "bag")]
 pub mod bag; // recordings while they are made
 pub mod fanout; // one thread and one queue per sink
@@ -12,10 +13,11 @@ pub mod ros;
 #[cfg(feature = "shm")]
 pub mod shm;
 
-use std::sync::OnceLock;
+use std::{sync::OnceLock, time::Duration};
 
 pub use crate::snapshot::run::{RunStatistics, SinkCounters};
 use crate::{
+    command::change::Change,
     snapshot::{Snapshot, checkpoint::Checkpoint},
     wire::{to_ros::Encoder, topics::Message},
 };
@@ -28,6 +30,10 @@ pub struct Packet {
     pub run: Option<RunStatistics>,
     /// All that is needed to go on, where it is due; the start's too with the first packet.
     pub checkpoints: Vec<Checkpoint>,
+    /// How the world was changed since the packet before, if not by a tick.
+    pub changes: Vec<Change>,
+    /// Number of the packet in its run; 0 if nobody counts.
+    pub number: u64,
     /// The messages, once someone has asked for them.
     messages: OnceLock<Vec<Message>>,
 }
@@ -35,12 +41,34 @@ pub struct Packet {
 impl Packet {
     /// A packet whose messages are not encoded yet.
     pub fn new(snapshot: Snapshot, run: Option<RunStatistics>) -> Self {
-        Self { snapshot, run, checkpoints: Vec::new(), messages: OnceLock::new() }
+        Self {
+            snapshot,
+            run,
+            checkpoints: Vec::new(),
+            changes: Vec::new(),
+            number: 0,
+            messages: OnceLock::new(),
+        }
     }
 
     /// The same with checkpoints.
     pub fn with_checkpoints(self, checkpoints: Vec<Checkpoint>) -> Self {
         Self { checkpoints, ..self }
+    }
+
+    /// The same after changes of the world.
+    pub fn with_changes(self, changes: Vec<Change>) -> Self {
+        Self { changes, ..self }
+    }
+
+    /// True if nothing can be told without it of what comes after.
+    pub fn is_precious(&self) -> bool {
+        !self.changes.is_empty() || !self.checkpoints.is_empty()
+    }
+
+    /// The same packet with a number.
+    pub fn numbered(self, number: u64) -> Self {
+        Self { number, ..self }
     }
 
     /// The messages; `encoder` makes them if nobody has yet.
@@ -60,7 +88,12 @@ pub trait Sink: Send {
     /// Whatever the place says; the text names place, value, limit and remedy.
     fn write(&mut self, packet: &Packet) -> Result<(), Box<dyn std::error::Error + Send + Sync>>;
 
-    /// Called about once a second of wall time while no packets come.
+    /// Wall time without packets after which `idle` is called, again and again.
+    fn idle_after(&self) -> Duration {
+        Duration::from_secs(1)
+    }
+
+    /// Called while no packets come.
     ///
     /// # Errors
     /// As for `write`.

@@ -108,7 +108,7 @@ mod tests {
     use super::*;
 
     fn choose(lan: bool, domain_id: Option<u16>, said: &[(&str, &str)]) -> Result<Reach, String> {
-        let scene = Ros { enabled: true, domain_id, lan };
+        let scene = Ros { enabled: true, domain_id, lan, ..Ros::OFF };
         let variable = |name: &str| {
             said.iter().find(|(key, _)| *key == name).map(|(_, value)| (*value).to_owned())
         };

@@ -12,6 +12,7 @@
 use std::{
     net::Ipv4Addr,
     sync::{Arc, Mutex, PoisonError},
+    time::Duration,
 };
 
 use ros2_client::{
@@ -24,15 +25,13 @@ use serde::{Serialize, Serializer, ser::SerializeTuple};
 
 use super::{
     Packet, Sink,
+    announced::Announced,
     reach::{Extent, Reach},
 };
 use crate::wire::{
     to_ros::Encoder,
-    topics::{Message, Qos, Topic},
+    topics::{Common, Message, Qos, Topic, common},
 };
-
-/// Name of the node, in the root namespace.
-pub const NODE_NAME: &str = "jamgrip";
 
 /// What of the middleware's own log is worth a line, as a filter for `env_logger`: it warns about
 /// every larger datagram, and reports an error when it leaves a multicast group that a loopback
@@ -47,7 +46,7 @@ pub enum RosError {
     Off,
     /// The node could not be made.
     #[error(
-        "node /{NODE_NAME} could not join ROS 2 domain {domain_id}: {reason}; is there a network \
+        "the node could not join ROS 2 domain {domain_id}: {reason}; is there a network \
          interface, and are there fewer than 120 participants in this domain? --no-ros runs without"
     )]
     Join {
@@ -108,6 +107,9 @@ pub struct Body(Vec<u8>);
 pub struct RosSink {
     publishers: Vec<Option<(String, Publisher<Body>)>>,
     encoder: Arc<Encoder>,
+    announced: Arc<Announced>,
+    /// The last clock message, repeated while time stands still.
+    clock: Option<Message>,
     _node: Arc<RosNode>,
 }
 
@@ -117,10 +119,10 @@ impl RosNode {
     /// # Errors
     /// When discovery is off, or there is no socket to be had.
     pub fn join(reach: &Reach) -> Result<Arc<Self>, RosError> {
-        Self::join_as(NODE_NAME, reach)
+        Self::join_as("/jamgrip", reach)
     }
 
-    /// Joins under another name: for controllers and tests.
+    /// Joins under another name, with or without a namespace.
     ///
     /// # Errors
     /// As for `join`.
@@ -137,7 +139,9 @@ impl RosNode {
         };
         let participant = builder.build().map_err(|it| refused(&it))?;
         let context = Context::from_domain_participant(participant).map_err(|it| refused(&it))?;
-        let name = NodeName::new("/", name).map_err(|it| refused(&format!("{it:?}")))?;
+        let (namespace, name) = name.rsplit_once('/').unwrap_or(("", name));
+        let namespace = if namespace.is_empty() { "/" } else { namespace };
+        let name = NodeName::new(namespace, name).map_err(|it| refused(&format!("{it:?}")))?;
         let options = NodeOptions::new().enable_rosout(true).start_parameter_services(false);
         let node = context.new_node(name, options).map_err(|it| refused(&format!("{it:?}")))?;
         Ok(Arc::new(Self { node: Mutex::new(node), context }))
@@ -171,6 +175,11 @@ impl RosNode {
     /// When its name or type is not one of ROS 2.
     pub fn subscription<M: 'static>(&self, topic: &Topic) -> Result<Subscription<M>, RosError> {
         self.open(topic, |node, it| node.create_subscription(it, None))
+    }
+
+    /// The participant itself, for services.
+    pub fn participant(&self) -> rustdds::DomainParticipant {
+        self.context.domain_participant()
     }
 
     fn open<Port>(
@@ -236,9 +245,20 @@ impl RosSink {
             node.publisher(topic).map(|it| Some((topic.name.clone(), it)))
         };
         let publishers = encoder.topics().iter().map(open).collect::<Result<_, _>>()?;
-        let sink = Self { publishers, encoder: Arc::clone(encoder), _node: Arc::clone(node) };
+        let sink = Self {
+            publishers,
+            encoder: Arc::clone(encoder),
+            announced: Arc::default(),
+            clock: None,
+            _node: Arc::clone(node),
+        };
         sink.send(&encoder.latched(0))?;
         Ok(sink)
+    }
+
+    /// Notes what has been published, for answers that must stay behind it.
+    pub fn announcing(self, announced: &Arc<Announced>) -> Self {
+        Self { announced: Arc::clone(announced), ..self }
     }
 
     /// Tries all messages, also behind one that fails.
@@ -266,13 +286,33 @@ impl Sink for RosSink {
     }
 
     fn write(&mut self, packet: &Packet) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
-        self.send(packet.messages(&self.encoder)).map_err(Into::into)
+        let messages = packet.messages(&self.encoder);
+        let sent = self.send(messages);
+        if self.clock.is_none() {
+            self.send(&self.encoder.ready(packet.snapshot.time_ns))?;
+        }
+        self.announced.note(packet.number);
+        self.clock = messages.iter().find(|it| it.topic == common(Common::Clock)).cloned();
+        sent.map_err(Into::into)
+    }
+
+    fn idle_after(&self) -> Duration {
+        Duration::from_millis(100)
+    }
+
+    fn idle(&mut self) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
+        self.send(self.clock.as_slice()).map_err(Into::into)
     }
 
     fn close(&mut self) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
         self.publishers.clear();
         Ok(())
     }
+}
+
+/// The same for ports on bare DDS.
+pub fn policies(qos: Qos) -> rustdds::QosPolicies {
+    profile(qos).into()
 }
 
 fn profile(qos: Qos) -> QosProfile {

@@ -24,10 +24,11 @@ pub fn snapshot(session: &Session, parts: Parts) -> Snapshot {
     Snapshot {
         tick: session.now(),
         time_ns: session.time_ns(),
+        run_tick: session.run_tick(),
         flange: BodySnapshot { pose: flange.pose, twist: flange.twist },
         objects: objects(session),
         contact_wrench: in_flange_axes(&means.objects_on_gripper),
-        mount_wrench: in_flange_axes(&means.gripper_on_mount),
+        mount_wrench: session.sensor(),
         chamber: ChamberSnapshot {
             gauge_setpoint: session.desk().gauge_setpoint(),
             gauge: state.gauge,

@@ -17,7 +17,8 @@ use crate::{
     snapshot::Snapshot,
     wire::{
         messages::{
-            RosMessage, geometry_msgs::PoseStamped, jamgrip_msgs::ObjectCommand, std_msgs::Float64,
+            RosMessage, geometry_msgs::PoseStamped, jamgrip_msgs::ObjectCommand,
+            sensor_msgs::JointState, std_msgs::Float64,
         },
         to_ros::Encoder,
     },
@@ -168,6 +169,8 @@ impl<'de> DeserializeSeed<'de> for Recode {
             recode::<PoseStamped, D>(bytes)
         } else if name == ObjectCommand::TYPE.name {
             recode::<ObjectCommand, D>(bytes)
+        } else if name == JointState::TYPE.name {
+            recode::<JointState, D>(bytes)
         } else {
             Err(serde::de::Error::custom(format_args!("no command is a `{name}`")))
         }

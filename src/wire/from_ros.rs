@@ -5,8 +5,8 @@
 use super::{
     messages::{
         RosMessage, builtin_interfaces::Time, geometry_msgs::Pose, geometry_msgs::PoseStamped,
-        geometry_msgs::Quaternion, jamgrip_msgs::ObjectCommand, std_msgs::Float64,
-        std_msgs::Header,
+        geometry_msgs::Quaternion, jamgrip_msgs::ObjectCommand, sensor_msgs::JointState,
+        std_msgs::Float64, std_msgs::Header,
     },
     topics::{Common, Message, OfObject, Place, Topic, common, of_object, place},
 };
@@ -83,6 +83,12 @@ impl CommandCodec {
                 Ok(Command::ObjectPose { object: self.objects[object].clone(), pose })
             }
             Place::Common(Common::ObjectCommand) => self.object_command(topic, cdr),
+            Place::Common(Common::JointCommands) => {
+                let message: JointState = self.read(topic, cdr)?;
+                let stamp_ns = stamp_ns(&message.header);
+                let (names, positions) = (message.name, message.position);
+                Ok(Command::Joints { stamp_ns, names, positions })
+            }
             _ => Err(NotACommand::NotAnInput { topic: self.topics[topic].name.clone() }),
         }
     }
@@ -132,6 +138,12 @@ impl CommandCodec {
                     }
                 }
             }
+            Command::Joints { stamp_ns, names, positions } => {
+                let header = Header { stamp: stamp(*stamp_ns), frame_id: String::new() };
+                let (name, position) = (names.clone(), positions.clone());
+                let message = JointState { header, name, position, ..Default::default() };
+                (common(Common::JointCommands), message.to_cdr())
+            }
             Command::ObjectRelease { object } => {
                 let (object, mode) = (object.clone(), ObjectCommand::MODE_RELEASE);
                 let message = ObjectCommand { object, mode, ..Default::default() };
@@ -145,11 +157,15 @@ impl CommandCodec {
 fn pose_command(header: Header, pose: &Pose) -> PoseCommand {
     let (position, orientation) = (&pose.position, &pose.orientation);
     PoseCommand {
-        frame_id: header.frame_id,
-        stamp_ns: i64::from(header.stamp.sec) * 1_000_000_000 + i64::from(header.stamp.nanosec),
+        stamp_ns: stamp_ns(&header),
         position: [position.x, position.y, position.z],
         orientation: [orientation.x, orientation.y, orientation.z, orientation.w],
+        frame_id: header.frame_id,
     }
+}
+
+fn stamp_ns(header: &Header) -> i64 {
+    i64::from(header.stamp.sec) * 1_000_000_000 + i64::from(header.stamp.nanosec)
 }
 
 fn pose_stamped(command: &PoseCommand) -> PoseStamped {

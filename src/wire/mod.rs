@@ -1,5 +1,7 @@
 //! Bytes for the outside; pure functions from snapshots to messages and back to commands.
 
+pub mod actions;
+pub mod cdr;
 pub mod from_ros;
 pub mod messages;
 pub mod rows;

@@ -8,12 +8,13 @@ use super::messages::{
     geometry_msgs::TwistStamped, geometry_msgs::WrenchStamped, jamgrip_msgs::ContactArray,
     jamgrip_msgs::ObjectCommand, jamgrip_msgs::ObjectDetectionStatus, jamgrip_msgs::Statistics,
     jamgrip_msgs::VacuumState, rosgraph_msgs::Clock, sensor_msgs::FluidPressure,
-    sensor_msgs::JointState, sensor_msgs::PointCloud2, shape_msgs::Mesh, std_msgs::Float64,
-    tf2_msgs::TFMessage, visualization_msgs::Marker, visualization_msgs::MarkerArray,
+    sensor_msgs::JointState, sensor_msgs::PointCloud2, shape_msgs::Mesh, std_msgs::Bool,
+    std_msgs::Float64, tf2_msgs::TFMessage, visualization_msgs::Marker,
+    visualization_msgs::MarkerArray,
 };
-use crate::scene::Scene;
+use crate::scene::{Ros, Scene};
 
-/// Name of the ROS 2 node; names that start with `~/` are below it.
+/// Name of the ROS 2 node if the scene gives it no other.
 pub const NODE: &str = "/jamgrip";
 
 /// A ROS 2 topic.
@@ -112,6 +113,10 @@ pub enum Common {
     FlangePoseCommand,
     /// Command: drive or release an object.
     ObjectCommand,
+    /// Command: set-points of vacuum and flange as joints.
+    JointCommands,
+    /// True once the node is ready.
+    Ready,
 }
 
 /// The topics of each object. The value is the place among the object's topics.
@@ -130,7 +135,7 @@ pub enum OfObject {
 /// A row of the list: what, name, type, quality of service, whether it carries commands to us.
 type Row<T> = (T, &'static str, MessageType, Qos, bool);
 
-const COMMON: [Row<Common>; 22] = [
+const COMMON: [Row<Common>; 24] = [
     (Common::Clock, "/clock", Clock::TYPE, Qos::reliable(1), false),
     (Common::Wrench, "~/wrench", WrenchStamped::TYPE, Qos::reliable(10), false),
     (Common::FlangePose, "~/flange/pose", PoseStamped::TYPE, Qos::reliable(10), false),
@@ -160,6 +165,8 @@ const COMMON: [Row<Common>; 22] = [
     (Common::FlangePoseCommand, "~/flange/pose_cmd", PoseStamped::TYPE, Qos::reliable(1), true),
     // Two commands in a row, such as release and drive, must both arrive.
     (Common::ObjectCommand, "~/object_cmd", ObjectCommand::TYPE, Qos::reliable(10), true),
+    (Common::JointCommands, "~/joint_commands", JointState::TYPE, Qos::reliable(1), true),
+    (Common::Ready, "~/ready", Bool::TYPE, Qos::latched(), false),
 ];
 
 /// Names are below `~/object/<name>/`.
@@ -173,7 +180,7 @@ const OF_OBJECT: [Row<OfObject>; 4] = [
 /// All topics of a scene, inputs and outputs.
 pub fn topics(scene: &Scene) -> Vec<Topic> {
     let common = COMMON.iter().map(|&(_, name, message_type, qos, is_input)| Topic {
-        name: name.replacen('~', NODE, 1),
+        name: full_name(&scene.outputs.ros, name),
         type_name: message_type.name,
         message_type,
         qos,
@@ -181,7 +188,7 @@ pub fn topics(scene: &Scene) -> Vec<Topic> {
     });
     let of_objects = scene.objects.iter().flat_map(|object| {
         OF_OBJECT.iter().map(|&(_, name, message_type, qos, is_input)| Topic {
-            name: format!("{NODE}/object/{}/{name}", object.name),
+            name: full_name(&scene.outputs.ros, &format!("~/object/{}/{name}", object.name)),
             type_name: message_type.name,
             message_type,
             qos,
@@ -189,6 +196,19 @@ pub fn topics(scene: &Scene) -> Vec<Topic> {
         })
     });
     common.chain(of_objects).collect()
+}
+
+/// A name as others see it: `~` is the node, and names that are to be replaced are.
+pub fn full_name(ros: &Ros, name: &str) -> String {
+    let namespace = ros.node.rsplit_once('/').map_or("", |(namespace, _)| namespace);
+    let full = |name: &str| match name.strip_prefix('~') {
+        Some(rest) => format!("{}{rest}", ros.node),
+        None if name.starts_with('/') => name.to_owned(),
+        None => format!("{namespace}/{name}"),
+    };
+    let wanted = full(name);
+    let replaced = ros.remaps.iter().find(|(from, _)| full(from) == wanted);
+    replaced.map_or(wanted, |(_, to)| full(to))
 }
 
 /// Index of a topic that every scene has.
@@ -225,6 +245,23 @@ pub enum Place {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Oracle: ROS 2's rules for private, relative and full names, and for their replacement.
+    #[test]
+    fn names_are_full_and_replaced() {
+        let to = |from: &str, to: &str| (from.to_owned(), to.to_owned());
+        let remaps = vec![to("~/wrench", "/ft"), to("/clock", "sim/clock"), to("pose", "~/p")];
+        let ros = Ros { node: "/left/grip".to_owned(), remaps, ..Ros::OFF };
+        for (name, expected) in [
+            ("~/wrench", "/ft"),
+            ("/clock", "/left/sim/clock"),
+            ("~/pose", "/left/grip/pose"),
+            ("/left/pose", "/left/grip/p"),
+            ("/tf", "/tf"),
+        ] {
+            assert_eq!(full_name(&ros, name), expected, "{name}");
+        }
+    }
 
     #[test]
     fn rows_stand_where_their_index_says() {

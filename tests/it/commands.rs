@@ -16,14 +16,14 @@ fn codec() -> CommandCodec {
     synthetic::encoder().commands().clone()
 }
 
+/// Stamps as ROS can say them [ns].
+fn stamps() -> impl Strategy<Value = i64> + Clone {
+    i64::from(i32::MIN) * 1_000_000_000..=i64::from(i32::MAX) * 1_000_000_000
+}
+
 /// Commands with any numbers at all, also NaN and infinities; stamps as ROS can say them.
 fn any_command() -> impl Strategy<Value = Command> {
-    let pose = (
-        "[a-z/_]{0,20}",
-        i64::from(i32::MIN) * 1_000_000_000..=i64::from(i32::MAX) * 1_000_000_000,
-        any::<[u64; 3]>(),
-        any::<[u64; 4]>(),
-    );
+    let pose = ("[a-z/_]{0,20}", stamps(), any::<[u64; 3]>(), any::<[u64; 4]>());
     let pose = pose.prop_map(|(frame_id, stamp_ns, position, orientation)| PoseCommand {
         frame_id,
         stamp_ns,
@@ -36,6 +36,16 @@ fn any_command() -> impl Strategy<Value = Command> {
         pose.clone().prop_map(Command::FlangePose),
         (object.clone(), pose).prop_map(|(object, pose)| Command::ObjectPose { object, pose }),
         object.prop_map(|object| Command::ObjectRelease { object }),
+        (
+            stamps(),
+            prop::collection::vec("[a-z_]{0,8}", 0..5),
+            prop::collection::vec(any::<u64>(), 0..5)
+        )
+            .prop_map(|(stamp_ns, names, bits)| Command::Joints {
+                stamp_ns,
+                names,
+                positions: bits.into_iter().map(f64::from_bits).collect(),
+            }),
     ]
 }
 
@@ -51,7 +61,7 @@ proptest! {
     }
 
     #[test]
-    fn no_bytes_do_harm(topic in 0_usize..26, bytes in prop::collection::vec(any::<u8>(), 0..200)) {
+    fn no_bytes_do_harm(topic in 0_usize..28, bytes in prop::collection::vec(any::<u8>(), 0..200)) {
         // Oracle: no panic, no endless memory; a message or a reason.
         if let Err(reason) = codec().decode(topic, &bytes) {
             prop_assert!(reason.to_string().contains('/'), "names the topic: {}", reason);

@@ -150,7 +150,7 @@ fn a_run_taken_up_anywhere_goes_on_with_the_same_bits() {
     let mut touched_table = false;
     for tick in 0..N_TICKS {
         if tick.is_multiple_of(28) {
-            saved.push((tick, session.save()));
+            saved.push((tick, session.save().unwrap()));
         }
         session.tick(&eventful(tick)).unwrap();
         digests.push(session.digest());
@@ -161,7 +161,7 @@ fn a_run_taken_up_anywhere_goes_on_with_the_same_bits() {
         let mut resumed = Session::resume(coarse::compiled(2, &[]), &bytes).unwrap();
         // Oracle: the run that never stopped, to the last bit.
         assert_eq!(resumed.digest(), digests[start], "taken up at tick {start}");
-        assert!(resumed.save() == bytes, "tick {start}: what is read is what was written");
+        assert!(resumed.save().unwrap() == bytes, "tick {start}: what is read is what was written");
         for tick in start..N_TICKS {
             resumed.tick(&eventful(tick)).unwrap();
             let expected = digests[tick + 1];
@@ -173,7 +173,7 @@ fn a_run_taken_up_anywhere_goes_on_with_the_same_bits() {
 
 #[test]
 fn bytes_of_another_scene_or_cut_off_are_refused() {
-    let bytes = coarse::session(1, &[]).save();
+    let bytes = coarse::session(1, &[]).save().unwrap();
     for n in [0, 7, bytes.len() / 2, bytes.len() - 1] {
         assert!(Session::resume(coarse::compiled(1, &[]), &bytes[..n]).is_err(), "{n} bytes");
     }

@@ -51,10 +51,14 @@ fn checked_in_types_are_those_of_the_message_files() {
 fn messages() -> Messages {
     let staging = tempfile::tempdir().unwrap();
     stage(Path::new("msgs/msg"), "jamgrip_msgs", staging.path());
-    for package in fs::read_dir("msgs/standard").unwrap().map(|entry| entry.unwrap().path()) {
-        if package.is_dir() {
-            let name = package.file_name().unwrap().to_str().unwrap();
-            stage(&package.join("msg"), name, staging.path());
+    for package in packages("msgs/standard").iter().chain(&packages("msgs/interfaces")) {
+        let name = package.file_name().unwrap().to_str().unwrap();
+        stage(&package.join("msg"), name, staging.path());
+        for (kind, extension) in [("srv", "srv"), ("action", "action")] {
+            for file in files(&package.join(kind)) {
+                assert_eq!(file.extension().unwrap(), extension);
+                stage_parts(&file, &staging.path().join(name).join("msg"));
+            }
         }
     }
     let folders = [staging.path().to_path_buf()];
@@ -65,6 +69,51 @@ fn messages() -> Messages {
     all.filter(|(name, _)| ours.contains(name)).collect()
 }
 
+/// The folders in `folder`, in order.
+fn packages(folder: &str) -> Vec<PathBuf> {
+    files(Path::new(folder)).into_iter().filter(|it| it.is_dir()).collect()
+}
+
+/// What is in `folder`, in order; nothing if it is not there.
+fn files(folder: &Path) -> Vec<PathBuf> {
+    let entries = fs::read_dir(folder).into_iter().flatten();
+    let mut files: Vec<PathBuf> = entries.map(|entry| entry.unwrap().path()).collect();
+    files.sort();
+    files
+}
+
+/// Names of the parts of a service or an action.
+fn parts(file: &Path) -> &'static [&'static str] {
+    if file.extension().unwrap() == "srv" {
+        &["Request", "Response"]
+    } else {
+        &["Goal", "Result", "Feedback"]
+    }
+}
+
+/// Each part of a service or an action is staged as a message of its own. ROS 2 puts one byte
+/// into parts that have no fields.
+fn stage_parts(file: &Path, messages: &Path) {
+    let text = fs::read_to_string(file).unwrap();
+    let stem = file.file_stem().unwrap().to_str().unwrap();
+    let mut parts_text: Vec<String> = vec![String::new()];
+    for line in text.lines() {
+        if line.trim() == "---" {
+            parts_text.push(String::new());
+        } else {
+            let last = parts_text.last_mut().unwrap();
+            writeln!(last, "{line}").unwrap();
+        }
+    }
+    assert_eq!(parts_text.len(), parts(file).len(), "{}", file.display());
+    for (part, mut text) in parts(file).iter().zip(parts_text) {
+        if text.trim().is_empty() {
+            text = "uint8 structure_needs_at_least_one_member\n".to_owned();
+        }
+        fs::write(messages.join(format!("{stem}{part}.msg")), text).unwrap();
+    }
+}
+
 fn stage(messages: &Path, package: &str, staging: &Path) {
     let folder = staging.join(package);
     fs::create_dir_all(folder.join("msg")).unwrap();
@@ -73,9 +122,7 @@ fn stage(messages: &Path, package: &str, staging: &Path) {
          <buildtool_depend>ament_cmake</buildtool_depend></package>"
     );
     fs::write(folder.join("package.xml"), xml).unwrap();
-    let files: Vec<PathBuf> =
-        fs::read_dir(messages).unwrap().map(|entry| entry.unwrap().path()).collect();
-    for file in files {
+    for file in files(messages) {
         fs::copy(&file, folder.join("msg").join(file.file_name().unwrap())).unwrap();
     }
 }
@@ -91,13 +138,106 @@ fn source(messages: &Messages) -> String {
     packages.dedup();
     for package in packages {
         writeln!(out, "\n/// Messages of `{package}`.\npub mod {package} {{").unwrap();
-        out.push_str("    use crate::wire::messages::{MessageType, RosMessage};\n");
-        for message in messages.values().filter(|it| it.get_package_name() == package) {
-            out.push_str(&structure(message));
-            out.push_str(&description(message, messages));
+        let folder = Path::new("msgs/interfaces").join(&package);
+        let (services, actions) = (files(&folder.join("srv")), files(&folder.join("action")));
+        let is_part = |name: &str| {
+            services.iter().chain(&actions).any(|file| {
+                let stem = file.file_stem().unwrap().to_str().unwrap();
+                parts(file).iter().any(|part| name == format!("{stem}{part}"))
+            })
+        };
+        let all: Vec<_> = messages.values().filter(|it| it.get_package_name() == package).collect();
+        if all.iter().any(|it| !is_part(&it.get_short_name())) {
+            out.push_str("    use crate::wire::messages::{MessageType, RosMessage};\n");
         }
+        for message in all {
+            out.push_str(&structure(message));
+            if !is_part(&message.get_short_name()) {
+                out.push_str(&description(message, messages));
+            }
+        }
+        out.push_str(&services_module(&package, &services));
+        out.push_str(&actions_module(&package, &actions));
         out.push_str("}\n");
     }
+    out
+}
+
+/// Module `srv`: one empty type per service, which names its halves.
+fn services_module(package: &str, services: &[PathBuf]) -> String {
+    let mut out = String::new();
+    if services.is_empty() {
+        return out;
+    }
+    writeln!(out, "\n    /// Services of `{package}`.\n    pub mod srv {{").unwrap();
+    out.push_str("        use crate::wire::messages::{RosService, ServiceType};\n");
+    for file in services {
+        let name = file.file_stem().unwrap().to_str().unwrap();
+        write!(
+            out,
+            "
+        /// `{package}/srv/{name}`.
+        #[derive(Clone, Copy, Debug)]
+        pub struct {name};
+
+        impl RosService for {name} {{
+            type Request = super::{name}Request;
+            type Response = super::{name}Response;
+            const TYPE: ServiceType = ServiceType {{
+                name: \"{package}/srv/{name}\",
+                request_dds_name: \"{package}::srv::dds_::{name}_Request_\",
+                response_dds_name: \"{package}::srv::dds_::{name}_Response_\",
+            }};
+        }}
+"
+        )
+        .unwrap();
+    }
+    out.push_str("    }\n");
+    out
+}
+
+/// Module `action`: one empty type per action, which names its parts.
+fn actions_module(package: &str, actions: &[PathBuf]) -> String {
+    let mut out = String::new();
+    if actions.is_empty() {
+        return out;
+    }
+    writeln!(out, "\n    /// Actions of `{package}`.\n    pub mod action {{").unwrap();
+    out.push_str("        use crate::wire::messages::{ActionType, RosAction, ServiceType};\n");
+    for file in actions {
+        let name = file.file_stem().unwrap().to_str().unwrap();
+        write!(
+            out,
+            "
+        /// `{package}/action/{name}`.
+        #[derive(Clone, Copy, Debug)]
+        pub struct {name};
+
+        impl RosAction for {name} {{
+            type Goal = super::{name}Goal;
+            type Result = super::{name}Result;
+            type Feedback = super::{name}Feedback;
+            const TYPE: ActionType = ActionType {{
+                name: \"{package}/action/{name}\",
+                send_goal: ServiceType {{
+                    name: \"{package}/action/{name}_SendGoal\",
+                    request_dds_name: \"{package}::action::dds_::{name}_SendGoal_Request_\",
+                    response_dds_name: \"{package}::action::dds_::{name}_SendGoal_Response_\",
+                }},
+                get_result: ServiceType {{
+                    name: \"{package}/action/{name}_GetResult\",
+                    request_dds_name: \"{package}::action::dds_::{name}_GetResult_Request_\",
+                    response_dds_name: \"{package}::action::dds_::{name}_GetResult_Response_\",
+                }},
+                feedback_dds_name: \"{package}::action::dds_::{name}_FeedbackMessage_\",
+            }};
+        }}
+"
+        )
+        .unwrap();
+    }
+    out.push_str("    }\n");
     out
 }
 

@@ -9,6 +9,7 @@ mod bags_damaged; // killed, cut off, full disks, and what is saved of it
 mod bags_played; // a recording published again
 mod bench; // how fast it is told to be
 mod by_tick; // a made-up system whose numbers follow from its tick
+mod changes; // back to the start, in, out and elsewhere
 mod coarse; // a coarse gripper for tests of the physics
 mod commands; // commands from ROS 2 messages
 mod coupling; // action equals reaction
@@ -32,8 +33,15 @@ mod private_network; // where tests may speak DDS
 #[cfg(feature = "bag")]
 mod replays; // recordings simulated again, branched off, and taken as commands
 mod rig; // a bare model by hand
+mod ros_layouts; // layouts for viewers name topics that there are
 #[cfg(feature = "ros")]
 mod ros_loop; // what goes out reaches others, what others say comes in
+#[cfg(feature = "ros")]
+mod ros_gripper; // what drivers of grippers offer, and ticks that wait for a controller
+#[cfg(feature = "ros")]
+mod ros_program; // the whole program, and clients of its services
+#[cfg(feature = "ros")]
+mod ros_simulator; // what ROS 2 users ask of a simulator
 mod scenes; // scenes that run, scenes that are refused
 mod sheet; // a grain on the membrane
 mod spheres; // grains on the spheres of the classic membrane

@@ -9,8 +9,8 @@ use jamgrip::{
     },
     command::{Command, CommandCounts, CommandRecord, Outcome, PoseCommand, Refusal},
     scene::{
-        Bag, BagCompression, Chamber, Controller, Flange, Grains, Material, Membrane, Object,
-        OnError, OnFull, Outputs, Ros, Scene, Shape, Table, Time,
+        Bag, BagCompression, Chamber, Controller, Flange, Grains, Lockstep, Material, Membrane,
+        Object, OnError, OnFull, Outputs, Ros, Scene, Shape, Table, Time,
     },
     sinks::{Packet, RunStatistics, SinkCounters},
     snapshot::{
@@ -79,7 +79,7 @@ pub(crate) fn scene() -> Scene {
             pose: Pose::translation(0.0, 0.0, 0.02),
             drive_timeout: 0.5,
         }],
-        controller: Controller::Topics { duration: None },
+        controller: Controller::Topics { duration: None, lockstep: Lockstep::OFF },
         outputs: outputs(),
     }
 }
@@ -93,7 +93,7 @@ fn outputs() -> Outputs {
         contacts_rate: 20.0,
         statistics_rate: 5.0,
         grains_count_max: 100,
-        ros: Ros { enabled: false, domain_id: None, lan: false },
+        ros: Ros { node: "/jamgrip".to_owned(), ..Ros::OFF },
         stream: false,
         bag: Bag {
             enabled: true,
@@ -165,6 +165,7 @@ pub(crate) fn snapshot(tick: u64) -> Snapshot {
     Snapshot {
         tick: Tick(tick),
         time_ns: tick * TICK_NS,
+        run_tick: Tick(tick),
         flange: body(0.2),
         objects: vec![ObjectSnapshot {
             name: OBJECT.to_owned(),

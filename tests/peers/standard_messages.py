@@ -14,6 +14,7 @@ from rosbags.typesys import Stores, get_typestore
 # What the topics carry; the types they contain are found from here.
 ROOTS = [
     "diagnostic_msgs/msg/DiagnosticArray",
+    "geometry_msgs/msg/Accel",
     "geometry_msgs/msg/PoseStamped",
     "geometry_msgs/msg/TwistStamped",
     "geometry_msgs/msg/WrenchStamped",
@@ -22,6 +23,7 @@ ROOTS = [
     "sensor_msgs/msg/JointState",
     "sensor_msgs/msg/PointCloud2",
     "shape_msgs/msg/Mesh",
+    "std_msgs/msg/Bool",
     "std_msgs/msg/Float64",
     "tf2_msgs/msg/TFMessage",
     "visualization_msgs/msg/MarkerArray",

@@ -21,11 +21,11 @@ use super::{BenchError, Case, Figures, Options, lift};
 use crate::{
     base::Real,
     node::{
-        Crew, judge::Judge, orders::Orders, outlets::Outlets, progress::Progress,
+        Crew, judge::Judge, lockstep::Gate, orders::Orders, outlets::Outlets, progress::Progress,
         schedule::Schedule, shutdown::Shutdown,
     },
     physics::measure::{real, real_of},
-    scene::Scene,
+    scene::{Lockstep, Scene},
     sinks::{
         RunStatistics,
         fanout::Delivery,
@@ -159,6 +159,8 @@ fn crew(
     let end = std::time::Duration::from_secs_f64(seconds).as_nanos();
     Ok(Crew {
         orders: Orders::new(scene, vec![Box::new(source)]),
+        gate: Gate::new(Lockstep::OFF),
+        front: None,
         outlets,
         schedule: Schedule::new(&scene.outputs, scene.time.tick_ns),
         judge: Judge::default(),
@@ -168,6 +170,9 @@ fn crew(
         end_ns: Some(u64::try_from(end).unwrap_or(u64::MAX)),
         is_real_time: true,
         about: RunStatistics::default(),
+        n_packets: 0,
+        has_missed: false,
+        checkpoints: Vec::new(),
     })
 }
 

@@ -10,13 +10,17 @@ use crate::{
         BenchError, Options,
         packing::{Boxed, Phase},
     },
-    command::Command,
+    command::{
+        Command,
+        change::{Change, ChangeRefused},
+    },
     node::{
         pacer::{Stopwatch, wall_ns},
         plant::Plant,
     },
     physics::{System, health::Diverged, measure::real_of},
     session::Session,
+    simulator::Subject,
     snapshot::{Parts, Snapshot, take, view::View},
 };
 
@@ -73,6 +77,16 @@ impl Standing {
     }
 }
 
+impl Subject for Standing {
+    fn look(&self) -> Snapshot {
+        Plant::snapshot(self, Parts::ALL)
+    }
+
+    fn change(&mut self, _: &Change) -> Result<(), ChangeRefused> {
+        Err(ChangeRefused::Unchangeable)
+    }
+}
+
 impl Plant for Standing {
     type Fault = Diverged;
 
@@ -96,7 +110,8 @@ impl Plant for Standing {
 
     fn snapshot(&self, parts: Parts) -> Snapshot {
         let time_ns = self.tick * self.tick_ns;
-        Snapshot { tick: Tick(self.tick), time_ns, ..take::snapshot(&self.session, parts) }
+        let (tick, run_tick) = (Tick(self.tick), Tick(self.tick));
+        Snapshot { tick, time_ns, run_tick, ..take::snapshot(&self.session, parts) }
     }
 
     fn view<'a>(&'a self, seen: &'a Snapshot) -> View<'a> {

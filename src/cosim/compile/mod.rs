@@ -31,7 +31,7 @@ use crate::{
         membrane::{MembraneModel, Sheet, mesh::Mesh},
         model::{BodyModel, BodySurface, ChamberModel},
     },
-    scene::{Scene, Shape},
+    scene::{Object, Scene, Shape},
 };
 
 /// Changes whenever the same scene would settle differently: part of every cache key.
@@ -202,22 +202,43 @@ impl Laws {
 }
 
 fn bodies(scene: &Scene) -> Result<(Vec<BodyModel>, Vec<Bulk>), CompileError> {
-    let mut bodies = Vec::new();
-    let mut bulks = Vec::new();
-    for object in &scene.objects {
-        let surface = surface(&object.shape)
-            .map_err(|fault| CompileError::Object { name: object.name.clone(), fault })?;
-        let bulk = surface.bulk(object.material.density);
+    let bodies = scene.objects.iter().map(|object| body(scene, object));
+    Ok(bodies.collect::<Result<Vec<_>, _>>()?.into_iter().unzip())
+}
+
+/// An object as the membrane meets it, and what it weighs.
+///
+/// # Errors
+/// If its shape cannot be used.
+pub fn body(scene: &Scene, object: &Object) -> Result<(BodyModel, Bulk), CompileError> {
+    let surface = surface(&object.shape)
+        .map_err(|fault| CompileError::Object { name: object.name.clone(), fault })?;
+    let bulk = surface.bulk(object.material.density);
+    let on_object = law::Surface::of_membrane(&scene.membrane, object.friction);
+    let model = BodyModel {
+        law: PairLaw::between(&scene.membrane.material, &object.material, on_object),
+        contact_radius: contact_radius(&object.shape, bulk.volume),
+        bounding_radius: surface.bounding_radius(),
+        surface: BodySurface::Shape(Box::new(surface)),
+    };
+    Ok((model, bulk))
+}
+
+/// Takes materials and pump from `scene` again; shapes and steps stay.
+pub fn retune(scene: &Scene, model: &mut Model) {
+    let laws = Laws::new(scene);
+    (model.grain_law, model.membrane_law) = (laws.grain, laws.membrane);
+    model.walls[FLANGE].law = laws.plate;
+    model.chamber = ChamberModel::new(&scene.chamber, model.substep);
+    for (object, body) in scene.objects.iter().zip(&mut model.bodies) {
         let on_object = law::Surface::of_membrane(&scene.membrane, object.friction);
-        bodies.push(BodyModel {
-            law: PairLaw::between(&scene.membrane.material, &object.material, on_object),
-            contact_radius: contact_radius(&object.shape, bulk.volume),
-            bounding_radius: surface.bounding_radius(),
-            surface: BodySurface::Shape(Box::new(surface)),
-        });
-        bulks.push(bulk);
+        body.law = PairLaw::between(&scene.membrane.material, &object.material, on_object);
     }
-    Ok((bodies, bulks))
+}
+
+/// The longest stable substep of `scene` with an object that was not there when it was compiled [s].
+pub fn critical_step_with(scene: &Scene, model: &Model, body: &BodyModel) -> Real {
+    critical_step(scene, &model.membrane, &Laws::new(scene), std::slice::from_ref(body))
 }
 
 fn surface(shape: &Shape) -> Result<Surface, ShapeFault> {

@@ -2,6 +2,178 @@
 //!
 //! `tests/it/generated_types.rs` writes this file and tests that it is up to date.
 
+/// Messages of `action_msgs`.
+pub mod action_msgs {
+    use crate::wire::messages::{MessageType, RosMessage};
+
+    /// `action_msgs/msg/CancelGoalRequest`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct CancelGoalRequest {
+        /// `action_msgs/GoalInfo goal_info`
+        pub r#goal_info: GoalInfo,
+    }
+
+    /// `action_msgs/msg/CancelGoalResponse`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct CancelGoalResponse {
+        /// `int8 return_code`
+        pub r#return_code: i8,
+        /// `action_msgs/GoalInfo[] goals_canceling`
+        pub r#goals_canceling: Vec<GoalInfo>,
+    }
+
+    impl CancelGoalResponse {
+        /// `int8 ERROR_NONE`
+        pub const ERROR_NONE: i8 = 0;
+        /// `int8 ERROR_REJECTED`
+        pub const ERROR_REJECTED: i8 = 1;
+        /// `int8 ERROR_UNKNOWN_GOAL_ID`
+        pub const ERROR_UNKNOWN_GOAL_ID: i8 = 2;
+        /// `int8 ERROR_GOAL_TERMINATED`
+        pub const ERROR_GOAL_TERMINATED: i8 = 3;
+    }
+
+    /// `action_msgs/msg/GoalInfo`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct GoalInfo {
+        /// `unique_identifier_msgs/UUID goal_id`
+        pub r#goal_id: super::unique_identifier_msgs::UUID,
+        /// `builtin_interfaces/Time stamp`
+        pub r#stamp: super::builtin_interfaces::Time,
+    }
+
+    impl RosMessage for GoalInfo {
+        const TYPE: MessageType = MessageType {
+            name: "action_msgs/msg/GoalInfo",
+            dds_name: "action_msgs::msg::dds_::GoalInfo_",
+            type_hash: "RIHS01_6398fe763154554353930716b225947f93b672f0fb2e49fdd01bb7a7e37933e9",
+            definition: r##"unique_identifier_msgs/UUID goal_id
+builtin_interfaces/Time stamp
+================================================================================
+MSG: unique_identifier_msgs/UUID
+uint8[16] uuid
+================================================================================
+MSG: builtin_interfaces/Time
+int32 sec
+uint32 nanosec
+"##,
+        };
+    }
+
+    /// `action_msgs/msg/GoalStatus`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct GoalStatus {
+        /// `action_msgs/GoalInfo goal_info`
+        pub r#goal_info: GoalInfo,
+        /// `int8 status`
+        pub r#status: i8,
+    }
+
+    impl GoalStatus {
+        /// `int8 STATUS_UNKNOWN`
+        pub const STATUS_UNKNOWN: i8 = 0;
+        /// `int8 STATUS_ACCEPTED`
+        pub const STATUS_ACCEPTED: i8 = 1;
+        /// `int8 STATUS_EXECUTING`
+        pub const STATUS_EXECUTING: i8 = 2;
+        /// `int8 STATUS_CANCELING`
+        pub const STATUS_CANCELING: i8 = 3;
+        /// `int8 STATUS_SUCCEEDED`
+        pub const STATUS_SUCCEEDED: i8 = 4;
+        /// `int8 STATUS_CANCELED`
+        pub const STATUS_CANCELED: i8 = 5;
+        /// `int8 STATUS_ABORTED`
+        pub const STATUS_ABORTED: i8 = 6;
+    }
+
+    impl RosMessage for GoalStatus {
+        const TYPE: MessageType = MessageType {
+            name: "action_msgs/msg/GoalStatus",
+            dds_name: "action_msgs::msg::dds_::GoalStatus_",
+            type_hash: "RIHS01_32f4cfd717735d17657e1178f24431c1ce996c878c515230f6c5b3476819dbb9",
+            definition: r##"int8 STATUS_UNKNOWN=0
+int8 STATUS_ACCEPTED=1
+int8 STATUS_EXECUTING=2
+int8 STATUS_CANCELING=3
+int8 STATUS_SUCCEEDED=4
+int8 STATUS_CANCELED=5
+int8 STATUS_ABORTED=6
+action_msgs/GoalInfo goal_info
+int8 status
+================================================================================
+MSG: action_msgs/GoalInfo
+unique_identifier_msgs/UUID goal_id
+builtin_interfaces/Time stamp
+================================================================================
+MSG: unique_identifier_msgs/UUID
+uint8[16] uuid
+================================================================================
+MSG: builtin_interfaces/Time
+int32 sec
+uint32 nanosec
+"##,
+        };
+    }
+
+    /// `action_msgs/msg/GoalStatusArray`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct GoalStatusArray {
+        /// `action_msgs/GoalStatus[] status_list`
+        pub r#status_list: Vec<GoalStatus>,
+    }
+
+    impl RosMessage for GoalStatusArray {
+        const TYPE: MessageType = MessageType {
+            name: "action_msgs/msg/GoalStatusArray",
+            dds_name: "action_msgs::msg::dds_::GoalStatusArray_",
+            type_hash: "RIHS01_6c1684b00f177d37438febe6e709fc4e2b0d4248dca4854946f9ed8b30cda83e",
+            definition: r##"action_msgs/GoalStatus[] status_list
+================================================================================
+MSG: action_msgs/GoalStatus
+int8 STATUS_UNKNOWN=0
+int8 STATUS_ACCEPTED=1
+int8 STATUS_EXECUTING=2
+int8 STATUS_CANCELING=3
+int8 STATUS_SUCCEEDED=4
+int8 STATUS_CANCELED=5
+int8 STATUS_ABORTED=6
+action_msgs/GoalInfo goal_info
+int8 status
+================================================================================
+MSG: action_msgs/GoalInfo
+unique_identifier_msgs/UUID goal_id
+builtin_interfaces/Time stamp
+================================================================================
+MSG: unique_identifier_msgs/UUID
+uint8[16] uuid
+================================================================================
+MSG: builtin_interfaces/Time
+int32 sec
+uint32 nanosec
+"##,
+        };
+    }
+
+    /// Services of `action_msgs`.
+    pub mod srv {
+        use crate::wire::messages::{RosService, ServiceType};
+
+        /// `action_msgs/srv/CancelGoal`.
+        #[derive(Clone, Copy, Debug)]
+        pub struct CancelGoal;
+
+        impl RosService for CancelGoal {
+            type Request = super::CancelGoalRequest;
+            type Response = super::CancelGoalResponse;
+            const TYPE: ServiceType = ServiceType {
+                name: "action_msgs/srv/CancelGoal",
+                request_dds_name: "action_msgs::srv::dds_::CancelGoal_Request_",
+                response_dds_name: "action_msgs::srv::dds_::CancelGoal_Response_",
+            };
+        }
+    }
+}
+
 /// Messages of `builtin_interfaces`.
 pub mod builtin_interfaces {
     use crate::wire::messages::{MessageType, RosMessage};
@@ -44,6 +216,142 @@ uint32 nanosec
 uint32 nanosec
 "##,
         };
+    }
+}
+
+/// Messages of `control_msgs`.
+pub mod control_msgs {
+    use crate::wire::messages::{MessageType, RosMessage};
+
+    /// `control_msgs/msg/GripperCommand`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct GripperCommand {
+        /// `float64 position`
+        pub r#position: f64,
+        /// `float64 max_effort`
+        pub r#max_effort: f64,
+    }
+
+    impl RosMessage for GripperCommand {
+        const TYPE: MessageType = MessageType {
+            name: "control_msgs/msg/GripperCommand",
+            dds_name: "control_msgs::msg::dds_::GripperCommand_",
+            type_hash: "RIHS01_57eb8f326c9889ca8bb34ead82cc94cc09bf6bc5c3b6c09546dca3a00b589890",
+            definition: r##"float64 position
+float64 max_effort
+"##,
+        };
+    }
+
+    /// `control_msgs/msg/GripperCommandFeedback`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct GripperCommandFeedback {
+        /// `float64 position`
+        pub r#position: f64,
+        /// `float64 effort`
+        pub r#effort: f64,
+        /// `bool stalled`
+        pub r#stalled: bool,
+        /// `bool reached_goal`
+        pub r#reached_goal: bool,
+    }
+
+    /// `control_msgs/msg/GripperCommandGoal`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct GripperCommandGoal {
+        /// `control_msgs/GripperCommand command`
+        pub r#command: GripperCommand,
+    }
+
+    /// `control_msgs/msg/GripperCommandResult`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct GripperCommandResult {
+        /// `float64 position`
+        pub r#position: f64,
+        /// `float64 effort`
+        pub r#effort: f64,
+        /// `bool stalled`
+        pub r#stalled: bool,
+        /// `bool reached_goal`
+        pub r#reached_goal: bool,
+    }
+
+    /// `control_msgs/msg/ParallelGripperCommandFeedback`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct ParallelGripperCommandFeedback {
+        /// `sensor_msgs/JointState state`
+        pub r#state: super::sensor_msgs::JointState,
+    }
+
+    /// `control_msgs/msg/ParallelGripperCommandGoal`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct ParallelGripperCommandGoal {
+        /// `sensor_msgs/JointState command`
+        pub r#command: super::sensor_msgs::JointState,
+    }
+
+    /// `control_msgs/msg/ParallelGripperCommandResult`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct ParallelGripperCommandResult {
+        /// `sensor_msgs/JointState state`
+        pub r#state: super::sensor_msgs::JointState,
+        /// `bool stalled`
+        pub r#stalled: bool,
+        /// `bool reached_goal`
+        pub r#reached_goal: bool,
+    }
+
+    /// Actions of `control_msgs`.
+    pub mod action {
+        use crate::wire::messages::{ActionType, RosAction, ServiceType};
+
+        /// `control_msgs/action/GripperCommand`.
+        #[derive(Clone, Copy, Debug)]
+        pub struct GripperCommand;
+
+        impl RosAction for GripperCommand {
+            type Goal = super::GripperCommandGoal;
+            type Result = super::GripperCommandResult;
+            type Feedback = super::GripperCommandFeedback;
+            const TYPE: ActionType = ActionType {
+                name: "control_msgs/action/GripperCommand",
+                send_goal: ServiceType {
+                    name: "control_msgs/action/GripperCommand_SendGoal",
+                    request_dds_name: "control_msgs::action::dds_::GripperCommand_SendGoal_Request_",
+                    response_dds_name: "control_msgs::action::dds_::GripperCommand_SendGoal_Response_",
+                },
+                get_result: ServiceType {
+                    name: "control_msgs/action/GripperCommand_GetResult",
+                    request_dds_name: "control_msgs::action::dds_::GripperCommand_GetResult_Request_",
+                    response_dds_name: "control_msgs::action::dds_::GripperCommand_GetResult_Response_",
+                },
+                feedback_dds_name: "control_msgs::action::dds_::GripperCommand_FeedbackMessage_",
+            };
+        }
+
+        /// `control_msgs/action/ParallelGripperCommand`.
+        #[derive(Clone, Copy, Debug)]
+        pub struct ParallelGripperCommand;
+
+        impl RosAction for ParallelGripperCommand {
+            type Goal = super::ParallelGripperCommandGoal;
+            type Result = super::ParallelGripperCommandResult;
+            type Feedback = super::ParallelGripperCommandFeedback;
+            const TYPE: ActionType = ActionType {
+                name: "control_msgs/action/ParallelGripperCommand",
+                send_goal: ServiceType {
+                    name: "control_msgs/action/ParallelGripperCommand_SendGoal",
+                    request_dds_name: "control_msgs::action::dds_::ParallelGripperCommand_SendGoal_Request_",
+                    response_dds_name: "control_msgs::action::dds_::ParallelGripperCommand_SendGoal_Response_",
+                },
+                get_result: ServiceType {
+                    name: "control_msgs/action/ParallelGripperCommand_GetResult",
+                    request_dds_name: "control_msgs::action::dds_::ParallelGripperCommand_GetResult_Request_",
+                    response_dds_name: "control_msgs::action::dds_::ParallelGripperCommand_GetResult_Response_",
+                },
+                feedback_dds_name: "control_msgs::action::dds_::ParallelGripperCommand_FeedbackMessage_",
+            };
+        }
     }
 }
 
@@ -166,6 +474,31 @@ string value
 /// Messages of `geometry_msgs`.
 pub mod geometry_msgs {
     use crate::wire::messages::{MessageType, RosMessage};
+
+    /// `geometry_msgs/msg/Accel`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct Accel {
+        /// `geometry_msgs/Vector3 linear`
+        pub r#linear: Vector3,
+        /// `geometry_msgs/Vector3 angular`
+        pub r#angular: Vector3,
+    }
+
+    impl RosMessage for Accel {
+        const TYPE: MessageType = MessageType {
+            name: "geometry_msgs/msg/Accel",
+            dds_name: "geometry_msgs::msg::dds_::Accel_",
+            type_hash: "RIHS01_dc448243ded9b1fcbcca24aba0c22f013dae06c354ba2d849571c0a2a3f57ca0",
+            definition: r##"geometry_msgs/Vector3 linear
+geometry_msgs/Vector3 angular
+================================================================================
+MSG: geometry_msgs/Vector3
+float64 x
+float64 y
+float64 z
+"##,
+        };
+    }
 
     /// `geometry_msgs/msg/Point`.
     #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -1027,6 +1360,530 @@ uint32 nanosec
 "##,
         };
     }
+
+    /// What was done to the world between two ticks from outside: a reset, something put elsewhere, an object
+    /// added or taken away. Only recordings hold it.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct WorldChange {
+        /// Ticks since the start of the run after which it was done \[1\].
+        pub r#tick: u64,
+        /// What was done, in words.
+        pub r#what: String,
+        /// The same with all its numbers, in a form that only the simulator reads.
+        #[serde(with = "serde_bytes")]
+        pub r#change: Vec<u8>,
+    }
+
+    impl RosMessage for WorldChange {
+        const TYPE: MessageType = MessageType {
+            name: "jamgrip_msgs/msg/WorldChange",
+            dds_name: "jamgrip_msgs::msg::dds_::WorldChange_",
+            type_hash: "RIHS01_22a4a646e7733b7483d705af67570a5da4cb816a79530683d373850e3b9a77e6",
+            definition: r##"# What was done to the world between two ticks from outside: a reset, something put elsewhere, an object
+# added or taken away. Only recordings hold it.
+
+# Ticks since the start of the run after which it was done [1].
+uint64 tick
+# What was done, in words.
+string what
+# The same with all its numbers, in a form that only the simulator reads.
+uint8[] change
+"##,
+        };
+    }
+}
+
+/// Messages of `rcl_interfaces`.
+pub mod rcl_interfaces {
+    use crate::wire::messages::{MessageType, RosMessage};
+
+    /// `rcl_interfaces/msg/DescribeParametersRequest`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct DescribeParametersRequest {
+        /// `string[] names`
+        pub r#names: Vec<String>,
+    }
+
+    /// `rcl_interfaces/msg/DescribeParametersResponse`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct DescribeParametersResponse {
+        /// `rcl_interfaces/ParameterDescriptor[] descriptors`
+        pub r#descriptors: Vec<ParameterDescriptor>,
+    }
+
+    /// `rcl_interfaces/msg/FloatingPointRange`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct FloatingPointRange {
+        /// `float64 from_value`
+        pub r#from_value: f64,
+        /// `float64 to_value`
+        pub r#to_value: f64,
+        /// `float64 step`
+        pub r#step: f64,
+    }
+
+    impl RosMessage for FloatingPointRange {
+        const TYPE: MessageType = MessageType {
+            name: "rcl_interfaces/msg/FloatingPointRange",
+            dds_name: "rcl_interfaces::msg::dds_::FloatingPointRange_",
+            type_hash: "RIHS01_e6af23a23c177fee5f3075c8b1e435162a9b63c863d78c06017460b49684262d",
+            definition: r##"float64 from_value
+float64 to_value
+float64 step
+"##,
+        };
+    }
+
+    /// `rcl_interfaces/msg/GetParameterTypesRequest`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct GetParameterTypesRequest {
+        /// `string[] names`
+        pub r#names: Vec<String>,
+    }
+
+    /// `rcl_interfaces/msg/GetParameterTypesResponse`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct GetParameterTypesResponse {
+        /// `uint8[] types`
+        #[serde(with = "serde_bytes")]
+        pub r#types: Vec<u8>,
+    }
+
+    /// `rcl_interfaces/msg/GetParametersRequest`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct GetParametersRequest {
+        /// `string[] names`
+        pub r#names: Vec<String>,
+    }
+
+    /// `rcl_interfaces/msg/GetParametersResponse`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct GetParametersResponse {
+        /// `rcl_interfaces/ParameterValue[] values`
+        pub r#values: Vec<ParameterValue>,
+    }
+
+    /// `rcl_interfaces/msg/IntegerRange`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct IntegerRange {
+        /// `int64 from_value`
+        pub r#from_value: i64,
+        /// `int64 to_value`
+        pub r#to_value: i64,
+        /// `uint64 step`
+        pub r#step: u64,
+    }
+
+    impl RosMessage for IntegerRange {
+        const TYPE: MessageType = MessageType {
+            name: "rcl_interfaces/msg/IntegerRange",
+            dds_name: "rcl_interfaces::msg::dds_::IntegerRange_",
+            type_hash: "RIHS01_f7b7fdc0f65f07702e099218e13288c3963bcb9345bde78b560e6cd19800fc5a",
+            definition: r##"int64 from_value
+int64 to_value
+uint64 step
+"##,
+        };
+    }
+
+    /// `rcl_interfaces/msg/ListParametersRequest`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct ListParametersRequest {
+        /// `string[] prefixes`
+        pub r#prefixes: Vec<String>,
+        /// `uint64 depth`
+        pub r#depth: u64,
+    }
+
+    impl ListParametersRequest {
+        /// `uint64 DEPTH_RECURSIVE`
+        pub const DEPTH_RECURSIVE: u64 = 0;
+    }
+
+    /// `rcl_interfaces/msg/ListParametersResponse`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct ListParametersResponse {
+        /// `rcl_interfaces/ListParametersResult result`
+        pub r#result: ListParametersResult,
+    }
+
+    /// `rcl_interfaces/msg/ListParametersResult`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct ListParametersResult {
+        /// `string[] names`
+        pub r#names: Vec<String>,
+        /// `string[] prefixes`
+        pub r#prefixes: Vec<String>,
+    }
+
+    impl RosMessage for ListParametersResult {
+        const TYPE: MessageType = MessageType {
+            name: "rcl_interfaces/msg/ListParametersResult",
+            dds_name: "rcl_interfaces::msg::dds_::ListParametersResult_",
+            type_hash: "RIHS01_237ae3428413dcbcfb452b510c42355f3a2b021dc091afa3e18526d57022f1cd",
+            definition: r##"string[] names
+string[] prefixes
+"##,
+        };
+    }
+
+    /// `rcl_interfaces/msg/Parameter`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct Parameter {
+        /// `string name`
+        pub r#name: String,
+        /// `rcl_interfaces/ParameterValue value`
+        pub r#value: ParameterValue,
+    }
+
+    impl RosMessage for Parameter {
+        const TYPE: MessageType = MessageType {
+            name: "rcl_interfaces/msg/Parameter",
+            dds_name: "rcl_interfaces::msg::dds_::Parameter_",
+            type_hash: "RIHS01_78d768833adeeca1dc00e34c467996997d31509e9874edeaa3464e1c265b723e",
+            definition: r##"string name
+rcl_interfaces/ParameterValue value
+================================================================================
+MSG: rcl_interfaces/ParameterValue
+uint8 type
+bool bool_value
+int64 integer_value
+float64 double_value
+string string_value
+byte[] byte_array_value
+bool[] bool_array_value
+int64[] integer_array_value
+float64[] double_array_value
+string[] string_array_value
+"##,
+        };
+    }
+
+    /// `rcl_interfaces/msg/ParameterDescriptor`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct ParameterDescriptor {
+        /// `string name`
+        pub r#name: String,
+        /// `uint8 type`
+        pub r#type: u8,
+        /// `string description`
+        pub r#description: String,
+        /// `string additional_constraints`
+        pub r#additional_constraints: String,
+        /// `bool read_only`
+        pub r#read_only: bool,
+        /// `bool dynamic_typing`
+        pub r#dynamic_typing: bool,
+        /// `rcl_interfaces/FloatingPointRange[<=1] floating_point_range`
+        pub r#floating_point_range: Vec<FloatingPointRange>,
+        /// `rcl_interfaces/IntegerRange[<=1] integer_range`
+        pub r#integer_range: Vec<IntegerRange>,
+    }
+
+    impl RosMessage for ParameterDescriptor {
+        const TYPE: MessageType = MessageType {
+            name: "rcl_interfaces/msg/ParameterDescriptor",
+            dds_name: "rcl_interfaces::msg::dds_::ParameterDescriptor_",
+            type_hash: "RIHS01_52175dbfda6c51153101d33d2a9da05743f66f02d5ab2ca9ec4709b46b73d704",
+            definition: r##"string name
+uint8 type
+string description
+string additional_constraints
+bool read_only
+bool dynamic_typing
+rcl_interfaces/FloatingPointRange[<=1] floating_point_range
+rcl_interfaces/IntegerRange[<=1] integer_range
+================================================================================
+MSG: rcl_interfaces/FloatingPointRange
+float64 from_value
+float64 to_value
+float64 step
+================================================================================
+MSG: rcl_interfaces/IntegerRange
+int64 from_value
+int64 to_value
+uint64 step
+"##,
+        };
+    }
+
+    /// `rcl_interfaces/msg/ParameterEvent`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct ParameterEvent {
+        /// `builtin_interfaces/Time stamp`
+        pub r#stamp: super::builtin_interfaces::Time,
+        /// `string node`
+        pub r#node: String,
+        /// `rcl_interfaces/Parameter[] new_parameters`
+        pub r#new_parameters: Vec<Parameter>,
+        /// `rcl_interfaces/Parameter[] changed_parameters`
+        pub r#changed_parameters: Vec<Parameter>,
+        /// `rcl_interfaces/Parameter[] deleted_parameters`
+        pub r#deleted_parameters: Vec<Parameter>,
+    }
+
+    impl RosMessage for ParameterEvent {
+        const TYPE: MessageType = MessageType {
+            name: "rcl_interfaces/msg/ParameterEvent",
+            dds_name: "rcl_interfaces::msg::dds_::ParameterEvent_",
+            type_hash: "RIHS01_d9e1477e648fb0e03948d60a7a5238227a772a874531ca0dc6d2b669e42ae6c8",
+            definition: r##"builtin_interfaces/Time stamp
+string node
+rcl_interfaces/Parameter[] new_parameters
+rcl_interfaces/Parameter[] changed_parameters
+rcl_interfaces/Parameter[] deleted_parameters
+================================================================================
+MSG: builtin_interfaces/Time
+int32 sec
+uint32 nanosec
+================================================================================
+MSG: rcl_interfaces/Parameter
+string name
+rcl_interfaces/ParameterValue value
+================================================================================
+MSG: rcl_interfaces/ParameterValue
+uint8 type
+bool bool_value
+int64 integer_value
+float64 double_value
+string string_value
+byte[] byte_array_value
+bool[] bool_array_value
+int64[] integer_array_value
+float64[] double_array_value
+string[] string_array_value
+"##,
+        };
+    }
+
+    /// `rcl_interfaces/msg/ParameterType`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct ParameterType {
+    }
+
+    impl ParameterType {
+        /// `uint8 PARAMETER_NOT_SET`
+        pub const PARAMETER_NOT_SET: u8 = 0;
+        /// `uint8 PARAMETER_BOOL`
+        pub const PARAMETER_BOOL: u8 = 1;
+        /// `uint8 PARAMETER_INTEGER`
+        pub const PARAMETER_INTEGER: u8 = 2;
+        /// `uint8 PARAMETER_DOUBLE`
+        pub const PARAMETER_DOUBLE: u8 = 3;
+        /// `uint8 PARAMETER_STRING`
+        pub const PARAMETER_STRING: u8 = 4;
+        /// `uint8 PARAMETER_BYTE_ARRAY`
+        pub const PARAMETER_BYTE_ARRAY: u8 = 5;
+        /// `uint8 PARAMETER_BOOL_ARRAY`
+        pub const PARAMETER_BOOL_ARRAY: u8 = 6;
+        /// `uint8 PARAMETER_INTEGER_ARRAY`
+        pub const PARAMETER_INTEGER_ARRAY: u8 = 7;
+        /// `uint8 PARAMETER_DOUBLE_ARRAY`
+        pub const PARAMETER_DOUBLE_ARRAY: u8 = 8;
+        /// `uint8 PARAMETER_STRING_ARRAY`
+        pub const PARAMETER_STRING_ARRAY: u8 = 9;
+    }
+
+    impl RosMessage for ParameterType {
+        const TYPE: MessageType = MessageType {
+            name: "rcl_interfaces/msg/ParameterType",
+            dds_name: "rcl_interfaces::msg::dds_::ParameterType_",
+            type_hash: "RIHS01_df29ed057a834862187be24dd187d981790ff3ea6502f4cd27b432cbc42c6d46",
+            definition: r##"uint8 PARAMETER_NOT_SET=0
+uint8 PARAMETER_BOOL=1
+uint8 PARAMETER_INTEGER=2
+uint8 PARAMETER_DOUBLE=3
+uint8 PARAMETER_STRING=4
+uint8 PARAMETER_BYTE_ARRAY=5
+uint8 PARAMETER_BOOL_ARRAY=6
+uint8 PARAMETER_INTEGER_ARRAY=7
+uint8 PARAMETER_DOUBLE_ARRAY=8
+uint8 PARAMETER_STRING_ARRAY=9
+"##,
+        };
+    }
+
+    /// `rcl_interfaces/msg/ParameterValue`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct ParameterValue {
+        /// `uint8 type`
+        pub r#type: u8,
+        /// `bool bool_value`
+        pub r#bool_value: bool,
+        /// `int64 integer_value`
+        pub r#integer_value: i64,
+        /// `float64 double_value`
+        pub r#double_value: f64,
+        /// `string string_value`
+        pub r#string_value: String,
+        /// `byte[] byte_array_value`
+        #[serde(with = "serde_bytes")]
+        pub r#byte_array_value: Vec<u8>,
+        /// `bool[] bool_array_value`
+        pub r#bool_array_value: Vec<bool>,
+        /// `int64[] integer_array_value`
+        pub r#integer_array_value: Vec<i64>,
+        /// `float64[] double_array_value`
+        pub r#double_array_value: Vec<f64>,
+        /// `string[] string_array_value`
+        pub r#string_array_value: Vec<String>,
+    }
+
+    impl RosMessage for ParameterValue {
+        const TYPE: MessageType = MessageType {
+            name: "rcl_interfaces/msg/ParameterValue",
+            dds_name: "rcl_interfaces::msg::dds_::ParameterValue_",
+            type_hash: "RIHS01_cb2f37479f0576e981db6a7fa8d624e2f9dd00d98aa18bc68b1b4823949a8b79",
+            definition: r##"uint8 type
+bool bool_value
+int64 integer_value
+float64 double_value
+string string_value
+byte[] byte_array_value
+bool[] bool_array_value
+int64[] integer_array_value
+float64[] double_array_value
+string[] string_array_value
+"##,
+        };
+    }
+
+    /// `rcl_interfaces/msg/SetParametersAtomicallyRequest`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct SetParametersAtomicallyRequest {
+        /// `rcl_interfaces/Parameter[] parameters`
+        pub r#parameters: Vec<Parameter>,
+    }
+
+    /// `rcl_interfaces/msg/SetParametersAtomicallyResponse`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct SetParametersAtomicallyResponse {
+        /// `rcl_interfaces/SetParametersResult result`
+        pub r#result: SetParametersResult,
+    }
+
+    /// `rcl_interfaces/msg/SetParametersRequest`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct SetParametersRequest {
+        /// `rcl_interfaces/Parameter[] parameters`
+        pub r#parameters: Vec<Parameter>,
+    }
+
+    /// `rcl_interfaces/msg/SetParametersResponse`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct SetParametersResponse {
+        /// `rcl_interfaces/SetParametersResult[] results`
+        pub r#results: Vec<SetParametersResult>,
+    }
+
+    /// `rcl_interfaces/msg/SetParametersResult`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct SetParametersResult {
+        /// `bool successful`
+        pub r#successful: bool,
+        /// `string reason`
+        pub r#reason: String,
+    }
+
+    impl RosMessage for SetParametersResult {
+        const TYPE: MessageType = MessageType {
+            name: "rcl_interfaces/msg/SetParametersResult",
+            dds_name: "rcl_interfaces::msg::dds_::SetParametersResult_",
+            type_hash: "RIHS01_cfcc0fb0371ee5159b403960ef4300f8f9d2f1fd6117c8666b7f9654d528a9b1",
+            definition: r##"bool successful
+string reason
+"##,
+        };
+    }
+
+    /// Services of `rcl_interfaces`.
+    pub mod srv {
+        use crate::wire::messages::{RosService, ServiceType};
+
+        /// `rcl_interfaces/srv/DescribeParameters`.
+        #[derive(Clone, Copy, Debug)]
+        pub struct DescribeParameters;
+
+        impl RosService for DescribeParameters {
+            type Request = super::DescribeParametersRequest;
+            type Response = super::DescribeParametersResponse;
+            const TYPE: ServiceType = ServiceType {
+                name: "rcl_interfaces/srv/DescribeParameters",
+                request_dds_name: "rcl_interfaces::srv::dds_::DescribeParameters_Request_",
+                response_dds_name: "rcl_interfaces::srv::dds_::DescribeParameters_Response_",
+            };
+        }
+
+        /// `rcl_interfaces/srv/GetParameterTypes`.
+        #[derive(Clone, Copy, Debug)]
+        pub struct GetParameterTypes;
+
+        impl RosService for GetParameterTypes {
+            type Request = super::GetParameterTypesRequest;
+            type Response = super::GetParameterTypesResponse;
+            const TYPE: ServiceType = ServiceType {
+                name: "rcl_interfaces/srv/GetParameterTypes",
+                request_dds_name: "rcl_interfaces::srv::dds_::GetParameterTypes_Request_",
+                response_dds_name: "rcl_interfaces::srv::dds_::GetParameterTypes_Response_",
+            };
+        }
+
+        /// `rcl_interfaces/srv/GetParameters`.
+        #[derive(Clone, Copy, Debug)]
+        pub struct GetParameters;
+
+        impl RosService for GetParameters {
+            type Request = super::GetParametersRequest;
+            type Response = super::GetParametersResponse;
+            const TYPE: ServiceType = ServiceType {
+                name: "rcl_interfaces/srv/GetParameters",
+                request_dds_name: "rcl_interfaces::srv::dds_::GetParameters_Request_",
+                response_dds_name: "rcl_interfaces::srv::dds_::GetParameters_Response_",
+            };
+        }
+
+        /// `rcl_interfaces/srv/ListParameters`.
+        #[derive(Clone, Copy, Debug)]
+        pub struct ListParameters;
+
+        impl RosService for ListParameters {
+            type Request = super::ListParametersRequest;
+            type Response = super::ListParametersResponse;
+            const TYPE: ServiceType = ServiceType {
+                name: "rcl_interfaces/srv/ListParameters",
+                request_dds_name: "rcl_interfaces::srv::dds_::ListParameters_Request_",
+                response_dds_name: "rcl_interfaces::srv::dds_::ListParameters_Response_",
+            };
+        }
+
+        /// `rcl_interfaces/srv/SetParameters`.
+        #[derive(Clone, Copy, Debug)]
+        pub struct SetParameters;
+
+        impl RosService for SetParameters {
+            type Request = super::SetParametersRequest;
+            type Response = super::SetParametersResponse;
+            const TYPE: ServiceType = ServiceType {
+                name: "rcl_interfaces/srv/SetParameters",
+                request_dds_name: "rcl_interfaces::srv::dds_::SetParameters_Request_",
+                response_dds_name: "rcl_interfaces::srv::dds_::SetParameters_Response_",
+            };
+        }
+
+        /// `rcl_interfaces/srv/SetParametersAtomically`.
+        #[derive(Clone, Copy, Debug)]
+        pub struct SetParametersAtomically;
+
+        impl RosService for SetParametersAtomically {
+            type Request = super::SetParametersAtomicallyRequest;
+            type Response = super::SetParametersAtomicallyResponse;
+            const TYPE: ServiceType = ServiceType {
+                name: "rcl_interfaces/srv/SetParametersAtomically",
+                request_dds_name: "rcl_interfaces::srv::dds_::SetParametersAtomically_Request_",
+                response_dds_name: "rcl_interfaces::srv::dds_::SetParametersAtomically_Response_",
+            };
+        }
+    }
 }
 
 /// Messages of `rosgraph_msgs`.
@@ -1327,9 +2184,1543 @@ float64 z
     }
 }
 
+/// Messages of `simulation_interfaces`.
+pub mod simulation_interfaces {
+    use crate::wire::messages::{MessageType, RosMessage};
+
+    /// `simulation_interfaces/msg/Bounds`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct Bounds {
+        /// `uint8 type`
+        pub r#type: u8,
+        /// `geometry_msgs/Vector3[] points`
+        pub r#points: Vec<super::geometry_msgs::Vector3>,
+    }
+
+    impl Bounds {
+        /// `uint8 TYPE_EMPTY`
+        pub const TYPE_EMPTY: u8 = 0;
+        /// `uint8 TYPE_BOX`
+        pub const TYPE_BOX: u8 = 1;
+        /// `uint8 TYPE_CONVEX_HULL`
+        pub const TYPE_CONVEX_HULL: u8 = 2;
+        /// `uint8 TYPE_SPHERE`
+        pub const TYPE_SPHERE: u8 = 3;
+    }
+
+    impl RosMessage for Bounds {
+        const TYPE: MessageType = MessageType {
+            name: "simulation_interfaces/msg/Bounds",
+            dds_name: "simulation_interfaces::msg::dds_::Bounds_",
+            type_hash: "RIHS01_e8624fe51f0f5548197542697d924c5699ac7198f1e4c68e50c3ca2af73f5b3f",
+            definition: r##"uint8 TYPE_EMPTY = 0
+uint8 TYPE_BOX = 1
+uint8 TYPE_CONVEX_HULL = 2
+uint8 TYPE_SPHERE = 3
+uint8 type
+geometry_msgs/Vector3[] points
+================================================================================
+MSG: geometry_msgs/Vector3
+float64 x
+float64 y
+float64 z
+"##,
+        };
+    }
+
+    /// `simulation_interfaces/msg/DeleteEntityRequest`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct DeleteEntityRequest {
+        /// `string entity`
+        pub r#entity: String,
+    }
+
+    /// `simulation_interfaces/msg/DeleteEntityResponse`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct DeleteEntityResponse {
+        /// `simulation_interfaces/Result result`
+        pub r#result: Result,
+    }
+
+    /// `simulation_interfaces/msg/EntityCategory`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct EntityCategory {
+        /// `uint8 category`
+        pub r#category: u8,
+    }
+
+    impl EntityCategory {
+        /// `uint8 CATEGORY_OBJECT`
+        pub const CATEGORY_OBJECT: u8 = 0;
+        /// `uint8 CATEGORY_ROBOT`
+        pub const CATEGORY_ROBOT: u8 = 1;
+        /// `uint8 CATEGORY_HUMAN`
+        pub const CATEGORY_HUMAN: u8 = 2;
+        /// `uint8 CATEGORY_DYNAMIC_OBJECT`
+        pub const CATEGORY_DYNAMIC_OBJECT: u8 = 4;
+        /// `uint8 CATEGORY_STATIC_OBJECT`
+        pub const CATEGORY_STATIC_OBJECT: u8 = 5;
+    }
+
+    impl RosMessage for EntityCategory {
+        const TYPE: MessageType = MessageType {
+            name: "simulation_interfaces/msg/EntityCategory",
+            dds_name: "simulation_interfaces::msg::dds_::EntityCategory_",
+            type_hash: "RIHS01_43bdf7933fddf75f6970f7a8fe7078524355d821d390b3954bb46ac36c03dfe1",
+            definition: r##"uint8 CATEGORY_OBJECT = 0
+uint8 CATEGORY_ROBOT = 1
+uint8 CATEGORY_HUMAN = 2
+uint8 CATEGORY_DYNAMIC_OBJECT = 4
+uint8 CATEGORY_STATIC_OBJECT = 5
+uint8 category
+"##,
+        };
+    }
+
+    /// `simulation_interfaces/msg/EntityFilters`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct EntityFilters {
+        /// `string filter`
+        pub r#filter: String,
+        /// `simulation_interfaces/EntityCategory[] categories`
+        pub r#categories: Vec<EntityCategory>,
+        /// `simulation_interfaces/TagsFilter tags`
+        pub r#tags: TagsFilter,
+        /// `simulation_interfaces/Bounds bounds`
+        pub r#bounds: Bounds,
+    }
+
+    impl RosMessage for EntityFilters {
+        const TYPE: MessageType = MessageType {
+            name: "simulation_interfaces/msg/EntityFilters",
+            dds_name: "simulation_interfaces::msg::dds_::EntityFilters_",
+            type_hash: "RIHS01_8e7b12e8ea062f14c55de4877221fe1b7cd9749665a7ad8a4ab855fc4b148303",
+            definition: r##"string filter
+EntityCategory[] categories
+TagsFilter tags
+Bounds bounds
+================================================================================
+MSG: simulation_interfaces/EntityCategory
+uint8 CATEGORY_OBJECT = 0
+uint8 CATEGORY_ROBOT = 1
+uint8 CATEGORY_HUMAN = 2
+uint8 CATEGORY_DYNAMIC_OBJECT = 4
+uint8 CATEGORY_STATIC_OBJECT = 5
+uint8 category
+================================================================================
+MSG: simulation_interfaces/TagsFilter
+string[] tags
+uint8 FILTER_MODE_ANY = 0
+uint8 FILTER_MODE_ALL = 1
+uint8 filter_mode
+================================================================================
+MSG: simulation_interfaces/Bounds
+uint8 TYPE_EMPTY = 0
+uint8 TYPE_BOX = 1
+uint8 TYPE_CONVEX_HULL = 2
+uint8 TYPE_SPHERE = 3
+uint8 type
+geometry_msgs/Vector3[] points
+================================================================================
+MSG: geometry_msgs/Vector3
+float64 x
+float64 y
+float64 z
+"##,
+        };
+    }
+
+    /// `simulation_interfaces/msg/EntityInfo`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct EntityInfo {
+        /// `simulation_interfaces/EntityCategory category`
+        pub r#category: EntityCategory,
+        /// `string description`
+        pub r#description: String,
+        /// `string[] tags`
+        pub r#tags: Vec<String>,
+    }
+
+    impl RosMessage for EntityInfo {
+        const TYPE: MessageType = MessageType {
+            name: "simulation_interfaces/msg/EntityInfo",
+            dds_name: "simulation_interfaces::msg::dds_::EntityInfo_",
+            type_hash: "RIHS01_3b9a2e7fa00f9a59d325b6e47904044c421561a385682027c7fc06c359806319",
+            definition: r##"EntityCategory category
+string description
+string[] tags
+================================================================================
+MSG: simulation_interfaces/EntityCategory
+uint8 CATEGORY_OBJECT = 0
+uint8 CATEGORY_ROBOT = 1
+uint8 CATEGORY_HUMAN = 2
+uint8 CATEGORY_DYNAMIC_OBJECT = 4
+uint8 CATEGORY_STATIC_OBJECT = 5
+uint8 category
+"##,
+        };
+    }
+
+    /// `simulation_interfaces/msg/EntityState`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct EntityState {
+        /// `std_msgs/Header header`
+        pub r#header: super::std_msgs::Header,
+        /// `geometry_msgs/Pose pose`
+        pub r#pose: super::geometry_msgs::Pose,
+        /// `geometry_msgs/Twist twist`
+        pub r#twist: super::geometry_msgs::Twist,
+        /// `geometry_msgs/Accel acceleration`
+        pub r#acceleration: super::geometry_msgs::Accel,
+    }
+
+    impl RosMessage for EntityState {
+        const TYPE: MessageType = MessageType {
+            name: "simulation_interfaces/msg/EntityState",
+            dds_name: "simulation_interfaces::msg::dds_::EntityState_",
+            type_hash: "RIHS01_2e0464a85eb80a939025075d6c20761eca6a4cb9d6baf2c0ba373467c8b598d0",
+            definition: r##"std_msgs/Header header
+geometry_msgs/Pose pose
+geometry_msgs/Twist twist
+geometry_msgs/Accel acceleration
+================================================================================
+MSG: std_msgs/Header
+builtin_interfaces/Time stamp
+string frame_id
+================================================================================
+MSG: geometry_msgs/Pose
+geometry_msgs/Point position
+geometry_msgs/Quaternion orientation
+================================================================================
+MSG: geometry_msgs/Twist
+geometry_msgs/Vector3 linear
+geometry_msgs/Vector3 angular
+================================================================================
+MSG: geometry_msgs/Accel
+geometry_msgs/Vector3 linear
+geometry_msgs/Vector3 angular
+================================================================================
+MSG: geometry_msgs/Vector3
+float64 x
+float64 y
+float64 z
+================================================================================
+MSG: geometry_msgs/Point
+float64 x
+float64 y
+float64 z
+================================================================================
+MSG: geometry_msgs/Quaternion
+float64 x
+float64 y
+float64 z
+float64 w
+================================================================================
+MSG: builtin_interfaces/Time
+int32 sec
+uint32 nanosec
+"##,
+        };
+    }
+
+    /// `simulation_interfaces/msg/GetAvailableWorldsRequest`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct GetAvailableWorldsRequest {
+        /// `string[] additional_sources`
+        pub r#additional_sources: Vec<String>,
+        /// `simulation_interfaces/TagsFilter filter`
+        pub r#filter: TagsFilter,
+        /// `bool offline_only`
+        pub r#offline_only: bool,
+        /// `bool continue_on_error`
+        pub r#continue_on_error: bool,
+    }
+
+    /// `simulation_interfaces/msg/GetAvailableWorldsResponse`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct GetAvailableWorldsResponse {
+        /// `simulation_interfaces/Result result`
+        pub r#result: Result,
+        /// `simulation_interfaces/WorldResource[] worlds`
+        pub r#worlds: Vec<WorldResource>,
+    }
+
+    impl GetAvailableWorldsResponse {
+        /// `uint8 DEFAULT_SOURCES_FAILED`
+        pub const DEFAULT_SOURCES_FAILED: u8 = 101;
+    }
+
+    /// `simulation_interfaces/msg/GetCurrentWorldRequest`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct GetCurrentWorldRequest {
+        /// `uint8 structure_needs_at_least_one_member`
+        pub r#structure_needs_at_least_one_member: u8,
+    }
+
+    /// `simulation_interfaces/msg/GetCurrentWorldResponse`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct GetCurrentWorldResponse {
+        /// `simulation_interfaces/Result result`
+        pub r#result: Result,
+        /// `simulation_interfaces/WorldResource world`
+        pub r#world: WorldResource,
+    }
+
+    impl GetCurrentWorldResponse {
+        /// `uint8 NO_WORLD_LOADED`
+        pub const NO_WORLD_LOADED: u8 = 101;
+    }
+
+    /// `simulation_interfaces/msg/GetEntitiesRequest`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct GetEntitiesRequest {
+        /// `simulation_interfaces/EntityFilters filters`
+        pub r#filters: EntityFilters,
+    }
+
+    /// `simulation_interfaces/msg/GetEntitiesResponse`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct GetEntitiesResponse {
+        /// `simulation_interfaces/Result result`
+        pub r#result: Result,
+        /// `string[] entities`
+        pub r#entities: Vec<String>,
+    }
+
+    /// `simulation_interfaces/msg/GetEntitiesStatesRequest`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct GetEntitiesStatesRequest {
+        /// `simulation_interfaces/EntityFilters filters`
+        pub r#filters: EntityFilters,
+    }
+
+    /// `simulation_interfaces/msg/GetEntitiesStatesResponse`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct GetEntitiesStatesResponse {
+        /// `simulation_interfaces/Result result`
+        pub r#result: Result,
+        /// `string[] entities`
+        pub r#entities: Vec<String>,
+        /// `simulation_interfaces/EntityState[] states`
+        pub r#states: Vec<EntityState>,
+    }
+
+    /// `simulation_interfaces/msg/GetEntityBoundsRequest`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct GetEntityBoundsRequest {
+        /// `string entity`
+        pub r#entity: String,
+    }
+
+    /// `simulation_interfaces/msg/GetEntityBoundsResponse`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct GetEntityBoundsResponse {
+        /// `simulation_interfaces/Result result`
+        pub r#result: Result,
+        /// `simulation_interfaces/Bounds bounds`
+        pub r#bounds: Bounds,
+    }
+
+    /// `simulation_interfaces/msg/GetEntityInfoRequest`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct GetEntityInfoRequest {
+        /// `string entity`
+        pub r#entity: String,
+    }
+
+    /// `simulation_interfaces/msg/GetEntityInfoResponse`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct GetEntityInfoResponse {
+        /// `simulation_interfaces/Result result`
+        pub r#result: Result,
+        /// `simulation_interfaces/EntityInfo info`
+        pub r#info: EntityInfo,
+    }
+
+    /// `simulation_interfaces/msg/GetEntityStateRequest`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct GetEntityStateRequest {
+        /// `string entity`
+        pub r#entity: String,
+    }
+
+    /// `simulation_interfaces/msg/GetEntityStateResponse`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct GetEntityStateResponse {
+        /// `simulation_interfaces/Result result`
+        pub r#result: Result,
+        /// `simulation_interfaces/EntityState state`
+        pub r#state: EntityState,
+    }
+
+    /// `simulation_interfaces/msg/GetNamedPoseBoundsRequest`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct GetNamedPoseBoundsRequest {
+        /// `string name`
+        pub r#name: String,
+    }
+
+    /// `simulation_interfaces/msg/GetNamedPoseBoundsResponse`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct GetNamedPoseBoundsResponse {
+        /// `simulation_interfaces/Result result`
+        pub r#result: Result,
+        /// `simulation_interfaces/Bounds bounds`
+        pub r#bounds: Bounds,
+    }
+
+    /// `simulation_interfaces/msg/GetNamedPosesRequest`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct GetNamedPosesRequest {
+        /// `simulation_interfaces/TagsFilter tags`
+        pub r#tags: TagsFilter,
+    }
+
+    /// `simulation_interfaces/msg/GetNamedPosesResponse`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct GetNamedPosesResponse {
+        /// `simulation_interfaces/Result result`
+        pub r#result: Result,
+        /// `simulation_interfaces/NamedPose[] poses`
+        pub r#poses: Vec<NamedPose>,
+    }
+
+    /// `simulation_interfaces/msg/GetSimulationStateRequest`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct GetSimulationStateRequest {
+        /// `uint8 structure_needs_at_least_one_member`
+        pub r#structure_needs_at_least_one_member: u8,
+    }
+
+    /// `simulation_interfaces/msg/GetSimulationStateResponse`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct GetSimulationStateResponse {
+        /// `simulation_interfaces/SimulationState state`
+        pub r#state: SimulationState,
+        /// `simulation_interfaces/Result result`
+        pub r#result: Result,
+    }
+
+    /// `simulation_interfaces/msg/GetSimulatorFeaturesRequest`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct GetSimulatorFeaturesRequest {
+        /// `uint8 structure_needs_at_least_one_member`
+        pub r#structure_needs_at_least_one_member: u8,
+    }
+
+    /// `simulation_interfaces/msg/GetSimulatorFeaturesResponse`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct GetSimulatorFeaturesResponse {
+        /// `simulation_interfaces/SimulatorFeatures features`
+        pub r#features: SimulatorFeatures,
+    }
+
+    /// `simulation_interfaces/msg/GetSpawnablesRequest`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct GetSpawnablesRequest {
+        /// `string[] sources`
+        pub r#sources: Vec<String>,
+    }
+
+    /// `simulation_interfaces/msg/GetSpawnablesResponse`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct GetSpawnablesResponse {
+        /// `simulation_interfaces/Result result`
+        pub r#result: Result,
+        /// `simulation_interfaces/Spawnable[] spawnables`
+        pub r#spawnables: Vec<Spawnable>,
+    }
+
+    /// `simulation_interfaces/msg/LoadWorldRequest`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct LoadWorldRequest {
+        /// `simulation_interfaces/Resource world_resource`
+        pub r#world_resource: Resource,
+        /// `bool fail_on_unsupported_element`
+        pub r#fail_on_unsupported_element: bool,
+        /// `bool ignore_missing_or_unsupported_assets`
+        pub r#ignore_missing_or_unsupported_assets: bool,
+    }
+
+    /// `simulation_interfaces/msg/LoadWorldResponse`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct LoadWorldResponse {
+        /// `simulation_interfaces/Result result`
+        pub r#result: Result,
+        /// `simulation_interfaces/WorldResource world`
+        pub r#world: WorldResource,
+    }
+
+    impl LoadWorldResponse {
+        /// `uint8 UNSUPPORTED_FORMAT`
+        pub const UNSUPPORTED_FORMAT: u8 = 101;
+        /// `uint8 NO_RESOURCE`
+        pub const NO_RESOURCE: u8 = 102;
+        /// `uint8 RESOURCE_PARSE_ERROR`
+        pub const RESOURCE_PARSE_ERROR: u8 = 103;
+        /// `uint8 MISSING_ASSETS`
+        pub const MISSING_ASSETS: u8 = 104;
+        /// `uint8 UNSUPPORTED_ASSETS`
+        pub const UNSUPPORTED_ASSETS: u8 = 105;
+        /// `uint8 UNSUPPORTED_ELEMENTS`
+        pub const UNSUPPORTED_ELEMENTS: u8 = 106;
+    }
+
+    /// `simulation_interfaces/msg/NamedPose`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct NamedPose {
+        /// `string name`
+        pub r#name: String,
+        /// `string description`
+        pub r#description: String,
+        /// `string[] tags`
+        pub r#tags: Vec<String>,
+        /// `geometry_msgs/Pose pose`
+        pub r#pose: super::geometry_msgs::Pose,
+    }
+
+    impl RosMessage for NamedPose {
+        const TYPE: MessageType = MessageType {
+            name: "simulation_interfaces/msg/NamedPose",
+            dds_name: "simulation_interfaces::msg::dds_::NamedPose_",
+            type_hash: "RIHS01_b32da2a039b1840f605ec025b7991a18efacac662fac272818d1ae6e2b12bc27",
+            definition: r##"string name
+string description
+string[] tags
+geometry_msgs/Pose pose
+================================================================================
+MSG: geometry_msgs/Pose
+geometry_msgs/Point position
+geometry_msgs/Quaternion orientation
+================================================================================
+MSG: geometry_msgs/Point
+float64 x
+float64 y
+float64 z
+================================================================================
+MSG: geometry_msgs/Quaternion
+float64 x
+float64 y
+float64 z
+float64 w
+"##,
+        };
+    }
+
+    /// `simulation_interfaces/msg/ResetSimulationRequest`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct ResetSimulationRequest {
+        /// `uint8 scope`
+        pub r#scope: u8,
+    }
+
+    impl ResetSimulationRequest {
+        /// `uint8 SCOPE_DEFAULT`
+        pub const SCOPE_DEFAULT: u8 = 0;
+        /// `uint8 SCOPE_TIME`
+        pub const SCOPE_TIME: u8 = 1;
+        /// `uint8 SCOPE_STATE`
+        pub const SCOPE_STATE: u8 = 2;
+        /// `uint8 SCOPE_SPAWNED`
+        pub const SCOPE_SPAWNED: u8 = 4;
+        /// `uint8 SCOPE_ALL`
+        pub const SCOPE_ALL: u8 = 255;
+    }
+
+    /// `simulation_interfaces/msg/ResetSimulationResponse`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct ResetSimulationResponse {
+        /// `simulation_interfaces/Result result`
+        pub r#result: Result,
+    }
+
+    /// `simulation_interfaces/msg/Resource`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct Resource {
+        /// `string uri`
+        pub r#uri: String,
+        /// `string resource_string`
+        pub r#resource_string: String,
+    }
+
+    impl RosMessage for Resource {
+        const TYPE: MessageType = MessageType {
+            name: "simulation_interfaces/msg/Resource",
+            dds_name: "simulation_interfaces::msg::dds_::Resource_",
+            type_hash: "RIHS01_2bb1939cf80f8d2f284afba53cbec60b5ff33759bd39b714128ea8867a34c51a",
+            definition: r##"string uri
+string resource_string
+"##,
+        };
+    }
+
+    /// `simulation_interfaces/msg/Result`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct Result {
+        /// `uint8 result`
+        pub r#result: u8,
+        /// `string error_message`
+        pub r#error_message: String,
+    }
+
+    impl Result {
+        /// `uint8 RESULT_FEATURE_UNSUPPORTED`
+        pub const RESULT_FEATURE_UNSUPPORTED: u8 = 0;
+        /// `uint8 RESULT_OK`
+        pub const RESULT_OK: u8 = 1;
+        /// `uint8 RESULT_NOT_FOUND`
+        pub const RESULT_NOT_FOUND: u8 = 2;
+        /// `uint8 RESULT_INCORRECT_STATE`
+        pub const RESULT_INCORRECT_STATE: u8 = 3;
+        /// `uint8 RESULT_OPERATION_FAILED`
+        pub const RESULT_OPERATION_FAILED: u8 = 4;
+    }
+
+    impl RosMessage for Result {
+        const TYPE: MessageType = MessageType {
+            name: "simulation_interfaces/msg/Result",
+            dds_name: "simulation_interfaces::msg::dds_::Result_",
+            type_hash: "RIHS01_cf43a306adff3337a0a47143d8f5689933bc70a30478f13b077dc1fe3bc5ad17",
+            definition: r##"uint8 RESULT_FEATURE_UNSUPPORTED = 0
+uint8 RESULT_OK = 1
+uint8 RESULT_NOT_FOUND = 2
+uint8 RESULT_INCORRECT_STATE = 3
+uint8 RESULT_OPERATION_FAILED = 4
+uint8 result
+string error_message
+"##,
+        };
+    }
+
+    /// `simulation_interfaces/msg/SetEntityInfoRequest`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct SetEntityInfoRequest {
+        /// `string entity`
+        pub r#entity: String,
+        /// `simulation_interfaces/EntityInfo info`
+        pub r#info: EntityInfo,
+    }
+
+    /// `simulation_interfaces/msg/SetEntityInfoResponse`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct SetEntityInfoResponse {
+        /// `simulation_interfaces/Result result`
+        pub r#result: Result,
+    }
+
+    /// `simulation_interfaces/msg/SetEntityStateRequest`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct SetEntityStateRequest {
+        /// `string entity`
+        pub r#entity: String,
+        /// `simulation_interfaces/EntityState state`
+        pub r#state: EntityState,
+        /// `bool set_pose`
+        pub r#set_pose: bool,
+        /// `bool set_twist`
+        pub r#set_twist: bool,
+        /// `bool set_acceleration`
+        pub r#set_acceleration: bool,
+    }
+
+    /// `simulation_interfaces/msg/SetEntityStateResponse`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct SetEntityStateResponse {
+        /// `simulation_interfaces/Result result`
+        pub r#result: Result,
+    }
+
+    impl SetEntityStateResponse {
+        /// `uint8 INVALID_POSE`
+        pub const INVALID_POSE: u8 = 101;
+    }
+
+    /// `simulation_interfaces/msg/SetSimulationStateRequest`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct SetSimulationStateRequest {
+        /// `simulation_interfaces/SimulationState state`
+        pub r#state: SimulationState,
+    }
+
+    /// `simulation_interfaces/msg/SetSimulationStateResponse`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct SetSimulationStateResponse {
+        /// `simulation_interfaces/Result result`
+        pub r#result: Result,
+    }
+
+    impl SetSimulationStateResponse {
+        /// `uint8 ALREADY_IN_TARGET_STATE`
+        pub const ALREADY_IN_TARGET_STATE: u8 = 101;
+        /// `uint8 STATE_TRANSITION_ERROR`
+        pub const STATE_TRANSITION_ERROR: u8 = 102;
+        /// `uint8 INCORRECT_TRANSITION`
+        pub const INCORRECT_TRANSITION: u8 = 103;
+    }
+
+    /// `simulation_interfaces/msg/SimulateStepsFeedback`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct SimulateStepsFeedback {
+        /// `uint64 completed_steps`
+        pub r#completed_steps: u64,
+        /// `uint64 remaining_steps`
+        pub r#remaining_steps: u64,
+    }
+
+    /// `simulation_interfaces/msg/SimulateStepsGoal`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct SimulateStepsGoal {
+        /// `uint64 steps`
+        pub r#steps: u64,
+    }
+
+    /// `simulation_interfaces/msg/SimulateStepsResult`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct SimulateStepsResult {
+        /// `simulation_interfaces/Result result`
+        pub r#result: Result,
+    }
+
+    /// `simulation_interfaces/msg/SimulationState`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct SimulationState {
+        /// `uint8 state`
+        pub r#state: u8,
+    }
+
+    impl SimulationState {
+        /// `uint8 STATE_STOPPED`
+        pub const STATE_STOPPED: u8 = 0;
+        /// `uint8 STATE_PLAYING`
+        pub const STATE_PLAYING: u8 = 1;
+        /// `uint8 STATE_PAUSED`
+        pub const STATE_PAUSED: u8 = 2;
+        /// `uint8 STATE_QUITTING`
+        pub const STATE_QUITTING: u8 = 3;
+        /// `uint8 STATE_NO_WORLD`
+        pub const STATE_NO_WORLD: u8 = 4;
+        /// `uint8 STATE_LOADING_WORLD`
+        pub const STATE_LOADING_WORLD: u8 = 5;
+    }
+
+    impl RosMessage for SimulationState {
+        const TYPE: MessageType = MessageType {
+            name: "simulation_interfaces/msg/SimulationState",
+            dds_name: "simulation_interfaces::msg::dds_::SimulationState_",
+            type_hash: "RIHS01_bb9f87ccdd98fba113052a512d9801e84ce732d0a2b3c2b0cb281828de36e415",
+            definition: r##"uint8 STATE_STOPPED = 0
+uint8 STATE_PLAYING = 1
+uint8 STATE_PAUSED = 2
+uint8 STATE_QUITTING = 3
+uint8 STATE_NO_WORLD = 4
+uint8 STATE_LOADING_WORLD = 5
+uint8 state
+"##,
+        };
+    }
+
+    /// `simulation_interfaces/msg/SimulatorFeatures`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct SimulatorFeatures {
+        /// `uint16[] features`
+        pub r#features: Vec<u16>,
+        /// `string[] spawn_formats`
+        pub r#spawn_formats: Vec<String>,
+        /// `string custom_info`
+        pub r#custom_info: String,
+    }
+
+    impl SimulatorFeatures {
+        /// `uint8 SPAWNING`
+        pub const SPAWNING: u8 = 0;
+        /// `uint8 DELETING`
+        pub const DELETING: u8 = 1;
+        /// `uint8 NAMED_POSES`
+        pub const NAMED_POSES: u8 = 2;
+        /// `uint8 POSE_BOUNDS`
+        pub const POSE_BOUNDS: u8 = 3;
+        /// `uint8 ENTITY_TAGS`
+        pub const ENTITY_TAGS: u8 = 4;
+        /// `uint8 ENTITY_BOUNDS`
+        pub const ENTITY_BOUNDS: u8 = 5;
+        /// `uint8 ENTITY_BOUNDS_BOX`
+        pub const ENTITY_BOUNDS_BOX: u8 = 6;
+        /// `uint8 ENTITY_BOUNDS_CONVEX`
+        pub const ENTITY_BOUNDS_CONVEX: u8 = 7;
+        /// `uint8 ENTITY_CATEGORIES`
+        pub const ENTITY_CATEGORIES: u8 = 8;
+        /// `uint8 SPAWNING_RESOURCE_STRING`
+        pub const SPAWNING_RESOURCE_STRING: u8 = 9;
+        /// `uint8 ENTITY_STATE_GETTING`
+        pub const ENTITY_STATE_GETTING: u8 = 10;
+        /// `uint8 ENTITY_STATE_SETTING`
+        pub const ENTITY_STATE_SETTING: u8 = 11;
+        /// `uint8 ENTITY_INFO_GETTING`
+        pub const ENTITY_INFO_GETTING: u8 = 12;
+        /// `uint8 ENTITY_INFO_SETTING`
+        pub const ENTITY_INFO_SETTING: u8 = 13;
+        /// `uint8 SPAWNABLES`
+        pub const SPAWNABLES: u8 = 14;
+        /// `uint8 SIMULATION_RESET`
+        pub const SIMULATION_RESET: u8 = 20;
+        /// `uint8 SIMULATION_RESET_TIME`
+        pub const SIMULATION_RESET_TIME: u8 = 21;
+        /// `uint8 SIMULATION_RESET_STATE`
+        pub const SIMULATION_RESET_STATE: u8 = 22;
+        /// `uint8 SIMULATION_RESET_SPAWNED`
+        pub const SIMULATION_RESET_SPAWNED: u8 = 23;
+        /// `uint8 SIMULATION_STATE_GETTING`
+        pub const SIMULATION_STATE_GETTING: u8 = 24;
+        /// `uint8 SIMULATION_STATE_SETTING`
+        pub const SIMULATION_STATE_SETTING: u8 = 25;
+        /// `uint8 SIMULATION_STATE_PAUSE`
+        pub const SIMULATION_STATE_PAUSE: u8 = 26;
+        /// `uint8 STEP_SIMULATION_SINGLE`
+        pub const STEP_SIMULATION_SINGLE: u8 = 31;
+        /// `uint8 STEP_SIMULATION_MULTIPLE`
+        pub const STEP_SIMULATION_MULTIPLE: u8 = 32;
+        /// `uint8 STEP_SIMULATION_ACTION`
+        pub const STEP_SIMULATION_ACTION: u8 = 33;
+        /// `uint8 WORLD_LOADING`
+        pub const WORLD_LOADING: u8 = 40;
+        /// `uint8 WORLD_RESOURCE_STRING`
+        pub const WORLD_RESOURCE_STRING: u8 = 41;
+        /// `uint8 WORLD_TAGS`
+        pub const WORLD_TAGS: u8 = 42;
+        /// `uint8 WORLD_UNLOADING`
+        pub const WORLD_UNLOADING: u8 = 43;
+        /// `uint8 WORLD_INFO_GETTING`
+        pub const WORLD_INFO_GETTING: u8 = 44;
+        /// `uint8 AVAILABLE_WORLDS`
+        pub const AVAILABLE_WORLDS: u8 = 45;
+        /// `uint8 SPAWNING_ENTITIES`
+        pub const SPAWNING_ENTITIES: u8 = 50;
+    }
+
+    impl RosMessage for SimulatorFeatures {
+        const TYPE: MessageType = MessageType {
+            name: "simulation_interfaces/msg/SimulatorFeatures",
+            dds_name: "simulation_interfaces::msg::dds_::SimulatorFeatures_",
+            type_hash: "RIHS01_8b101c8529bc0ea3dcf056078254768f39832b9ef0adaf93bd5cea96c0de3305",
+            definition: r##"uint8 SPAWNING = 0
+uint8 DELETING = 1
+uint8 NAMED_POSES = 2
+uint8 POSE_BOUNDS = 3
+uint8 ENTITY_TAGS = 4
+uint8 ENTITY_BOUNDS = 5
+uint8 ENTITY_BOUNDS_BOX = 6
+uint8 ENTITY_BOUNDS_CONVEX = 7
+uint8 ENTITY_CATEGORIES = 8
+uint8 SPAWNING_RESOURCE_STRING = 9
+uint8 ENTITY_STATE_GETTING = 10
+uint8 ENTITY_STATE_SETTING = 11
+uint8 ENTITY_INFO_GETTING = 12
+uint8 ENTITY_INFO_SETTING = 13
+uint8 SPAWNABLES = 14
+uint8 SIMULATION_RESET = 20
+uint8 SIMULATION_RESET_TIME = 21
+uint8 SIMULATION_RESET_STATE = 22
+uint8 SIMULATION_RESET_SPAWNED = 23
+uint8 SIMULATION_STATE_GETTING = 24
+uint8 SIMULATION_STATE_SETTING = 25
+uint8 SIMULATION_STATE_PAUSE = 26
+uint8 STEP_SIMULATION_SINGLE = 31
+uint8 STEP_SIMULATION_MULTIPLE = 32
+uint8 STEP_SIMULATION_ACTION = 33
+uint8 WORLD_LOADING = 40
+uint8 WORLD_RESOURCE_STRING = 41
+uint8 WORLD_TAGS = 42
+uint8 WORLD_UNLOADING = 43
+uint8 WORLD_INFO_GETTING = 44
+uint8 AVAILABLE_WORLDS = 45
+uint8 SPAWNING_ENTITIES = 50
+uint16[] features
+string[] spawn_formats
+string custom_info
+"##,
+        };
+    }
+
+    /// `simulation_interfaces/msg/SpawnEntitiesRequest`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct SpawnEntitiesRequest {
+        /// `simulation_interfaces/SpawnEntity[] spawn_requests`
+        pub r#spawn_requests: Vec<SpawnEntity>,
+    }
+
+    /// `simulation_interfaces/msg/SpawnEntitiesResponse`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct SpawnEntitiesResponse {
+        /// `simulation_interfaces/Result result`
+        pub r#result: Result,
+        /// `simulation_interfaces/SpawnResult[] results`
+        pub r#results: Vec<SpawnResult>,
+    }
+
+    impl SpawnEntitiesResponse {
+        /// `uint8 ENTITIES_SPAWN_FAILED`
+        pub const ENTITIES_SPAWN_FAILED: u8 = 150;
+    }
+
+    /// `simulation_interfaces/msg/SpawnEntity`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct SpawnEntity {
+        /// `string name`
+        pub r#name: String,
+        /// `bool allow_renaming`
+        pub r#allow_renaming: bool,
+        /// `simulation_interfaces/Resource entity_resource`
+        pub r#entity_resource: Resource,
+        /// `string entity_namespace`
+        pub r#entity_namespace: String,
+        /// `geometry_msgs/PoseStamped initial_pose`
+        pub r#initial_pose: super::geometry_msgs::PoseStamped,
+    }
+
+    impl RosMessage for SpawnEntity {
+        const TYPE: MessageType = MessageType {
+            name: "simulation_interfaces/msg/SpawnEntity",
+            dds_name: "simulation_interfaces::msg::dds_::SpawnEntity_",
+            type_hash: "RIHS01_94a349a865ccf673c18c080520299c88c3d8d5f4842ecf1482d6c997ac4b69f9",
+            definition: r##"string name
+bool allow_renaming
+Resource entity_resource
+string entity_namespace
+geometry_msgs/PoseStamped initial_pose
+================================================================================
+MSG: simulation_interfaces/Resource
+string uri
+string resource_string
+================================================================================
+MSG: geometry_msgs/PoseStamped
+std_msgs/Header header
+geometry_msgs/Pose pose
+================================================================================
+MSG: std_msgs/Header
+builtin_interfaces/Time stamp
+string frame_id
+================================================================================
+MSG: geometry_msgs/Pose
+geometry_msgs/Point position
+geometry_msgs/Quaternion orientation
+================================================================================
+MSG: geometry_msgs/Point
+float64 x
+float64 y
+float64 z
+================================================================================
+MSG: geometry_msgs/Quaternion
+float64 x
+float64 y
+float64 z
+float64 w
+================================================================================
+MSG: builtin_interfaces/Time
+int32 sec
+uint32 nanosec
+"##,
+        };
+    }
+
+    /// `simulation_interfaces/msg/SpawnEntityRequest`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct SpawnEntityRequest {
+        /// `string name`
+        pub r#name: String,
+        /// `bool allow_renaming`
+        pub r#allow_renaming: bool,
+        /// `simulation_interfaces/Resource entity_resource`
+        pub r#entity_resource: Resource,
+        /// `string entity_namespace`
+        pub r#entity_namespace: String,
+        /// `geometry_msgs/PoseStamped initial_pose`
+        pub r#initial_pose: super::geometry_msgs::PoseStamped,
+    }
+
+    /// `simulation_interfaces/msg/SpawnEntityResponse`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct SpawnEntityResponse {
+        /// `simulation_interfaces/Result result`
+        pub r#result: Result,
+        /// `string entity_name`
+        pub r#entity_name: String,
+    }
+
+    impl SpawnEntityResponse {
+        /// `uint8 NAME_NOT_UNIQUE`
+        pub const NAME_NOT_UNIQUE: u8 = 101;
+        /// `uint8 NAME_INVALID`
+        pub const NAME_INVALID: u8 = 102;
+        /// `uint8 UNSUPPORTED_FORMAT`
+        pub const UNSUPPORTED_FORMAT: u8 = 103;
+        /// `uint8 NO_RESOURCE`
+        pub const NO_RESOURCE: u8 = 104;
+        /// `uint8 NAMESPACE_INVALID`
+        pub const NAMESPACE_INVALID: u8 = 105;
+        /// `uint8 RESOURCE_PARSE_ERROR`
+        pub const RESOURCE_PARSE_ERROR: u8 = 106;
+        /// `uint8 MISSING_ASSETS`
+        pub const MISSING_ASSETS: u8 = 107;
+        /// `uint8 UNSUPPORTED_ASSETS`
+        pub const UNSUPPORTED_ASSETS: u8 = 108;
+        /// `uint8 INVALID_POSE`
+        pub const INVALID_POSE: u8 = 109;
+    }
+
+    /// `simulation_interfaces/msg/SpawnResult`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct SpawnResult {
+        /// `simulation_interfaces/Result result`
+        pub r#result: Result,
+        /// `string entity_name`
+        pub r#entity_name: String,
+    }
+
+    impl SpawnResult {
+        /// `uint8 NAME_NOT_UNIQUE`
+        pub const NAME_NOT_UNIQUE: u8 = 101;
+        /// `uint8 NAME_INVALID`
+        pub const NAME_INVALID: u8 = 102;
+        /// `uint8 UNSUPPORTED_FORMAT`
+        pub const UNSUPPORTED_FORMAT: u8 = 103;
+        /// `uint8 NO_RESOURCE`
+        pub const NO_RESOURCE: u8 = 104;
+        /// `uint8 NAMESPACE_INVALID`
+        pub const NAMESPACE_INVALID: u8 = 105;
+        /// `uint8 RESOURCE_PARSE_ERROR`
+        pub const RESOURCE_PARSE_ERROR: u8 = 106;
+        /// `uint8 MISSING_ASSETS`
+        pub const MISSING_ASSETS: u8 = 107;
+        /// `uint8 UNSUPPORTED_ASSETS`
+        pub const UNSUPPORTED_ASSETS: u8 = 108;
+        /// `uint8 INVALID_POSE`
+        pub const INVALID_POSE: u8 = 109;
+    }
+
+    impl RosMessage for SpawnResult {
+        const TYPE: MessageType = MessageType {
+            name: "simulation_interfaces/msg/SpawnResult",
+            dds_name: "simulation_interfaces::msg::dds_::SpawnResult_",
+            type_hash: "RIHS01_dbc277304b6c24bfb2a631cea8f52e2b005d583ec0a6c86b11613f5ce6486da1",
+            definition: r##"uint8 NAME_NOT_UNIQUE = 101
+uint8 NAME_INVALID = 102
+uint8 UNSUPPORTED_FORMAT = 103
+uint8 NO_RESOURCE = 104
+uint8 NAMESPACE_INVALID = 105
+uint8 RESOURCE_PARSE_ERROR = 106
+uint8 MISSING_ASSETS = 107
+uint8 UNSUPPORTED_ASSETS = 108
+uint8 INVALID_POSE = 109
+Result result
+string entity_name
+================================================================================
+MSG: simulation_interfaces/Result
+uint8 RESULT_FEATURE_UNSUPPORTED = 0
+uint8 RESULT_OK = 1
+uint8 RESULT_NOT_FOUND = 2
+uint8 RESULT_INCORRECT_STATE = 3
+uint8 RESULT_OPERATION_FAILED = 4
+uint8 result
+string error_message
+"##,
+        };
+    }
+
+    /// `simulation_interfaces/msg/Spawnable`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct Spawnable {
+        /// `simulation_interfaces/Resource entity_resource`
+        pub r#entity_resource: Resource,
+        /// `string description`
+        pub r#description: String,
+        /// `simulation_interfaces/Bounds spawn_bounds`
+        pub r#spawn_bounds: Bounds,
+    }
+
+    impl RosMessage for Spawnable {
+        const TYPE: MessageType = MessageType {
+            name: "simulation_interfaces/msg/Spawnable",
+            dds_name: "simulation_interfaces::msg::dds_::Spawnable_",
+            type_hash: "RIHS01_8675aa686f0df1ed7874a6ec210fdce1ac1c07f4e49fc26ec7fb6fe729f6772e",
+            definition: r##"Resource entity_resource
+string description
+Bounds spawn_bounds
+================================================================================
+MSG: simulation_interfaces/Resource
+string uri
+string resource_string
+================================================================================
+MSG: simulation_interfaces/Bounds
+uint8 TYPE_EMPTY = 0
+uint8 TYPE_BOX = 1
+uint8 TYPE_CONVEX_HULL = 2
+uint8 TYPE_SPHERE = 3
+uint8 type
+geometry_msgs/Vector3[] points
+================================================================================
+MSG: geometry_msgs/Vector3
+float64 x
+float64 y
+float64 z
+"##,
+        };
+    }
+
+    /// `simulation_interfaces/msg/StepSimulationRequest`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct StepSimulationRequest {
+        /// `uint64 steps`
+        pub r#steps: u64,
+    }
+
+    /// `simulation_interfaces/msg/StepSimulationResponse`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct StepSimulationResponse {
+        /// `simulation_interfaces/Result result`
+        pub r#result: Result,
+    }
+
+    /// `simulation_interfaces/msg/TagsFilter`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct TagsFilter {
+        /// `string[] tags`
+        pub r#tags: Vec<String>,
+        /// `uint8 filter_mode`
+        pub r#filter_mode: u8,
+    }
+
+    impl TagsFilter {
+        /// `uint8 FILTER_MODE_ANY`
+        pub const FILTER_MODE_ANY: u8 = 0;
+        /// `uint8 FILTER_MODE_ALL`
+        pub const FILTER_MODE_ALL: u8 = 1;
+    }
+
+    impl RosMessage for TagsFilter {
+        const TYPE: MessageType = MessageType {
+            name: "simulation_interfaces/msg/TagsFilter",
+            dds_name: "simulation_interfaces::msg::dds_::TagsFilter_",
+            type_hash: "RIHS01_5c3efc51e8ed04c266c09cb4691ec95b964cd410558e01d8c83646b038826b45",
+            definition: r##"string[] tags
+uint8 FILTER_MODE_ANY = 0
+uint8 FILTER_MODE_ALL = 1
+uint8 filter_mode
+"##,
+        };
+    }
+
+    /// `simulation_interfaces/msg/UnloadWorldRequest`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct UnloadWorldRequest {
+        /// `uint8 structure_needs_at_least_one_member`
+        pub r#structure_needs_at_least_one_member: u8,
+    }
+
+    /// `simulation_interfaces/msg/UnloadWorldResponse`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct UnloadWorldResponse {
+        /// `simulation_interfaces/Result result`
+        pub r#result: Result,
+    }
+
+    impl UnloadWorldResponse {
+        /// `uint8 NO_WORLD_LOADED`
+        pub const NO_WORLD_LOADED: u8 = 101;
+    }
+
+    /// `simulation_interfaces/msg/WorldResource`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct WorldResource {
+        /// `string name`
+        pub r#name: String,
+        /// `simulation_interfaces/Resource world_resource`
+        pub r#world_resource: Resource,
+        /// `string description`
+        pub r#description: String,
+        /// `string[] tags`
+        pub r#tags: Vec<String>,
+    }
+
+    impl RosMessage for WorldResource {
+        const TYPE: MessageType = MessageType {
+            name: "simulation_interfaces/msg/WorldResource",
+            dds_name: "simulation_interfaces::msg::dds_::WorldResource_",
+            type_hash: "RIHS01_e3b65ecf904b9b115673e4a343c6aa3d28c19e185a71228faa64b783afcf2403",
+            definition: r##"string name
+Resource world_resource
+string description
+string[] tags
+================================================================================
+MSG: simulation_interfaces/Resource
+string uri
+string resource_string
+"##,
+        };
+    }
+
+    /// Services of `simulation_interfaces`.
+    pub mod srv {
+        use crate::wire::messages::{RosService, ServiceType};
+
+        /// `simulation_interfaces/srv/DeleteEntity`.
+        #[derive(Clone, Copy, Debug)]
+        pub struct DeleteEntity;
+
+        impl RosService for DeleteEntity {
+            type Request = super::DeleteEntityRequest;
+            type Response = super::DeleteEntityResponse;
+            const TYPE: ServiceType = ServiceType {
+                name: "simulation_interfaces/srv/DeleteEntity",
+                request_dds_name: "simulation_interfaces::srv::dds_::DeleteEntity_Request_",
+                response_dds_name: "simulation_interfaces::srv::dds_::DeleteEntity_Response_",
+            };
+        }
+
+        /// `simulation_interfaces/srv/GetAvailableWorlds`.
+        #[derive(Clone, Copy, Debug)]
+        pub struct GetAvailableWorlds;
+
+        impl RosService for GetAvailableWorlds {
+            type Request = super::GetAvailableWorldsRequest;
+            type Response = super::GetAvailableWorldsResponse;
+            const TYPE: ServiceType = ServiceType {
+                name: "simulation_interfaces/srv/GetAvailableWorlds",
+                request_dds_name: "simulation_interfaces::srv::dds_::GetAvailableWorlds_Request_",
+                response_dds_name: "simulation_interfaces::srv::dds_::GetAvailableWorlds_Response_",
+            };
+        }
+
+        /// `simulation_interfaces/srv/GetCurrentWorld`.
+        #[derive(Clone, Copy, Debug)]
+        pub struct GetCurrentWorld;
+
+        impl RosService for GetCurrentWorld {
+            type Request = super::GetCurrentWorldRequest;
+            type Response = super::GetCurrentWorldResponse;
+            const TYPE: ServiceType = ServiceType {
+                name: "simulation_interfaces/srv/GetCurrentWorld",
+                request_dds_name: "simulation_interfaces::srv::dds_::GetCurrentWorld_Request_",
+                response_dds_name: "simulation_interfaces::srv::dds_::GetCurrentWorld_Response_",
+            };
+        }
+
+        /// `simulation_interfaces/srv/GetEntities`.
+        #[derive(Clone, Copy, Debug)]
+        pub struct GetEntities;
+
+        impl RosService for GetEntities {
+            type Request = super::GetEntitiesRequest;
+            type Response = super::GetEntitiesResponse;
+            const TYPE: ServiceType = ServiceType {
+                name: "simulation_interfaces/srv/GetEntities",
+                request_dds_name: "simulation_interfaces::srv::dds_::GetEntities_Request_",
+                response_dds_name: "simulation_interfaces::srv::dds_::GetEntities_Response_",
+            };
+        }
+
+        /// `simulation_interfaces/srv/GetEntitiesStates`.
+        #[derive(Clone, Copy, Debug)]
+        pub struct GetEntitiesStates;
+
+        impl RosService for GetEntitiesStates {
+            type Request = super::GetEntitiesStatesRequest;
+            type Response = super::GetEntitiesStatesResponse;
+            const TYPE: ServiceType = ServiceType {
+                name: "simulation_interfaces/srv/GetEntitiesStates",
+                request_dds_name: "simulation_interfaces::srv::dds_::GetEntitiesStates_Request_",
+                response_dds_name: "simulation_interfaces::srv::dds_::GetEntitiesStates_Response_",
+            };
+        }
+
+        /// `simulation_interfaces/srv/GetEntityBounds`.
+        #[derive(Clone, Copy, Debug)]
+        pub struct GetEntityBounds;
+
+        impl RosService for GetEntityBounds {
+            type Request = super::GetEntityBoundsRequest;
+            type Response = super::GetEntityBoundsResponse;
+            const TYPE: ServiceType = ServiceType {
+                name: "simulation_interfaces/srv/GetEntityBounds",
+                request_dds_name: "simulation_interfaces::srv::dds_::GetEntityBounds_Request_",
+                response_dds_name: "simulation_interfaces::srv::dds_::GetEntityBounds_Response_",
+            };
+        }
+
+        /// `simulation_interfaces/srv/GetEntityInfo`.
+        #[derive(Clone, Copy, Debug)]
+        pub struct GetEntityInfo;
+
+        impl RosService for GetEntityInfo {
+            type Request = super::GetEntityInfoRequest;
+            type Response = super::GetEntityInfoResponse;
+            const TYPE: ServiceType = ServiceType {
+                name: "simulation_interfaces/srv/GetEntityInfo",
+                request_dds_name: "simulation_interfaces::srv::dds_::GetEntityInfo_Request_",
+                response_dds_name: "simulation_interfaces::srv::dds_::GetEntityInfo_Response_",
+            };
+        }
+
+        /// `simulation_interfaces/srv/GetEntityState`.
+        #[derive(Clone, Copy, Debug)]
+        pub struct GetEntityState;
+
+        impl RosService for GetEntityState {
+            type Request = super::GetEntityStateRequest;
+            type Response = super::GetEntityStateResponse;
+            const TYPE: ServiceType = ServiceType {
+                name: "simulation_interfaces/srv/GetEntityState",
+                request_dds_name: "simulation_interfaces::srv::dds_::GetEntityState_Request_",
+                response_dds_name: "simulation_interfaces::srv::dds_::GetEntityState_Response_",
+            };
+        }
+
+        /// `simulation_interfaces/srv/GetNamedPoseBounds`.
+        #[derive(Clone, Copy, Debug)]
+        pub struct GetNamedPoseBounds;
+
+        impl RosService for GetNamedPoseBounds {
+            type Request = super::GetNamedPoseBoundsRequest;
+            type Response = super::GetNamedPoseBoundsResponse;
+            const TYPE: ServiceType = ServiceType {
+                name: "simulation_interfaces/srv/GetNamedPoseBounds",
+                request_dds_name: "simulation_interfaces::srv::dds_::GetNamedPoseBounds_Request_",
+                response_dds_name: "simulation_interfaces::srv::dds_::GetNamedPoseBounds_Response_",
+            };
+        }
+
+        /// `simulation_interfaces/srv/GetNamedPoses`.
+        #[derive(Clone, Copy, Debug)]
+        pub struct GetNamedPoses;
+
+        impl RosService for GetNamedPoses {
+            type Request = super::GetNamedPosesRequest;
+            type Response = super::GetNamedPosesResponse;
+            const TYPE: ServiceType = ServiceType {
+                name: "simulation_interfaces/srv/GetNamedPoses",
+                request_dds_name: "simulation_interfaces::srv::dds_::GetNamedPoses_Request_",
+                response_dds_name: "simulation_interfaces::srv::dds_::GetNamedPoses_Response_",
+            };
+        }
+
+        /// `simulation_interfaces/srv/GetSimulationState`.
+        #[derive(Clone, Copy, Debug)]
+        pub struct GetSimulationState;
+
+        impl RosService for GetSimulationState {
+            type Request = super::GetSimulationStateRequest;
+            type Response = super::GetSimulationStateResponse;
+            const TYPE: ServiceType = ServiceType {
+                name: "simulation_interfaces/srv/GetSimulationState",
+                request_dds_name: "simulation_interfaces::srv::dds_::GetSimulationState_Request_",
+                response_dds_name: "simulation_interfaces::srv::dds_::GetSimulationState_Response_",
+            };
+        }
+
+        /// `simulation_interfaces/srv/GetSimulatorFeatures`.
+        #[derive(Clone, Copy, Debug)]
+        pub struct GetSimulatorFeatures;
+
+        impl RosService for GetSimulatorFeatures {
+            type Request = super::GetSimulatorFeaturesRequest;
+            type Response = super::GetSimulatorFeaturesResponse;
+            const TYPE: ServiceType = ServiceType {
+                name: "simulation_interfaces/srv/GetSimulatorFeatures",
+                request_dds_name: "simulation_interfaces::srv::dds_::GetSimulatorFeatures_Request_",
+                response_dds_name: "simulation_interfaces::srv::dds_::GetSimulatorFeatures_Response_",
+            };
+        }
+
+        /// `simulation_interfaces/srv/GetSpawnables`.
+        #[derive(Clone, Copy, Debug)]
+        pub struct GetSpawnables;
+
+        impl RosService for GetSpawnables {
+            type Request = super::GetSpawnablesRequest;
+            type Response = super::GetSpawnablesResponse;
+            const TYPE: ServiceType = ServiceType {
+                name: "simulation_interfaces/srv/GetSpawnables",
+                request_dds_name: "simulation_interfaces::srv::dds_::GetSpawnables_Request_",
+                response_dds_name: "simulation_interfaces::srv::dds_::GetSpawnables_Response_",
+            };
+        }
+
+        /// `simulation_interfaces/srv/LoadWorld`.
+        #[derive(Clone, Copy, Debug)]
+        pub struct LoadWorld;
+
+        impl RosService for LoadWorld {
+            type Request = super::LoadWorldRequest;
+            type Response = super::LoadWorldResponse;
+            const TYPE: ServiceType = ServiceType {
+                name: "simulation_interfaces/srv/LoadWorld",
+                request_dds_name: "simulation_interfaces::srv::dds_::LoadWorld_Request_",
+                response_dds_name: "simulation_interfaces::srv::dds_::LoadWorld_Response_",
+            };
+        }
+
+        /// `simulation_interfaces/srv/ResetSimulation`.
+        #[derive(Clone, Copy, Debug)]
+        pub struct ResetSimulation;
+
+        impl RosService for ResetSimulation {
+            type Request = super::ResetSimulationRequest;
+            type Response = super::ResetSimulationResponse;
+            const TYPE: ServiceType = ServiceType {
+                name: "simulation_interfaces/srv/ResetSimulation",
+                request_dds_name: "simulation_interfaces::srv::dds_::ResetSimulation_Request_",
+                response_dds_name: "simulation_interfaces::srv::dds_::ResetSimulation_Response_",
+            };
+        }
+
+        /// `simulation_interfaces/srv/SetEntityInfo`.
+        #[derive(Clone, Copy, Debug)]
+        pub struct SetEntityInfo;
+
+        impl RosService for SetEntityInfo {
+            type Request = super::SetEntityInfoRequest;
+            type Response = super::SetEntityInfoResponse;
+            const TYPE: ServiceType = ServiceType {
+                name: "simulation_interfaces/srv/SetEntityInfo",
+                request_dds_name: "simulation_interfaces::srv::dds_::SetEntityInfo_Request_",
+                response_dds_name: "simulation_interfaces::srv::dds_::SetEntityInfo_Response_",
+            };
+        }
+
+        /// `simulation_interfaces/srv/SetEntityState`.
+        #[derive(Clone, Copy, Debug)]
+        pub struct SetEntityState;
+
+        impl RosService for SetEntityState {
+            type Request = super::SetEntityStateRequest;
+            type Response = super::SetEntityStateResponse;
+            const TYPE: ServiceType = ServiceType {
+                name: "simulation_interfaces/srv/SetEntityState",
+                request_dds_name: "simulation_interfaces::srv::dds_::SetEntityState_Request_",
+                response_dds_name: "simulation_interfaces::srv::dds_::SetEntityState_Response_",
+            };
+        }
+
+        /// `simulation_interfaces/srv/SetSimulationState`.
+        #[derive(Clone, Copy, Debug)]
+        pub struct SetSimulationState;
+
+        impl RosService for SetSimulationState {
+            type Request = super::SetSimulationStateRequest;
+            type Response = super::SetSimulationStateResponse;
+            const TYPE: ServiceType = ServiceType {
+                name: "simulation_interfaces/srv/SetSimulationState",
+                request_dds_name: "simulation_interfaces::srv::dds_::SetSimulationState_Request_",
+                response_dds_name: "simulation_interfaces::srv::dds_::SetSimulationState_Response_",
+            };
+        }
+
+        /// `simulation_interfaces/srv/SpawnEntities`.
+        #[derive(Clone, Copy, Debug)]
+        pub struct SpawnEntities;
+
+        impl RosService for SpawnEntities {
+            type Request = super::SpawnEntitiesRequest;
+            type Response = super::SpawnEntitiesResponse;
+            const TYPE: ServiceType = ServiceType {
+                name: "simulation_interfaces/srv/SpawnEntities",
+                request_dds_name: "simulation_interfaces::srv::dds_::SpawnEntities_Request_",
+                response_dds_name: "simulation_interfaces::srv::dds_::SpawnEntities_Response_",
+            };
+        }
+
+        /// `simulation_interfaces/srv/SpawnEntity`.
+        #[derive(Clone, Copy, Debug)]
+        pub struct SpawnEntity;
+
+        impl RosService for SpawnEntity {
+            type Request = super::SpawnEntityRequest;
+            type Response = super::SpawnEntityResponse;
+            const TYPE: ServiceType = ServiceType {
+                name: "simulation_interfaces/srv/SpawnEntity",
+                request_dds_name: "simulation_interfaces::srv::dds_::SpawnEntity_Request_",
+                response_dds_name: "simulation_interfaces::srv::dds_::SpawnEntity_Response_",
+            };
+        }
+
+        /// `simulation_interfaces/srv/StepSimulation`.
+        #[derive(Clone, Copy, Debug)]
+        pub struct StepSimulation;
+
+        impl RosService for StepSimulation {
+            type Request = super::StepSimulationRequest;
+            type Response = super::StepSimulationResponse;
+            const TYPE: ServiceType = ServiceType {
+                name: "simulation_interfaces/srv/StepSimulation",
+                request_dds_name: "simulation_interfaces::srv::dds_::StepSimulation_Request_",
+                response_dds_name: "simulation_interfaces::srv::dds_::StepSimulation_Response_",
+            };
+        }
+
+        /// `simulation_interfaces/srv/UnloadWorld`.
+        #[derive(Clone, Copy, Debug)]
+        pub struct UnloadWorld;
+
+        impl RosService for UnloadWorld {
+            type Request = super::UnloadWorldRequest;
+            type Response = super::UnloadWorldResponse;
+            const TYPE: ServiceType = ServiceType {
+                name: "simulation_interfaces/srv/UnloadWorld",
+                request_dds_name: "simulation_interfaces::srv::dds_::UnloadWorld_Request_",
+                response_dds_name: "simulation_interfaces::srv::dds_::UnloadWorld_Response_",
+            };
+        }
+    }
+
+    /// Actions of `simulation_interfaces`.
+    pub mod action {
+        use crate::wire::messages::{ActionType, RosAction, ServiceType};
+
+        /// `simulation_interfaces/action/SimulateSteps`.
+        #[derive(Clone, Copy, Debug)]
+        pub struct SimulateSteps;
+
+        impl RosAction for SimulateSteps {
+            type Goal = super::SimulateStepsGoal;
+            type Result = super::SimulateStepsResult;
+            type Feedback = super::SimulateStepsFeedback;
+            const TYPE: ActionType = ActionType {
+                name: "simulation_interfaces/action/SimulateSteps",
+                send_goal: ServiceType {
+                    name: "simulation_interfaces/action/SimulateSteps_SendGoal",
+                    request_dds_name: "simulation_interfaces::action::dds_::SimulateSteps_SendGoal_Request_",
+                    response_dds_name: "simulation_interfaces::action::dds_::SimulateSteps_SendGoal_Response_",
+                },
+                get_result: ServiceType {
+                    name: "simulation_interfaces/action/SimulateSteps_GetResult",
+                    request_dds_name: "simulation_interfaces::action::dds_::SimulateSteps_GetResult_Request_",
+                    response_dds_name: "simulation_interfaces::action::dds_::SimulateSteps_GetResult_Response_",
+                },
+                feedback_dds_name: "simulation_interfaces::action::dds_::SimulateSteps_FeedbackMessage_",
+            };
+        }
+    }
+}
+
 /// Messages of `std_msgs`.
 pub mod std_msgs {
     use crate::wire::messages::{MessageType, RosMessage};
+
+    /// `std_msgs/msg/Bool`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct Bool {
+        /// `bool data`
+        pub r#data: bool,
+    }
+
+    impl RosMessage for Bool {
+        const TYPE: MessageType = MessageType {
+            name: "std_msgs/msg/Bool",
+            dds_name: "std_msgs::msg::dds_::Bool_",
+            type_hash: "RIHS01_feb91e995ff9ebd09c0cb3d2aed18b11077585839fb5db80193b62d74528f6c9",
+            definition: r##"bool data
+"##,
+        };
+    }
 
     /// `std_msgs/msg/ColorRGBA`.
     #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -1399,6 +3790,75 @@ uint32 nanosec
     }
 }
 
+/// Messages of `std_srvs`.
+pub mod std_srvs {
+
+    /// `std_srvs/msg/SetBoolRequest`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct SetBoolRequest {
+        /// `bool data`
+        pub r#data: bool,
+    }
+
+    /// `std_srvs/msg/SetBoolResponse`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct SetBoolResponse {
+        /// `bool success`
+        pub r#success: bool,
+        /// `string message`
+        pub r#message: String,
+    }
+
+    /// `std_srvs/msg/TriggerRequest`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct TriggerRequest {
+        /// `uint8 structure_needs_at_least_one_member`
+        pub r#structure_needs_at_least_one_member: u8,
+    }
+
+    /// `std_srvs/msg/TriggerResponse`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct TriggerResponse {
+        /// `bool success`
+        pub r#success: bool,
+        /// `string message`
+        pub r#message: String,
+    }
+
+    /// Services of `std_srvs`.
+    pub mod srv {
+        use crate::wire::messages::{RosService, ServiceType};
+
+        /// `std_srvs/srv/SetBool`.
+        #[derive(Clone, Copy, Debug)]
+        pub struct SetBool;
+
+        impl RosService for SetBool {
+            type Request = super::SetBoolRequest;
+            type Response = super::SetBoolResponse;
+            const TYPE: ServiceType = ServiceType {
+                name: "std_srvs/srv/SetBool",
+                request_dds_name: "std_srvs::srv::dds_::SetBool_Request_",
+                response_dds_name: "std_srvs::srv::dds_::SetBool_Response_",
+            };
+        }
+
+        /// `std_srvs/srv/Trigger`.
+        #[derive(Clone, Copy, Debug)]
+        pub struct Trigger;
+
+        impl RosService for Trigger {
+            type Request = super::TriggerRequest;
+            type Response = super::TriggerResponse;
+            const TYPE: ServiceType = ServiceType {
+                name: "std_srvs/srv/Trigger",
+                request_dds_name: "std_srvs::srv::dds_::Trigger_Request_",
+                response_dds_name: "std_srvs::srv::dds_::Trigger_Response_",
+            };
+        }
+    }
+}
+
 /// Messages of `tf2_msgs`.
 pub mod tf2_msgs {
     use crate::wire::messages::{MessageType, RosMessage};
@@ -1444,6 +3904,28 @@ float64 w
 MSG: builtin_interfaces/Time
 int32 sec
 uint32 nanosec
+"##,
+        };
+    }
+}
+
+/// Messages of `unique_identifier_msgs`.
+pub mod unique_identifier_msgs {
+    use crate::wire::messages::{MessageType, RosMessage};
+
+    /// `unique_identifier_msgs/msg/UUID`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct UUID {
+        /// `uint8[16] uuid`
+        pub r#uuid: [u8; 16],
+    }
+
+    impl RosMessage for UUID {
+        const TYPE: MessageType = MessageType {
+            name: "unique_identifier_msgs/msg/UUID",
+            dds_name: "unique_identifier_msgs::msg::dds_::UUID_",
+            type_hash: "RIHS01_1b8e8aca958cbea28fe6ef60bf6c19b683c97a9ef60bb34752067d0f2f7ab437",
+            definition: r##"uint8[16] uuid
 "##,
         };
     }

@@ -21,6 +21,53 @@ pub struct MessageType {
     pub definition: &'static str,
 }
 
+/// What ROS 2 knows about a service type.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ServiceType {
+    /// Name in ROS 2, such as `std_srvs/srv/SetBool`.
+    pub name: &'static str,
+    /// Name of the request on the DDS wire.
+    pub request_dds_name: &'static str,
+    /// Name of the response on the DDS wire.
+    pub response_dds_name: &'static str,
+}
+
+/// A ROS 2 service.
+pub trait RosService {
+    /// What the client asks.
+    type Request: Serialize + DeserializeOwned;
+    /// What the server answers.
+    type Response: Serialize + DeserializeOwned;
+    /// What ROS 2 knows about it.
+    const TYPE: ServiceType;
+}
+
+/// What ROS 2 knows about an action type. Cancelling and the list of goals have the same types for
+/// all actions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ActionType {
+    /// Name in ROS 2, such as `control_msgs/action/GripperCommand`.
+    pub name: &'static str,
+    /// The hidden service that takes goals.
+    pub send_goal: ServiceType,
+    /// The hidden service that waits for a goal's result.
+    pub get_result: ServiceType,
+    /// Name of the feedback's type on the DDS wire.
+    pub feedback_dds_name: &'static str,
+}
+
+/// A ROS 2 action.
+pub trait RosAction {
+    /// What is to be done.
+    type Goal: Serialize + DeserializeOwned;
+    /// What came of it.
+    type Result: Serialize + DeserializeOwned;
+    /// How far it is.
+    type Feedback: Serialize + DeserializeOwned;
+    /// What ROS 2 knows about it.
+    const TYPE: ActionType;
+}
+
 /// A ROS 2 message.
 pub trait RosMessage: Serialize + DeserializeOwned {
     /// What ROS 2 knows about it.

@@ -3,6 +3,7 @@
 use super::{FLANGE, MEMBRANE, WORLD, parts};
 use crate::{
     base::{Mat3, Pose, Real, Vec3},
+    command::JOINTS,
     scene::Chamber,
     snapshot::{ChamberSnapshot, Snapshot},
     wire::messages::{sensor_msgs::JointState, tf2_msgs::TFMessage},
@@ -32,8 +33,6 @@ pub(super) fn static_frames(time_ns: u64) -> TFMessage {
 /// sliding and three turning joints (turns about the fixed axes x, y, z); effort is what these
 /// joints hold against the gripper [N, N m].
 pub(super) fn joint_states(snapshot: &Snapshot, chamber: &Chamber) -> JointState {
-    const NAMES: [&str; 7] =
-        ["vacuum", "flange_x", "flange_y", "flange_z", "flange_roll", "flange_pitch", "flange_yaw"];
     let pose = &snapshot.flange.pose;
     let (roll, pitch, yaw) = pose.rotation.euler_angles();
     let p = pose.translation.vector;
@@ -47,7 +46,7 @@ pub(super) fn joint_states(snapshot: &Snapshot, chamber: &Chamber) -> JointState
     let air = &snapshot.chamber;
     JointState {
         header: parts::header(snapshot.time_ns, WORLD),
-        name: NAMES.map(str::to_owned).to_vec(),
+        name: JOINTS.map(str::to_owned).to_vec(),
         position: vec![share(air.gauge, chamber), p.x, p.y, p.z, roll, pitch, yaw],
         velocity: [&[vacuum_rate(air, chamber)], v.as_slice(), turn_rates.as_slice()].concat(),
         effort: [&[air.gauge], force.as_slice(), torque.as_slice()].concat(),

@@ -13,7 +13,7 @@ mod run; // clock, statistics, diagnostics
 
 use super::{
     from_ros::CommandCodec,
-    messages::RosMessage,
+    messages::{RosMessage, std_msgs::Bool},
     topics::{Common, Message, OfObject, Topic, common, of_object, topics},
 };
 use crate::{
@@ -86,6 +86,13 @@ impl Encoder {
         out.messages
     }
 
+    /// What is said once, when the first clock is out.
+    pub fn ready(&self, time_ns: u64) -> Vec<Message> {
+        let mut out = Outbox { time_ns, messages: Vec::new() };
+        out.common(Common::Ready, &Bool { data: true });
+        out.messages
+    }
+
     /// What is due at the end of the snapshot's tick. Grains, membrane and contacts are due when
     /// the snapshot has them, statistics when `run` is given.
     pub fn encode(&self, snapshot: &Snapshot, run: Option<&RunStatistics>) -> Vec<Message> {
@@ -115,7 +122,10 @@ impl Encoder {
         out.common(Common::FlangePose, &parts::pose(&flange.pose, time_ns, WORLD));
         out.common(Common::FlangeTwist, &parts::twist(&flange.twist, time_ns, WORLD));
         out.common(Common::FlangeWrench, &parts::wrench(&snapshot.mount_wrench, time_ns, FLANGE));
-        for (index, object) in snapshot.objects.iter().enumerate() {
+        for object in &snapshot.objects {
+            // Objects that came later have no topics of their own.
+            let found = self.scene.objects.iter().position(|it| it.name == object.name);
+            let Some(index) = found else { continue };
             let wrench = parts::wrench(&object.contact_wrench, time_ns, WORLD);
             out.of_object(index, OfObject::ContactWrench, &wrench);
             out.of_object(index, OfObject::Pose, &parts::pose(&object.body.pose, time_ns, WORLD));

@@ -1,0 +1,227 @@
+//! Checks on spawning, named poses and worlds.
+
+use jamgrip::wire::{
+    cdr::Cdr,
+    messages::{
+        RosService,
+        geometry_msgs::PoseStamped,
+        simulation_interfaces::{
+            Bounds, DeleteEntityRequest, GetAvailableWorldsRequest, GetCurrentWorldRequest,
+            GetNamedPoseBoundsRequest, GetNamedPosesRequest, GetSpawnablesRequest,
+            GetSpawnablesResponse, Resource, Result as Told, SimulationState as S,
+            SpawnEntitiesRequest, SpawnEntitiesResponse, SpawnEntity, SpawnEntityRequest,
+            SpawnEntityResponse, SpawnResult, TagsFilter, srv,
+        },
+    },
+};
+
+use crate::{
+    client::{Client, ensure, must_be, must_be_ok, must_fail},
+    entities::{all, near, pose_of},
+    running::{go_to, reset, step},
+};
+
+/// A ball, in the one format that every simulator with a ROS interface reads.
+const BALL: &str = r#"<?xml version="1.0"?>
+<robot name="conformance_ball">
+  <link name="body">
+    <inertial>
+      <mass value="0.05"/>
+      <inertia ixx="8e-6" ixy="0" ixz="0" iyy="8e-6" iyz="0" izz="8e-6"/>
+    </inertial>
+    <visual><geometry><sphere radius="0.02"/></geometry></visual>
+    <collision><geometry><sphere radius="0.02"/></geometry></collision>
+  </link>
+</robot>
+"#;
+
+/// A ball that falls freely for a while, `x` metres aside.
+fn ball(name: &str, x: f64) -> SpawnEntityRequest {
+    let mut initial_pose = PoseStamped::default();
+    initial_pose.pose.position.x = x;
+    initial_pose.pose.position.z = 0.5;
+    initial_pose.pose.orientation.w = 1.0;
+    SpawnEntityRequest {
+        name: name.to_owned(),
+        entity_resource: Resource { uri: String::new(), resource_string: BALL.to_owned() },
+        initial_pose,
+        ..Default::default()
+    }
+}
+
+fn spawn(client: &mut Client, request: &SpawnEntityRequest) -> Result<SpawnEntityResponse, String> {
+    client.ask::<srv::SpawnEntity>("spawn_entity", request)
+}
+
+fn delete(client: &mut Client, entity: &str) -> Result<Told, String> {
+    let request = DeleteEntityRequest { entity: entity.to_owned() };
+    Ok(client.ask::<srv::DeleteEntity>("delete_entity", &request)?.result)
+}
+
+pub(crate) fn in_and_out(client: &mut Client) -> Result<(), String> {
+    go_to(client, S::STATE_PAUSED)?;
+    let before = all(client)?;
+    let request = ball("conformance_ball", 0.75);
+    let answer = spawn(client, &request)?;
+    must_be_ok("spawn_entity", &answer.result)?;
+    let name = answer.entity_name;
+    ensure(all(client)?.contains(&name), || format!("`{name}` is not listed"))?;
+    let pose = pose_of(client, &name)?;
+    ensure(near(&pose, &request.initial_pose.pose), || format!("`{name}` is at {pose:?}"))?;
+    must_be_ok("step_simulation", &step(client, 20)?)?;
+    let lower = pose_of(client, &name)?;
+    let fallen = pose.position.z - lower.position.z;
+    ensure(0.0 < fallen && fallen < 0.5, || format!("`{name}` fell by {fallen} m in 20 steps"))?;
+    must_be_ok("delete_entity", &delete(client, &name)?)?;
+    let after = all(client)?;
+    ensure(before == after, || format!("{before:?} became {after:?}"))?;
+    must_be("deleting it again", &delete(client, &name)?, Told::RESULT_NOT_FOUND)
+}
+
+pub(crate) fn refused(client: &mut Client) -> Result<(), String> {
+    let before = all(client)?;
+    let first = spawn(client, &ball("conformance_ball", 0.75))?;
+    must_be_ok("spawn_entity", &first.result)?;
+    type R = SpawnEntityResponse;
+    let with = |change: &dyn Fn(&mut SpawnEntityRequest)| {
+        let mut request = ball("conformance_other", 1.0);
+        change(&mut request);
+        request
+    };
+    let cases: [(&str, SpawnEntityRequest, u8); 7] = [
+        ("a name twice", with(&|it| it.name = "conformance_ball".to_owned()), 101),
+        ("a name of signs", with(&|it| it.name = "a b/!".to_owned()), 102),
+        ("nothing", with(&|it| it.entity_resource.resource_string.clear()), 104),
+        (
+            "a file that is not there",
+            with(&|it| {
+                it.entity_resource =
+                    Resource { uri: "/no/such.urdf".to_owned(), ..Default::default() };
+            }),
+            104,
+        ),
+        ("a namespace of signs", with(&|it| it.entity_namespace = "a b".to_owned()), 105),
+        ("half a file", with(&|it| it.entity_resource.resource_string.truncate(90)), 106),
+        ("a pose of NaN", with(&|it| it.initial_pose.pose.position.y = f64::NAN), 109),
+    ];
+    for (what, request, code) in cases {
+        let answer = spawn(client, &request)?;
+        must_be(what, &answer.result, code)?;
+    }
+    let renamed = with(&|it| {
+        it.name = "conformance_ball".to_owned();
+        it.allow_renaming = true;
+    });
+    let answer: R = spawn(client, &renamed)?;
+    must_be_ok("a name twice, with renaming", &answer.result)?;
+    let is_new = answer.entity_name != first.entity_name;
+    ensure(is_new, || format!("two entities are called `{}`", answer.entity_name))?;
+    for name in [first.entity_name, answer.entity_name] {
+        must_be_ok("delete_entity", &delete(client, &name)?)?;
+    }
+    let after = all(client)?;
+    ensure(before == after, || format!("{before:?} became {after:?}"))
+}
+
+pub(crate) fn many(client: &mut Client) -> Result<(), String> {
+    let item = |name: &str, x: f64| {
+        let SpawnEntityRequest { name, entity_resource, initial_pose, .. } = ball(name, x);
+        SpawnEntity { name, entity_resource, initial_pose, ..Default::default() }
+    };
+    let mut wrong = item("conformance_c", 0.9);
+    wrong.entity_resource = Resource::default();
+    let spawn_requests = vec![item("conformance_a", 0.7), wrong, item("conformance_b", 0.8)];
+    let request = SpawnEntitiesRequest { spawn_requests };
+    let answer = client.ask::<srv::SpawnEntities>("spawn_entities", &request)?;
+    must_be("two and a wrong one", &answer.result, SpawnEntitiesResponse::ENTITIES_SPAWN_FAILED)?;
+    let codes: Vec<u8> = answer.results.iter().map(|it| it.result.result).collect();
+    let expected = [Told::RESULT_OK, SpawnResult::NO_RESOURCE, Told::RESULT_OK];
+    ensure(codes == expected, || format!("results {codes:?}"))?;
+    for name in ["conformance_a", "conformance_b"] {
+        must_be_ok("delete_entity", &delete(client, name)?)?;
+    }
+    Ok(())
+}
+
+pub(crate) fn spawnables(client: &mut Client) -> Result<(), String> {
+    let request = Cdr::of(&GetSpawnablesRequest::default());
+    let answer = client.ask_raw("get_spawnables", srv::GetSpawnables::TYPE, &request)?;
+    let uris: Vec<String> = if client.version() == 2 {
+        let answer: GetSpawnablesResponse = answer.read().map_err(|it| it.to_string())?;
+        must_be_ok("get_spawnables", &answer.result)?;
+        answer.spawnables.into_iter().map(|it| it.entity_resource.uri).collect()
+    } else {
+        type Flat = (Told, Vec<(String, String, Bounds)>);
+        let (told, list): Flat = answer.read().map_err(|it| it.to_string())?;
+        must_be_ok("get_spawnables", &told)?;
+        list.into_iter().map(|it| it.0).collect()
+    };
+    for uri in uris.into_iter().take(3) {
+        let mut request = ball("conformance_listed", 1.25);
+        request.entity_resource = Resource { uri: uri.clone(), ..Default::default() };
+        let answer = spawn(client, &request)?;
+        must_be_ok(&format!("spawning `{uri}`"), &answer.result)?;
+        must_be_ok("delete_entity", &delete(client, &answer.entity_name)?)?;
+    }
+    Ok(())
+}
+
+pub(crate) fn gone_after_reset(client: &mut Client) -> Result<(), String> {
+    let before = all(client)?;
+    must_be_ok("spawn_entity", &spawn(client, &ball("conformance_ball", 0.75))?.result)?;
+    must_be_ok("reset_simulation", &reset(client, 3)?)?;
+    let kept = all(client)?;
+    ensure(kept.len() == before.len() + 1, || format!("scope 3 leaves {kept:?}"))?;
+    must_be_ok("reset_simulation", &reset(client, 4)?)?;
+    let after = all(client)?;
+    ensure(before == after, || format!("scope 4 leaves {after:?}"))
+}
+
+pub(crate) fn named_poses(client: &mut Client) -> Result<(), String> {
+    let request = GetNamedPosesRequest::default();
+    let answer = client.ask::<srv::GetNamedPoses>("get_named_poses", &request)?;
+    must_be_ok("get_named_poses", &answer.result)?;
+    let all = answer.poses;
+    for pose in &all {
+        let request = GetNamedPoseBoundsRequest { name: pose.name.clone() };
+        let answer = client.ask::<srv::GetNamedPoseBounds>("get_named_pose_bounds", &request)?;
+        must_be_ok("get_named_pose_bounds", &answer.result)?;
+        let Some(tag) = pose.tags.first() else { continue };
+        let tags = TagsFilter { tags: vec![tag.clone()], filter_mode: TagsFilter::FILTER_MODE_ALL };
+        let request = GetNamedPosesRequest { tags };
+        let found = client.ask::<srv::GetNamedPoses>("get_named_poses", &request)?.poses;
+        let is_right = found.contains(pose) && found.iter().all(|it| it.tags.contains(tag));
+        ensure(is_right, || format!("tag `{tag}` finds {found:?}"))?;
+    }
+    let request = GetNamedPoseBoundsRequest { name: "no such pose".to_owned() };
+    let answer = client.ask::<srv::GetNamedPoseBounds>("get_named_pose_bounds", &request)?;
+    must_be("bounds of no pose", &answer.result, Told::RESULT_NOT_FOUND)
+}
+
+pub(crate) fn current_world(client: &mut Client) -> Result<(), String> {
+    let request = GetCurrentWorldRequest::default();
+    let answer = client.ask::<srv::GetCurrentWorld>("get_current_world", &request)?;
+    must_be_ok("get_current_world", &answer.result)?;
+    ensure(!answer.world.name.is_empty(), || "the world has no name".to_owned())
+}
+
+pub(crate) fn available_worlds(client: &mut Client) -> Result<(), String> {
+    let request = GetAvailableWorldsRequest::default();
+    let answer = client.ask::<srv::GetAvailableWorlds>("get_available_worlds", &request)?;
+    must_be_ok("get_available_worlds", &answer.result)?;
+    for world in answer.worlds.iter().take(3) {
+        let filter =
+            TagsFilter { tags: world.tags.clone(), filter_mode: TagsFilter::FILTER_MODE_ALL };
+        let request = GetAvailableWorldsRequest { filter, ..Default::default() };
+        let found = client.ask::<srv::GetAvailableWorlds>("get_available_worlds", &request)?.worlds;
+        ensure(found.contains(world), || format!("its own tags do not find `{}`", world.name))?;
+    }
+    let filter = TagsFilter { tags: vec!["no such tag".to_owned()], filter_mode: 0 };
+    let request = GetAvailableWorldsRequest { filter, ..Default::default() };
+    let found = client.ask::<srv::GetAvailableWorlds>("get_available_worlds", &request)?.worlds;
+    ensure(found.is_empty(), || format!("no tag finds {found:?}"))?;
+    let additional_sources = vec!["/no/such/folder".to_owned()];
+    let request = GetAvailableWorldsRequest { additional_sources, ..Default::default() };
+    let answer = client.ask::<srv::GetAvailableWorlds>("get_available_worlds", &request)?;
+    must_fail("worlds from nowhere", &answer.result)
+}

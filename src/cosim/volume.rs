@@ -1,0 +1,93 @@
+//! Plain volumes, and whether they overlap: for questions about places.
+
+use rapier3d_f64::{
+    math::{Pose as ParryPose, Vector},
+    parry::{
+        query::intersection_test,
+        shape::{Ball, ConvexPolyhedron, Cuboid, Shape},
+    },
+};
+
+use crate::base::{Pose, Real, Vec3};
+
+/// A volume in the world.
+#[derive(Clone, Debug)]
+pub enum Volume {
+    /// All points near one.
+    Ball {
+        /// The middle [m].
+        centre: Vec3,
+        /// Its radius [m].
+        radius: Real,
+    },
+    /// A turned box.
+    Box {
+        /// Pose of its middle.
+        pose: Pose,
+        /// Half of its edges [m].
+        half: Vec3,
+    },
+    /// The convex hull of points.
+    Hull {
+        /// The points [m].
+        points: Vec<Vec3>,
+    },
+}
+
+impl Volume {
+    /// True if the two have a point in common.
+    ///
+    /// # Errors
+    /// If one of them is no volume.
+    pub fn overlaps(&self, other: &Self) -> Result<bool, String> {
+        let ((a, pose_a), (b, pose_b)) = (self.shape()?, other.shape()?);
+        let found = intersection_test(&pose_a, &*a, &pose_b, &*b);
+        found.map(|it| it.intersecting).map_err(|it| it.to_string())
+    }
+
+    fn shape(&self) -> Result<(Box<dyn Shape>, ParryPose), String> {
+        Ok(match self {
+            Self::Ball { centre, radius } => {
+                let pose = Pose::translation(centre.x, centre.y, centre.z);
+                (Box::new(Ball::new(*radius)), pose.into())
+            }
+            Self::Box { pose, half } => {
+                (Box::new(Cuboid::new(Vector::new(half.x, half.y, half.z))), (*pose).into())
+            }
+            Self::Hull { points } => {
+                let points: Vec<Vector> =
+                    points.iter().map(|p| Vector::new(p.x, p.y, p.z)).collect();
+                // Flat ones may pass as a hull without a volume.
+                let hull = ConvexPolyhedron::from_convex_hull(&points)
+                    .filter(|hull| hull.mass_properties(1.0).mass() > 0.0)
+                    .ok_or("these points span no convex hull: give at least four that are not flat")?;
+                (Box::new(hull), Pose::identity().into())
+            }
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Oracle: elementary geometry, 1 mm on either side of touch.
+    #[test]
+    fn overlap_begins_where_surfaces_touch() {
+        let turned = Pose::rotation(Vec3::z() * std::f64::consts::FRAC_PI_4);
+        let cube = Volume::Box { pose: turned, half: Vec3::repeat(0.1) };
+        let reach = 0.1 * 2.0_f64.sqrt();
+        for (gap, expected) in [(-1e-3, true), (1e-3, false)] {
+            let centre = Vec3::x() * (reach + 0.05 + gap);
+            let ball = Volume::Ball { centre, radius: 0.05 };
+            assert_eq!(cube.overlaps(&ball), Ok(expected), "ball, {gap}");
+            let tip = Vec3::x() * (reach + gap);
+            let corners = [Vec3::zeros(), Vec3::y(), Vec3::z(), Vec3::x()].map(|it| tip + it * 0.1);
+            // The tip itself reaches the edge of the turned cube first.
+            let hull = Volume::Hull { points: corners.to_vec() };
+            assert_eq!(cube.overlaps(&hull), Ok(expected), "hull, {gap}");
+        }
+        let flat = Volume::Hull { points: vec![Vec3::zeros(), Vec3::x(), Vec3::y()] };
+        assert!(cube.overlaps(&flat).is_err());
+    }
+}

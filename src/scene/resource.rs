@@ -1,0 +1,158 @@
+//! Objects from files and texts that others name: scene files, whose object is taken, and URDF.
+
+use std::{
+    path::{Path, PathBuf},
+    time::SystemTime,
+};
+
+use super::{Object, Scene, text, urdf};
+
+/// What objects may be written in, as the ends of their files' names.
+pub const FORMATS: [&str; 2] = ["urdf", "yaml"];
+
+/// Why there is no object.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum ResourceFault {
+    /// It is in none of the formats.
+    #[error("`{0}` is neither URDF (.urdf) nor a scene (.yaml)")]
+    UnsupportedFormat(String),
+    /// There is nothing.
+    #[error("{0}")]
+    NoResource(String),
+    /// It makes no sense.
+    #[error("{0}")]
+    Malformed(String),
+    /// It names files that are not there.
+    #[error("{0}")]
+    MissingAssets(String),
+    /// It asks for something that is not simulated.
+    #[error("{0}")]
+    Unsupported(String),
+}
+
+/// The object in a file (`uri`: a path or `file://`, looked for in `folder`) or in a text.
+///
+/// # Errors
+/// If there is none that can be simulated.
+pub fn object(uri: &str, string: &str, folder: &Path) -> Result<Object, ResourceFault> {
+    if string.trim().is_empty() {
+        let (path, text) = open(uri, folder)?;
+        let inside = path.parent().unwrap_or(folder).to_owned();
+        return match path.extension().and_then(|it| it.to_str()) {
+            Some("urdf") => urdf::read(&text, &inside, &blank()?),
+            Some("yaml" | "yml") => of_scene(&text, uri, &inside),
+            _ => Err(ResourceFault::UnsupportedFormat(uri.to_owned())),
+        };
+    }
+    if string.contains("<robot") {
+        urdf::read(string, folder, &blank()?)
+    } else if string.trim_start().starts_with('<') {
+        Err(ResourceFault::UnsupportedFormat("a text that begins with `<`".to_owned()))
+    } else {
+        of_scene(string, "resource_string", folder)
+    }
+}
+
+/// A file's text.
+fn open(uri: &str, folder: &Path) -> Result<(PathBuf, String), ResourceFault> {
+    if uri.is_empty() {
+        let why = "neither uri nor resource_string is given".to_owned();
+        return Err(ResourceFault::NoResource(why));
+    }
+    let path = path(uri, folder)
+        .ok_or_else(|| ResourceFault::NoResource(format!("`{uri}` is no file")))?;
+    let text = std::fs::read_to_string(&path)
+        .map_err(|error| ResourceFault::NoResource(format!("`{uri}`: {error}")))?;
+    Ok((path, text))
+}
+
+/// The file that an address means: a path or `file://`; `None` for other kinds of addresses.
+pub fn path(uri: &str, folder: &Path) -> Option<PathBuf> {
+    let path = uri.strip_prefix("file://").unwrap_or(uri);
+    (!path.contains("://")).then(|| folder.join(path))
+}
+
+/// The files of these formats in `folder`, by name.
+pub fn files(folder: &Path, formats: &[&str]) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let is_meant = |file: &PathBuf| {
+        let end = file.extension().and_then(|it| it.to_str());
+        end.is_some_and(|end| formats.contains(&end))
+    };
+    let mut files: Vec<PathBuf> = entries.map(|it| it.path()).filter(is_meant).collect();
+    files.sort();
+    files
+}
+
+/// Folders, and when something in them last changed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Shelf(Vec<(PathBuf, Option<SystemTime>)>);
+
+impl Shelf {
+    /// The folders as they are now.
+    pub fn of(folders: &[PathBuf]) -> Self {
+        let changed = |it: &PathBuf| std::fs::metadata(it).and_then(|it| it.modified()).ok();
+        Self(folders.iter().map(|it| (it.clone(), changed(it))).collect())
+    }
+}
+
+/// The object of a scene's text. It is lifted far above everything, because its own place does not
+/// matter.
+fn of_scene(text: &str, source: &str, folder: &Path) -> Result<Object, ResourceFault> {
+    let overrides = [
+        "controller=topics",
+        "object.position=[0 m, 0 m, 10 m]",
+        "flange.position=[0 m, 0 m, 100 m]",
+    ];
+    let scene: Result<Scene, _> = text::parse(text, source, folder, &overrides.map(str::to_owned));
+    let scene = scene.map_err(|error| ResourceFault::Malformed(error.to_string()))?;
+    let object = scene.objects.into_iter().next();
+    object.ok_or_else(|| ResourceFault::Malformed(format!("`{source}` has no object")))
+}
+
+/// An object with all defaults.
+fn blank() -> Result<Object, ResourceFault> {
+    let text = "name: blank\nobject: { shape: { sphere: { radius: 10 mm } } }\n";
+    of_scene(text, "the defaults", Path::new(""))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Shape;
+
+    /// Oracle: the values written.
+    #[test]
+    fn urdf_and_scene_texts_are_objects() {
+        let urdf = r#"<robot name="ball"><link name="body">
+            <inertial><mass value="0.1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
+            <collision><geometry><sphere radius="0.02"/></geometry></collision></link></robot>"#;
+        let object = super::object("", urdf, Path::new("")).unwrap();
+        assert_eq!(
+            (object.name.as_str(), &object.shape),
+            ("ball", &Shape::Sphere { radius: 0.02 })
+        );
+        let volume = 4.0 / 3.0 * std::f64::consts::PI * 0.02_f64.powi(3);
+        assert!((object.material.density * volume - 0.1).abs() < 1e-12);
+        let yaml = "name: x\nobject: { name: cube, shape: { box: { size: [1 cm, 2 cm, 3 cm] } } }";
+        let object = super::object("", yaml, Path::new("")).unwrap();
+        assert_eq!(object.name, "cube");
+    }
+
+    #[test]
+    fn each_fault_has_its_kind() {
+        use ResourceFault as F;
+        let of = |uri: &str, text: &str| super::object(uri, text, Path::new("/nowhere"));
+        let link =
+            |inside: &str| format!("<robot name=\"r\"><link name=\"l\">{inside}</link></robot>");
+        let mesh =
+            "<collision><geometry><mesh filename=\"package://a/b.stl\"/></geometry></collision>";
+        assert!(matches!(of("", ""), Err(F::NoResource(_))));
+        assert!(matches!(of("no.urdf", ""), Err(F::NoResource(_))));
+        assert!(matches!(of("", "<sdf/>"), Err(F::UnsupportedFormat(_))));
+        assert!(matches!(of("", "<robot"), Err(F::Malformed(_))));
+        assert!(matches!(of("", "name: 1"), Err(F::Malformed(_))));
+        assert!(matches!(of("", &link(mesh)), Err(F::MissingAssets(_))));
+        assert!(matches!(of("", &link("")), Err(F::Unsupported(_))));
+    }
+}

@@ -1,0 +1,108 @@
+//! How far things reach: bounds of entities, and volumes that filters ask for.
+
+use super::{Simulator, World, entities::Entity, failed, ok};
+use crate::{
+    base::{Pose, Vec3},
+    cosim::{compile::body, rapier_world::centre_pose, volume},
+    physics::{boundary::shape::Aabb, model::BodySurface},
+    scene::{Object, Scene},
+    wire::messages::{
+        geometry_msgs::Vector3,
+        simulation_interfaces::{
+            Bounds, GetEntityBoundsRequest, GetEntityBoundsResponse, Result as Told,
+        },
+    },
+};
+
+/// A volume in the world.
+pub(super) struct Volume(volume::Volume);
+
+impl Volume {
+    /// What a filter asks for; nothing if it is empty.
+    pub(super) fn of_filter(bounds: &Bounds) -> Result<Option<Self>, String> {
+        let points: Vec<Vec3> = bounds.points.iter().map(|p| Vec3::new(p.x, p.y, p.z)).collect();
+        if points.iter().any(|p| !p.iter().all(|it| (it * it).is_finite())) {
+            return Err("bounds have numbers that are not finite".to_owned());
+        }
+        let volume = match (bounds.r#type, points.as_slice()) {
+            (Bounds::TYPE_EMPTY, _) => return Ok(None),
+            (Bounds::TYPE_BOX, &[a, b]) => {
+                let middle = (a + b) / 2.0;
+                let pose = Pose::translation(middle.x, middle.y, middle.z);
+                volume::Volume::Box { pose, half: (a - b).abs() / 2.0 }
+            }
+            (Bounds::TYPE_CONVEX_HULL, [_, _, _, ..]) => volume::Volume::Hull { points },
+            (Bounds::TYPE_SPHERE, &[centre, size]) if 0.0 <= size.x => {
+                volume::Volume::Ball { centre, radius: size.x }
+            }
+            (kind, points) => {
+                let n = points.len();
+                return Err(format!("{n} points are no bounds of type {kind}"));
+            }
+        };
+        // A hull without volume is noticed here, not in the middle of a list.
+        volume.overlaps(&volume::Volume::Ball { centre: Vec3::zeros(), radius: 1.0 })?;
+        Ok(Some(Self(volume)))
+    }
+
+    /// A box around an entity.
+    pub(super) fn around(pose: &Pose, extent: &Aabb) -> Self {
+        let middle = (extent.min + extent.max) / 2.0;
+        let pose = pose * Pose::translation(middle.x, middle.y, middle.z);
+        Self(volume::Volume::Box { pose, half: (extent.max - extent.min) / 2.0 })
+    }
+
+    pub(super) fn overlaps(&self, other: &Self) -> bool {
+        self.0.overlaps(&other.0).unwrap_or(false)
+    }
+}
+
+/// How far an object reaches from its centre of mass, along its own axes.
+pub(super) fn extent(scene: &Scene, object: &Object) -> Aabb {
+    let built = body(scene, object).map(|(model, _)| model.surface);
+    match built {
+        Ok(BodySurface::Shape(surface)) => surface.aabb(),
+        _ => Aabb { min: Vec3::zeros(), max: Vec3::zeros() },
+    }
+}
+
+/// Pose of an object's centre of mass where its scene puts it.
+pub(super) fn centre(scene: &Scene, object: &Object) -> Pose {
+    body(scene, object).map_or(object.pose, |(_, bulk)| centre_pose(object, &bulk))
+}
+
+/// A box around points in a frame of their own.
+pub(super) fn around(points: &[Vec3], frame: &Pose) -> Aabb {
+    let local = points.iter().map(|p| frame.inverse_transform_point(&(*p).into()).coords);
+    let nothing = Aabb { min: Vec3::repeat(f64::INFINITY), max: Vec3::repeat(-f64::INFINITY) };
+    let all = local.fold(nothing, |it, p| Aabb { min: it.min.inf(&p), max: it.max.sup(&p) });
+    if points.is_empty() { Aabb { min: Vec3::zeros(), max: Vec3::zeros() } } else { all }
+}
+
+/// As the standard wants boxes: the upper corner, then the lower one.
+pub(super) fn told(extent: &Aabb) -> Bounds {
+    let vector = |v: &Vec3| Vector3 { x: v.x, y: v.y, z: v.z };
+    Bounds { r#type: Bounds::TYPE_BOX, points: vec![vector(&extent.max), vector(&extent.min)] }
+}
+
+impl Entity {
+    pub(super) fn volume(&self) -> Volume {
+        Volume::around(&self.pose, &self.extent)
+    }
+}
+
+impl Simulator {
+    pub(super) fn get_entity_bounds(
+        &mut self,
+        request: &GetEntityBoundsRequest,
+        world: &World<'_>,
+    ) -> GetEntityBoundsResponse {
+        match self.find_entity(&request.entity, world) {
+            Ok(entity) => GetEntityBoundsResponse { result: ok(), bounds: told(&entity.extent) },
+            Err(why) => GetEntityBoundsResponse {
+                result: failed(Told::RESULT_NOT_FOUND, why),
+                ..Default::default()
+            },
+        }
+    }
+}

@@ -1,0 +1,230 @@
+//! Parameters, as ROS 2 tools list, describe, read and set them.
+//!
+//! Those of the materials and the pump may be changed while the simulation runs; they act from the
+//! next tick on and survive resets. The others are told only.
+
+use super::{Simulator, World};
+use crate::{
+    command::change::{Change, Knob},
+    scene::Scene,
+    wire::messages::rcl_interfaces::{
+        DescribeParametersRequest, DescribeParametersResponse, FloatingPointRange,
+        GetParameterTypesRequest, GetParameterTypesResponse, GetParametersRequest,
+        GetParametersResponse, ListParametersRequest, ListParametersResponse, ListParametersResult,
+        Parameter, ParameterDescriptor, ParameterType, ParameterValue,
+        SetParametersAtomicallyRequest, SetParametersAtomicallyResponse, SetParametersRequest,
+        SetParametersResponse, SetParametersResult,
+    },
+};
+
+/// What a parameter is.
+enum Kind {
+    /// A number that may be changed.
+    Knob(Knob),
+    /// Something that is told.
+    Told(fn(&Scene) -> ParameterValue),
+}
+
+/// Name, what it is, description with unit.
+type Row = (&'static str, Kind, &'static str);
+
+const PARAMETERS: [Row; 14] = [
+    ("chamber.lag", Kind::Knob(Knob::ChamberLag), "time constant of pump and line [s]"),
+    ("chamber.rate_max", Kind::Knob(Knob::ChamberRateMax), "largest rate of the pressure [Pa/s]"),
+    (
+        "grains.dissipation_time",
+        Kind::Knob(Knob::GrainDissipationTime),
+        "dissipation time of contacts between grains, from which their restitution follows [s]",
+    ),
+    ("grains.friction", Kind::Knob(Knob::GrainFriction), "friction between grains [-]"),
+    (
+        "membrane.friction",
+        Kind::Knob(Knob::MembraneFriction),
+        "friction of grains on the membrane [-]",
+    ),
+    (
+        "object.friction",
+        Kind::Knob(Knob::ObjectFriction),
+        "friction of all objects on the membrane [-]",
+    ),
+    (
+        "outputs.contacts_rate",
+        Kind::Told(|it| double(it.outputs.contacts_rate)),
+        "rate of contacts [Hz]",
+    ),
+    ("outputs.grains_rate", Kind::Told(|it| double(it.outputs.grains_rate)), "rate of grains [Hz]"),
+    (
+        "outputs.membrane_rate",
+        Kind::Told(|it| double(it.outputs.membrane_rate)),
+        "rate of the membrane [Hz]",
+    ),
+    (
+        "outputs.state_rate",
+        Kind::Told(|it| double(it.outputs.state_rate)),
+        "rate of poses and wrenches [Hz]",
+    ),
+    ("scene", Kind::Told(|it| text(&it.name)), "name of the scene"),
+    ("seed", Kind::Told(|it| whole(it.seed)), "seed of all random numbers"),
+    ("time.tick", Kind::Told(|it| double(tick_s(it))), "length of a tick [s]"),
+    ("use_sim_time", Kind::Told(|_| flag(false)), "the simulator itself runs on wall time"),
+];
+
+fn tick_s(scene: &Scene) -> f64 {
+    std::time::Duration::from_nanos(scene.time.tick_ns).as_secs_f64()
+}
+
+fn double(value: f64) -> ParameterValue {
+    let r#type = ParameterType::PARAMETER_DOUBLE;
+    ParameterValue { r#type, double_value: value, ..Default::default() }
+}
+
+fn whole(value: u64) -> ParameterValue {
+    let integer_value = i64::try_from(value).unwrap_or(i64::MAX);
+    let r#type = ParameterType::PARAMETER_INTEGER;
+    ParameterValue { r#type, integer_value, ..Default::default() }
+}
+
+fn text(value: &str) -> ParameterValue {
+    let r#type = ParameterType::PARAMETER_STRING;
+    ParameterValue { r#type, string_value: value.to_owned(), ..Default::default() }
+}
+
+fn flag(value: bool) -> ParameterValue {
+    let r#type = ParameterType::PARAMETER_BOOL;
+    ParameterValue { r#type, bool_value: value, ..Default::default() }
+}
+
+fn find(name: &str) -> Option<&'static Row> {
+    PARAMETERS.iter().find(|it| it.0 == name)
+}
+
+impl Simulator {
+    fn value(&self, row: &Row) -> ParameterValue {
+        match &row.1 {
+            Kind::Knob(knob) => double(knob.get(&self.scene)),
+            Kind::Told(tell) => tell(&self.scene),
+        }
+    }
+
+    pub(super) fn get_parameters(&self, request: &GetParametersRequest) -> GetParametersResponse {
+        let value = |name: &String| find(name).map(|row| self.value(row)).unwrap_or_default();
+        GetParametersResponse { values: request.names.iter().map(value).collect() }
+    }
+
+    pub(super) fn get_parameter_types(
+        &self,
+        request: &GetParameterTypesRequest,
+    ) -> GetParameterTypesResponse {
+        let r#type = |name: &String| find(name).map_or(0, |row| self.value(row).r#type);
+        GetParameterTypesResponse { types: request.names.iter().map(r#type).collect() }
+    }
+
+    pub(super) fn describe_parameters(
+        &self,
+        request: &DescribeParametersRequest,
+    ) -> DescribeParametersResponse {
+        let describe = |name: &String| {
+            let Some(row) = find(name) else {
+                return ParameterDescriptor { name: name.clone(), ..Default::default() };
+            };
+            let range = match &row.1 {
+                Kind::Knob(knob) => {
+                    let [from_value, to_value] = knob.range();
+                    vec![FloatingPointRange { from_value, to_value, step: 0.0 }]
+                }
+                Kind::Told(_) => Vec::new(),
+            };
+            ParameterDescriptor {
+                name: name.clone(),
+                r#type: self.value(row).r#type,
+                description: row.2.to_owned(),
+                read_only: matches!(row.1, Kind::Told(_)),
+                floating_point_range: range,
+                ..Default::default()
+            }
+        };
+        DescribeParametersResponse { descriptors: request.names.iter().map(describe).collect() }
+    }
+
+    /// Names below any of the prefixes, at most `depth` levels deep; 0 is any depth.
+    pub(super) fn list_parameters(
+        &self,
+        request: &ListParametersRequest,
+    ) -> ListParametersResponse {
+        let depth = usize::try_from(request.depth).unwrap_or(usize::MAX);
+        let is_near = |rest: &str| depth == 0 || rest.split('.').count() <= depth;
+        let is_meant = |name: &str| {
+            let below = |prefix: &String| {
+                let rest = name.strip_prefix(prefix.as_str())?;
+                if rest.is_empty() { Some(rest) } else { rest.strip_prefix('.') }
+            };
+            match request.prefixes.as_slice() {
+                [] => is_near(name),
+                prefixes => prefixes.iter().filter_map(below).any(is_near),
+            }
+        };
+        let names = PARAMETERS.iter().map(|it| it.0).filter(|name| is_meant(name));
+        let names: Vec<String> = names.map(str::to_owned).collect();
+        let sections = names.iter().filter_map(|it| it.rsplit_once('.').map(|(above, _)| above));
+        let mut prefixes: Vec<String> = sections.map(str::to_owned).collect();
+        prefixes.dedup();
+        ListParametersResponse { result: ListParametersResult { names, prefixes } }
+    }
+
+    pub(super) fn set_parameters(
+        &mut self,
+        request: &SetParametersRequest,
+        world: &mut World<'_>,
+    ) -> SetParametersResponse {
+        let mut set = |it: &Parameter| match self
+            .check(it)
+            .and_then(|(knob, value)| self.turn(knob, value, world))
+        {
+            Ok(()) => SetParametersResult { successful: true, reason: String::new() },
+            Err(reason) => SetParametersResult { successful: false, reason },
+        };
+        SetParametersResponse { results: request.parameters.iter().map(&mut set).collect() }
+    }
+
+    pub(super) fn set_parameters_atomically(
+        &mut self,
+        request: &SetParametersAtomicallyRequest,
+        world: &mut World<'_>,
+    ) -> SetParametersAtomicallyResponse {
+        let checked: Result<Vec<(Knob, f64)>, String> =
+            request.parameters.iter().map(|it| self.check(it)).collect();
+        // What has been checked can fail only if the world does not change at all.
+        let set = checked.and_then(|all| {
+            all.into_iter().try_for_each(|(knob, value)| self.turn(knob, value, world))
+        });
+        let result = match set {
+            Ok(()) => SetParametersResult { successful: true, reason: String::new() },
+            Err(reason) => SetParametersResult { successful: false, reason },
+        };
+        SetParametersAtomicallyResponse { result }
+    }
+
+    fn check(&self, asked: &Parameter) -> Result<(Knob, f64), String> {
+        let name = &asked.name;
+        let row = find(name).ok_or_else(|| format!("there is no parameter `{name}`"))?;
+        let Kind::Knob(knob) = &row.1 else {
+            return Err(format!("`{name}` is read-only: change it in the scene, and start anew"));
+        };
+        let value = match asked.value.r#type {
+            ParameterType::PARAMETER_DOUBLE => asked.value.double_value,
+            kind => return Err(format!("`{name}` is a double (3), not of type {kind}")),
+        };
+        let [min, max] = knob.range();
+        if !(min..=max).contains(&value) {
+            return Err(format!("`{name}` is {value}: {} lies from {min} to {max}", row.2));
+        }
+        Ok((*knob, value))
+    }
+
+    fn turn(&mut self, knob: Knob, value: f64, world: &mut World<'_>) -> Result<(), String> {
+        let change = Change::Turn { knob, value };
+        self.change(&change, world).map_err(|refusal| refusal.to_string())?;
+        knob.set(&mut self.scene, value);
+        Ok(())
+    }
+}

@@ -1,0 +1,146 @@
+//! Places with names, and the scenes one could be in: what is known before anything runs.
+
+use super::{Simulator, Version, World, bounds, entities::told_pose, failed, ok};
+use crate::{
+    base::{Pose, Vec3},
+    physics::boundary::shape::Aabb,
+    scene::{
+        self, Scene,
+        resource::{self, Shelf},
+    },
+    wire::messages::simulation_interfaces::{
+        Bounds, GetAvailableWorldsRequest, GetAvailableWorldsResponse, GetCurrentWorldResponse,
+        GetNamedPoseBoundsRequest, GetNamedPoseBoundsResponse, GetNamedPosesRequest,
+        GetNamedPosesResponse, NamedPose, Resource, Result as Told, TagsFilter, WorldResource,
+    },
+};
+
+/// Half of the edge of the free place on the table [m].
+const FREE_PLACE: f64 = 0.1;
+/// Distance of the free place from the middle of the table, where the gripper works [m].
+const FREE_PLACE_X: f64 = 0.5;
+
+/// A place, and how much room there is.
+struct Place {
+    pose: NamedPose,
+    bounds: Bounds,
+}
+
+impl Simulator {
+    fn places(&self) -> Vec<Place> {
+        let place = |name: String, what: &str, tag: &str, pose: &Pose, bounds| Place {
+            pose: NamedPose {
+                name,
+                description: what.to_owned(),
+                tags: vec![tag.to_owned()],
+                pose: told_pose(pose),
+            },
+            bounds,
+        };
+        let flange = &self.scene.flange.pose;
+        let nothing = Bounds::default();
+        let what = "where the flange starts";
+        let mut places = vec![place("flange_start".to_owned(), what, "gripper", flange, nothing)];
+        for object in &self.scene.objects {
+            let extent = bounds::extent(&self.scene, object);
+            let (name, what) = (format!("{}_start", object.name), "where the object starts");
+            let pose = bounds::centre(&self.scene, object);
+            places.push(place(name, what, "object", &pose, bounds::told(&extent)));
+        }
+        let free = Pose::translation(FREE_PLACE_X, 0.0, self.scene.table.height);
+        let half = Vec3::new(FREE_PLACE, FREE_PLACE, 0.0);
+        let room = Aabb { min: -half, max: half + Vec3::z() * (2.0 * FREE_PLACE) };
+        let what = "a free place on the table, out of the gripper's way";
+        places.push(place("table_free".to_owned(), what, "table", &free, bounds::told(&room)));
+        places
+    }
+
+    pub(super) fn get_named_poses(&self, request: &GetNamedPosesRequest) -> GetNamedPosesResponse {
+        let poses = self.places().into_iter().map(|it| it.pose);
+        let poses = poses.filter(|it| has_tags(&it.tags, &request.tags)).collect();
+        GetNamedPosesResponse { result: ok(), poses }
+    }
+
+    pub(super) fn get_named_pose_bounds(
+        &self,
+        request: &GetNamedPoseBoundsRequest,
+    ) -> GetNamedPoseBoundsResponse {
+        let found = self.places().into_iter().find(|it| it.pose.name == request.name);
+        match found {
+            Some(place) => GetNamedPoseBoundsResponse { result: ok(), bounds: place.bounds },
+            None => GetNamedPoseBoundsResponse {
+                result: failed(
+                    Told::RESULT_NOT_FOUND,
+                    format!("there is no pose `{}`", request.name),
+                ),
+                ..Default::default()
+            },
+        }
+    }
+
+    pub(super) fn get_current_world(&self, _world: &World<'_>) -> GetCurrentWorldResponse {
+        let uri = self.file.as_ref().map(|it| format!("file://{}", it.display()));
+        let world = world_of(&self.scene, uri.unwrap_or_default());
+        GetCurrentWorldResponse { result: ok(), world }
+    }
+
+    pub(super) fn get_available_worlds(
+        &mut self,
+        request: &GetAvailableWorldsRequest,
+    ) -> GetAvailableWorldsResponse {
+        let mut folders = vec![self.folder.clone()];
+        for source in &request.additional_sources {
+            match resource::path(source, &self.folder).filter(|it| it.is_dir()) {
+                Some(folder) => folders.push(folder),
+                None if request.continue_on_error => {}
+                None => {
+                    let why = format!("source `{source}` is no folder");
+                    let result = failed(Told::RESULT_NOT_FOUND, why);
+                    return GetAvailableWorldsResponse { result, ..Default::default() };
+                }
+            }
+        }
+        // Reading them all takes a while: a list is made again only if a folder has changed.
+        let shelf = Shelf::of(&folders);
+        if self.worlds.as_ref().is_none_or(|it| it.0 != shelf) {
+            let files = folders.iter().flat_map(|folder| resource::files(folder, &["yaml"]));
+            let worlds = files.filter_map(|file| {
+                let scene = scene::load(&file, &[]).ok()?;
+                Some(world_of(&scene, format!("file://{}", file.display())))
+            });
+            self.worlds = Some((shelf, worlds.collect()));
+        }
+        let worlds = self.worlds.iter().flat_map(|it| &it.1);
+        let worlds = worlds.filter(|it| has_tags(&it.tags, &request.filter)).cloned().collect();
+        GetAvailableWorldsResponse { result: ok(), worlds }
+    }
+}
+
+fn world_of(scene: &Scene, uri: String) -> WorldResource {
+    let objects = scene.objects.iter().map(|it| it.name.clone());
+    WorldResource {
+        name: scene.name.clone(),
+        world_resource: Resource { uri, resource_string: String::new() },
+        description: format!("{} grains in the gripper", scene.grains.count),
+        tags: std::iter::once("gripper".to_owned()).chain(objects).collect(),
+    }
+}
+
+fn has_tags(tags: &[String], filter: &TagsFilter) -> bool {
+    let has = |tag: &String| tags.contains(tag);
+    filter.tags.is_empty()
+        || match filter.filter_mode {
+            TagsFilter::FILTER_MODE_ALL => filter.tags.iter().all(has),
+            _ => filter.tags.iter().any(has),
+        }
+}
+
+impl Version {
+    /// The version that a distribution of ROS 2 carries.
+    pub fn of_distribution(name: &str) -> Self {
+        match name {
+            "humble" | "iron" | "jazzy" | "kilted" => Self::One,
+            _ => Self::Two,
+        }
+    }
+}

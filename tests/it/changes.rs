@@ -1,0 +1,143 @@
+//! Changes of the world between two ticks: back to the start, in, out and elsewhere.
+
+use jamgrip::{
+    base::{Pose, Real, Vec3, real::Twist},
+    command::{
+        Command,
+        change::{Change, ChangeRefused, Scope},
+    },
+    cosim::FLANGE,
+    scene::{Object, Shape},
+    session::Session,
+};
+
+use crate::coarse;
+
+/// Runs `n` ticks under a vacuum and a flange on its way down.
+fn run(session: &mut Session, n: u32) -> u64 {
+    for i in 0..n {
+        let down = coarse::flange_to(0.101 - 0.0002 * Real::from(i));
+        session.tick(&[Command::Vacuum { gauge_pa: -50e3 }, down]).unwrap();
+    }
+    session.digest()
+}
+
+/// A ball of the scene's own material at `position` [m].
+fn ball(session: &Session, name: &str, position: Vec3) -> Change {
+    let own = session.scene().objects[0].clone();
+    Change::Insert(Box::new(Object {
+        name: name.to_owned(),
+        shape: Shape::Sphere { radius: 0.02 },
+        pose: Pose::from(position),
+        ..own
+    }))
+}
+
+fn height(session: &Session, i: usize) -> Real {
+    session.coupled().world.motion(i).pose.translation.z
+}
+
+/// Oracle: the bits of the first time.
+#[test]
+fn a_reset_goes_back_bit_by_bit() {
+    let mut session = coarse::session(1, &[]);
+    let start = session.digest();
+    let first = run(&mut session, 40);
+    session.change(&ball(&session, "ball", Vec3::new(0.3, 0.0, 0.2))).unwrap();
+    session.change(&Change::Remove { object: "cylinder".to_owned() }).unwrap();
+    session.tick(&[]).unwrap();
+    session.change(&Change::Reset(Scope::ALL)).unwrap();
+    assert_eq!(session.digest(), start, "the start");
+    assert_eq!(run(&mut session, 40), first, "what follows from it");
+}
+
+/// Oracle: the contract of each part of a reset.
+#[test]
+fn time_state_and_spawned_objects_go_back_one_by_one() {
+    let mut session = coarse::session(1, &[]);
+    session.change(&ball(&session, "ball", Vec3::new(0.3, 0.0, 0.2))).unwrap();
+    run(&mut session, 20);
+    let fallen = height(&session, 1);
+    session.change(&Change::Reset(Scope { time: true, ..Scope::default() })).unwrap();
+    assert_eq!((session.time_ns(), session.scene().objects.len()), (0, 2));
+    assert_eq!(height(&session, 1).to_bits(), fallen.to_bits(), "time alone moves nothing");
+    run(&mut session, 20);
+    session.change(&Change::Reset(Scope { state: true, ..Scope::default() })).unwrap();
+    assert_eq!(session.time_ns(), 20_000_000, "the state alone leaves time alone");
+    assert_eq!(height(&session, 1).to_bits(), 0.2_f64.to_bits(), "where it was put in");
+    session.change(&Change::Reset(Scope { spawned: true, ..Scope::default() })).unwrap();
+    let names: Vec<&str> = session.scene().objects.iter().map(|it| it.name.as_str()).collect();
+    assert_eq!(names, ["cylinder"]);
+}
+
+/// Oracle: Galileo, h = g t²/2. Tolerance: the rigid world's steps of 0.1 ms make an error of
+/// g t dt/2 = 15 µm in 30 ms.
+#[test]
+fn what_is_put_in_falls() {
+    let mut session = coarse::session(1, &[]);
+    session.change(&ball(&session, "ball", Vec3::new(0.3, 0.0, 0.2))).unwrap();
+    run(&mut session, 30);
+    let way = 0.2 - height(&session, 1);
+    assert!((way - 9.81 * 0.03 * 0.03 / 2.0).abs() < 2e-5, "{way} m");
+}
+
+/// Oracle: the run without it. It never touched anything.
+#[test]
+fn what_came_and_went_leaves_no_trace() {
+    let mut session = coarse::session(1, &[]);
+    let undisturbed = run(&mut session, 20);
+    session.change(&Change::Reset(Scope::ALL)).unwrap();
+    session.change(&ball(&session, "ball", Vec3::new(0.3, 0.0, 0.2))).unwrap();
+    session.change(&Change::Remove { object: "ball".to_owned() }).unwrap();
+    assert_eq!(run(&mut session, 20), undisturbed);
+}
+
+/// Oracle: house rule. What cannot be is refused with a reason and changes nothing.
+#[test]
+fn there_must_be_room() {
+    let mut session = coarse::session(1, &[]);
+    let before = session.digest();
+    for (what, position, with) in [
+        ("in the table", Vec3::new(0.3, 0.0, 0.0), "the table"),
+        ("in the cylinder", Vec3::new(0.0, 0.0, 0.04), "`cylinder`"),
+        ("in the bag", Vec3::new(0.0, 0.0, 0.085), "the gripper"),
+    ] {
+        let refused = session.change(&ball(&session, "ball", position)).unwrap_err();
+        let ChangeRefused::Overlap { with: found, .. } = refused else { panic!("{refused}") };
+        assert_eq!(found, with, "{what}");
+    }
+    let taken = session.change(&ball(&session, "cylinder", Vec3::new(0.3, 0.0, 0.2)));
+    assert!(matches!(taken, Err(ChangeRefused::NameTaken { .. })));
+    let into_table = Change::PlaceFlange { pose: Pose::translation(0.2, 0.0, 0.01) };
+    assert!(matches!(session.change(&into_table), Err(ChangeRefused::Overlap { .. })));
+    let unknown = Change::Remove { object: "ball".to_owned() };
+    assert!(matches!(session.change(&unknown), Err(ChangeRefused::UnknownObject { .. })));
+    assert_eq!(session.digest(), before);
+}
+
+/// Oracle: a rigid motion. Every grain and vertex keeps its place in the flange's frame; the
+/// gripper stands, and its grains stay in it. Tolerance: round-off of one rotation.
+#[test]
+fn the_gripper_is_carried_as_one() {
+    let mut session = coarse::session(1, &[]);
+    run(&mut session, 20);
+    let local = |session: &Session| -> Vec<Vec3> {
+        let state = &session.coupled().state;
+        let flange = state.walls[FLANGE].pose;
+        let points = state.grains.positions.iter().chain(&state.membrane.positions);
+        points.map(|p| flange.inverse_transform_point(&(*p).into()).coords).collect()
+    };
+    let before = local(&session);
+    let pose = Pose::new(Vec3::new(0.3, 0.1, 0.2), Vec3::new(0.0, 0.3, 1.0));
+    session.change(&Change::PlaceFlange { pose }).unwrap();
+    let after = local(&session);
+    let moved = before.iter().zip(&after).map(|(a, b)| (a - b).norm()).fold(0.0, Real::max);
+    assert!(moved < 1e-13, "{moved} m");
+    assert_eq!(session.coupled().state.walls[FLANGE].twist, Twist::zero());
+    // It stays where it was put, and nothing leaks: a tick would fail.
+    for _ in 0..20 {
+        session.tick(&[]).unwrap();
+    }
+    let now = session.coupled().state.walls[FLANGE].pose;
+    assert!((now.translation.vector - pose.translation.vector).norm() < 1e-12);
+}
