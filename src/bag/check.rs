@@ -187,15 +187,19 @@ fn check_metadata(path: &Path, info: &Info) -> Vec<Finding> {
     }
     let empty = Vec::new();
     let topics = tree["topics_with_message_count"].as_array().unwrap_or(&empty);
-    for topic in topics {
+    let mut differing = topics.iter().filter_map(|topic| {
         let (name, told) = (&topic["topic_metadata"]["name"], &topic["message_count"]);
         let name = name.as_str().unwrap_or_default();
         let found = info.topics.get(name).map(|it| it.n_messages);
-        if found != told.as_u64() {
-            let found = found.unwrap_or(0);
-            let text = format!("{name}: {told} messages are told, {found} are found; {rewrite}");
-            findings.push(finding(true, text));
-        }
+        let text = || format!("{name}: {told} messages are told, {} are found", found.unwrap_or(0));
+        (found != told.as_u64()).then(text)
+    });
+    if let Some(first) = differing.next() {
+        let others = match differing.count() {
+            0 => String::new(),
+            n => format!(" ({n} more topics differ)"),
+        };
+        findings.push(finding(true, format!("{first}{others}; {rewrite}")));
     }
     let names: Vec<String> = info.metadata().1.into_iter().map(|it| it.file).collect();
     let told: Vec<&str> = tree["relative_file_paths"]

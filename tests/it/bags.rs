@@ -91,6 +91,7 @@ fn expected_counts() -> BTreeMap<String, u64> {
         // Offered, but not used in this second; readiness is news for those who wait only.
         ("/jamgrip/joint_commands", 0),
         ("/jamgrip/ready", 0),
+        ("/jamgrip/world_change", 0),
         ("/jamgrip/state_digest", 1000),
         ("/jamgrip/world_change", 0),
         ("/jamgrip/object/cylinder/contact_wrench", state),
