@@ -130,13 +130,13 @@ pub fn launch_with(
     let scene_file = &options.scene_file;
     let (encoder, progress_here) = (&encoder, &progress);
     let doors = Doors { scene, scene_file, encoder, progress: progress_here, substep_s, facts };
-    let (outlets, Outside { sources, front }) = doors.open(sizes)?;
+    let (outlets, Outside { sources, front, clock }) = doors.open(sizes)?;
     let Started { mut session, origin } = begin(compiled, &progress)?;
     let end_ns = end_ns(scene, options.duration);
     progress.running(end_ns);
     let mut crew = Crew {
         orders: command(sources),
-        gate: Gate::new(lockstep(scene)),
+        gate: Gate::new(lockstep(scene)).following(clock, scene.time.tick_ns),
         front,
         outlets,
         schedule: Schedule::new(&scene.outputs, scene.time.tick_ns),

@@ -128,7 +128,7 @@ pub fn run<P: Plant>(plant: &mut P, crew: &mut Crew) -> Report<P::Fault> {
         }
         seen = crew.attend(plant, seen, &mut pacer); // questions between two ticks
         crew.listen(&seen.snapshot); // outside to plain values
-        if !crew.may_tick() {
+        if !crew.may_tick(seen.snapshot.time_ns) {
             crew.stand_still(plant, &seen, &mut pacer);
             continue;
         }
@@ -162,12 +162,12 @@ impl Crew {
         self.front.as_ref().map_or(self.orders.is_waiting(), |it| it.simulator().is_waiting())
     }
 
-    fn may_tick(&self) -> bool {
+    fn may_tick(&self, now_ns: u64) -> bool {
         match &self.front {
-            None => !self.orders.is_waiting() && self.gate.is_open(false),
+            None => !self.orders.is_waiting() && self.gate.is_open(false, now_ns),
             Some(front) => {
                 let simulator = front.simulator();
-                simulator.may_tick() && self.gate.is_open(simulator.is_stepping())
+                simulator.may_tick() && self.gate.is_open(simulator.is_stepping(), now_ns)
             }
         }
     }
