@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, Parser, Subcommand};
 use jamgrip::{
+    base::lanes::Width,
     experiments::Size,
     lab::outcome::{n_processors, sized_name},
 };
@@ -30,6 +31,20 @@ pub(crate) struct Cli {
     /// What to do.
     #[command(subcommand)]
     pub(crate) action: Action,
+
+    /// At most so many numbers side by side in a register: 8 (AVX-512), 4 (AVX2) or 1; results are
+    /// the same
+    #[arg(long, global = true, value_name = "N", value_parser = lanes)]
+    pub(crate) lanes: Option<Width>,
+}
+
+fn lanes(text: &str) -> Result<Width, String> {
+    match text {
+        "1" => Ok(Width::One),
+        "4" => Ok(Width::Four),
+        "8" => Ok(Width::Eight),
+        _ => Err("there are 1, 4 and 8".to_owned()),
+    }
 }
 
 /// What to do.
@@ -56,6 +71,15 @@ pub(crate) enum Action {
     /// Measures how fast the simulation is
     #[command(after_help = BENCH_HELP)]
     Bench(Bench),
+    /// Listens to a run whose latency is measured: a part of `bench --case latency`
+    #[cfg(all(feature = "ros", feature = "shm"))]
+    #[command(hide = true)]
+    BenchListener {
+        /// Prefix of the run's streams
+        prefix: String,
+        /// Seconds that the run takes
+        seconds: f64,
+    },
     /// Writes kept results beside what their sources show, as Markdown with figures
     Report {
         /// Folder of result files, for example tests/golden/validation

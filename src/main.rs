@@ -17,6 +17,7 @@ use std::{
 use clap::Parser;
 use cli::{Action, Cli};
 use jamgrip::{
+    base::lanes,
     benchmarks::BenchError,
     lab::fault::LabError,
     node::{
@@ -49,6 +50,9 @@ fn main() -> ExitCode {
         |level| LOG_FILTER.replacen("warn", if level == "fatal" { "error" } else { level }, 1),
     );
     env_logger::Builder::from_env(env_logger::Env::default().default_filter_or(filter)).init();
+    if let Some(width) = cli.lanes {
+        lanes::limit(width);
+    }
     let outcome = match cli.action {
         Action::Run(args) => run(&args, &ros_args),
         #[cfg(feature = "bag")]
@@ -59,6 +63,8 @@ fn main() -> ExitCode {
         Action::Experiment(args) => trials::experiment(&args),
         Action::Validate(args) => trials::validate(&args),
         Action::Bench(args) => timing::bench(&args),
+        #[cfg(all(feature = "ros", feature = "shm"))]
+        Action::BenchListener { prefix, seconds } => timing::listen(&prefix, seconds),
         Action::Report { from, to } => trials::report(&from, &to),
     };
     outcome.unwrap_or_else(|error| {

@@ -27,10 +27,12 @@ use crate::{
 
 /// What a reset goes back to.
 struct Start {
-    /// The settled bag.
-    state: State,
+    /// The settled bag; `None` in a run that was taken up later and was not told.
+    state: Option<State>,
     /// The scene's own objects.
     objects: Vec<Object>,
+    /// Bits of the scene's own values of what may be turned.
+    knobs: [u64; Knob::ALL.len()],
 }
 
 /// A run.
@@ -41,6 +43,8 @@ pub struct Session {
     coupled: Coupled,
     desk: Desk,
     tick: Tick,
+    /// Ticks since the start of the run, whatever became of simulated time.
+    run_tick: Tick,
     means: Means,
     /// What the wrist sensor takes for zero, flange axes.
     sensor_zero: Wrench,
@@ -54,6 +58,7 @@ pub struct Session {
 #[derive(Serialize, Deserialize)]
 struct Saved<'a> {
     tick: u64,
+    run_tick: u64,
     state: &'a [u8],
     world: &'a [u8],
     desk: &'a [u8],
@@ -96,16 +101,47 @@ impl Session {
         session.coupled.world.restore(saved.world)?;
         session.desk.restore(saved.desk)?;
         session.tick = Tick(saved.tick);
+        session.run_tick = Tick(saved.run_tick);
+        if 0 < saved.run_tick {
+            session.start.state = None;
+        }
         session.digest = session.take_digest();
         Ok(session)
     }
 
-    /// Everything that is needed to go on, as bytes.
-    pub fn save(&self) -> Vec<u8> {
+    /// Tells a run that was resumed what a reset goes back to: what `save` wrote at its start.
+    ///
+    /// # Errors
+    /// If the bytes are damaged or of another scene.
+    pub fn remember_start(&mut self, bytes: &[u8]) -> Result<(), SavedStateError> {
+        let corrupt = SavedStateError::Corrupt { n_bytes: bytes.len() };
+        let saved: Saved<'_> =
+            postcard::from_bytes(saved_state::unsealed(bytes)?).map_err(|_| corrupt)?;
+        let state = saved_state::read(saved.state)?;
+        let now = &self.coupled.state;
+        saved_state::same_counts(&[
+            ("grains", state.grains.len(), now.grains.len()),
+            ("vertices", state.membrane.positions.len(), now.membrane.positions.len()),
+        ])?;
+        self.start.state = Some(state);
+        Ok(())
+    }
+
+    /// Everything that is needed to go on, as bytes; nothing while there are other objects than the
+    /// scene's own, or in another order, or while materials or pump are not the scene's.
+    pub fn save(&self) -> Option<Vec<u8>> {
+        let names = |objects: &[Object]| objects.iter().map(|it| it.name.clone()).collect();
+        let (there, own): (Vec<_>, Vec<_>) =
+            (names(&self.scene.objects), names(&self.start.objects));
+        let is_turned = Knob::ALL.map(|it| it.get(&self.scene).to_bits()) != self.start.knobs;
+        if there != own || is_turned {
+            return None;
+        }
         let (state, world) = (saved_state::write(&self.coupled.state), self.coupled.world.save());
         let desk = self.desk.save();
-        let saved = Saved { tick: self.tick.0, state: &state, world: &world, desk: &desk };
-        saved_state::sealed(postcard::to_stdvec(&saved).expect("bytes always serialise"))
+        let (tick, run_tick) = (self.tick.0, self.run_tick.0);
+        let saved = Saved { tick, run_tick, state: &state, world: &world, desk: &desk };
+        Some(saved_state::sealed(postcard::to_stdvec(&saved).expect("bytes always serialise")))
     }
 
     fn start(compiled: Compiled, mut state: State) -> Self {
@@ -115,7 +151,8 @@ impl Session {
 
     fn assemble(compiled: Compiled, state: State) -> Self {
         let Compiled { scene, model, plan, bulks, limits, pool, .. } = compiled;
-        let start = Start { state: state.clone(), objects: scene.objects.clone() };
+        let knobs = Knob::ALL.map(|it| it.get(&scene).to_bits());
+        let start = Start { state: Some(state.clone()), objects: scene.objects.clone(), knobs };
         let step = plan.tick / measure::real(plan.n_substeps / plan.n_per_exchange);
         let world = RapierWorld::new(&scene, &model, bulks, step);
         let (n_objects, n_grains) = (scene.objects.len(), state.grains.positions.len());
@@ -127,6 +164,7 @@ impl Session {
             coupled,
             desk,
             tick: Tick(0),
+            run_tick: Tick(0),
             means: no_forces(n_objects),
             sensor_zero: Wrench::zero(),
             records: Vec::new(),
@@ -150,6 +188,7 @@ impl Session {
         self.records = records;
         self.advance(&inputs);
         self.tick = self.tick.next();
+        self.run_tick = self.run_tick.next();
         let Coupled { model, state, scratch, .. } = &self.coupled;
         self.normal_forces = measure::normal_forces(state, scratch);
         self.digest = self.take_digest();
@@ -162,7 +201,7 @@ impl Session {
     /// If the change cannot be made; nothing is changed then.
     pub fn change(&mut self, change: &Change) -> Result<(), ChangeRefused> {
         match change {
-            Change::Reset(scope) => self.reset(*scope),
+            Change::Reset(scope) => self.reset(*scope)?,
             Change::PlaceObject { object, pose, twist } => {
                 let i = self.find(object)?;
                 let motion = BodyMotion { pose: *pose, twist: *twist };
@@ -198,12 +237,13 @@ impl Session {
         Ok(())
     }
 
-    fn reset(&mut self, scope: Scope) {
+    fn reset(&mut self, scope: Scope) -> Result<(), ChangeRefused> {
         let is_own = |object: &Object| self.start.objects.iter().any(|it| it.name == object.name);
         if scope.state {
+            let start = self.start.state.as_ref().ok_or(ChangeRefused::StartUnknown)?;
             let added = self.scene.objects.iter().filter(|it| !scope.spawned && !is_own(it));
             self.scene.objects = self.start.objects.iter().chain(added).cloned().collect();
-            self.coupled.start_anew(&self.scene, &self.start.state);
+            self.coupled.start_anew(&self.scene, start);
             self.desk.restart(&self.scene);
             self.sensor_zero = Wrench::zero();
         } else if scope.spawned {
@@ -217,6 +257,7 @@ impl Session {
         } else if scope.state {
             self.desk.place_flange(self.scene.flange.pose, self.time_ns());
         }
+        Ok(())
     }
 
     fn insert(&mut self, object: &Object) -> Result<(), ChangeRefused> {
@@ -273,6 +314,16 @@ impl Session {
     /// Simulated time [ns].
     pub fn time_ns(&self) -> u64 {
         self.tick.time_ns(self.scene.time.tick_ns)
+    }
+
+    /// Ticks since the start of the run, whatever became of simulated time.
+    pub fn run_tick(&self) -> Tick {
+        self.run_tick
+    }
+
+    /// Time of the run [ns]: that of its ticks together.
+    pub fn run_time_ns(&self) -> u64 {
+        self.run_tick.time_ns(self.scene.time.tick_ns)
     }
 
     /// Digest of the whole state.

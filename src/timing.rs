@@ -13,6 +13,9 @@ use jamgrip::{
 
 use crate::cli::Bench;
 
+/// A case is not worth measuring, or could not run.
+const FAILED: u8 = 1;
+
 pub(crate) fn bench(args: &Bench) -> Result<ExitCode, Box<dyn Error>> {
     let mut stdout = io::stdout().lock();
     if args.list {
@@ -29,9 +32,17 @@ pub(crate) fn bench(args: &Bench) -> Result<ExitCode, Box<dyn Error>> {
         is_quiet: args.json,
     };
     let cases = benchmarks::chosen(&args.cases)?;
-    let mut lines = Vec::new();
+    let (mut lines, mut has_failed) = (Vec::new(), false);
     for case in cases {
-        let figures = benchmarks::run(case, &options)?;
+        let figures = match benchmarks::run(case, &options) {
+            Ok(figures) => figures,
+            Err(error) => {
+                // The others can be measured all the same.
+                writeln!(io::stderr().lock(), "{error}")?;
+                has_failed = true;
+                continue;
+            }
+        };
         if args.json {
             lines.push(serde_json::to_string(&figures)?);
         } else {
@@ -46,5 +57,12 @@ pub(crate) fn bench(args: &Bench) -> Result<ExitCode, Box<dyn Error>> {
     if args.json {
         writeln!(stdout, "[\n{}\n]", lines.join(",\n"))?;
     }
+    Ok(if has_failed { ExitCode::from(FAILED) } else { ExitCode::SUCCESS })
+}
+
+#[cfg(all(feature = "ros", feature = "shm"))]
+pub(crate) fn listen(prefix: &str, seconds: f64) -> Result<ExitCode, Box<dyn Error>> {
+    let heard = benchmarks::listen(prefix, seconds).map_err(|error| error.to_string())?;
+    writeln!(io::stdout().lock(), "{heard}")?;
     Ok(ExitCode::SUCCESS)
 }

@@ -4,11 +4,15 @@
 use xxhash_rust::xxh3::Xxh3;
 
 use crate::wire::{
-    messages::{RosMessage, jamgrip_msgs::StateDigest},
+    messages::{
+        RosMessage,
+        jamgrip_msgs::{StateDigest, WorldChange},
+    },
     topics::{NODE, Qos, Topic},
 };
 
-/// The topic of the links; only recordings have it.
+/// The topic of the links; only recordings have it. A tick has another link for each time that
+/// the world was changed after it.
 pub fn topic() -> Topic {
     Topic {
         name: topic_name(),
@@ -22,6 +26,18 @@ pub fn topic() -> Topic {
 /// Name of that topic.
 pub fn topic_name() -> String {
     format!("{NODE}/state_digest")
+}
+
+/// The topic of changes of the world between ticks; only recordings have it.
+pub fn changes_topic() -> Topic {
+    let name = changes_topic_name();
+    let message_type = WorldChange::TYPE;
+    Topic { name, type_name: message_type.name, message_type, ..topic() }
+}
+
+/// Name of that topic.
+pub fn changes_topic_name() -> String {
+    format!("{NODE}/world_change")
 }
 
 /// The chain up to a tick.
@@ -44,7 +60,7 @@ impl Chain {
         self.tick
     }
 
-    /// Takes in a command of the next tick, as it is recorded.
+    /// Takes in a command of the next tick, or a change before it, as it is recorded.
     pub fn command(&mut self, topic: &str, cdr: &[u8]) {
         self.waiting.update(&(topic.len() as u64).to_le_bytes());
         self.waiting.update(topic.as_bytes());

@@ -18,7 +18,7 @@ use super::{
 use crate::wire::{
     messages::{
         RosMessage,
-        jamgrip_msgs::{StateDigest, Statistics},
+        jamgrip_msgs::{StateDigest, Statistics, WorldChange},
     },
     topics::{NODE, Topic},
 };
@@ -48,6 +48,8 @@ pub struct Course {
     pub is_every_tick: bool,
     /// Commands in the order they took effect.
     pub commands: Vec<Order>,
+    /// What was done to the world between ticks, in this order.
+    pub changes: Vec<Alteration>,
     /// Where all that is needed to go on is kept, ascending.
     pub checkpoints: Vec<Place>,
     /// What is wrong with the files.
@@ -67,6 +69,19 @@ pub struct Order {
     pub topic: String,
     /// The body in CDR.
     pub cdr: Vec<u8>,
+}
+
+/// A change of the world as it was recorded.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Alteration {
+    /// The tick after which it was made.
+    pub tick: u64,
+    /// What was done, in words.
+    pub what: String,
+    /// The same as bytes that `Change::from_bytes` reads.
+    pub change: Vec<u8>,
+    /// Digest of the state after it, and after others that were made with it.
+    pub digest: Option<u64>,
 }
 
 /// Where a checkpoint is.
@@ -142,6 +157,7 @@ impl Recording {
             inputs,
             tick_ns,
             links: chain::topic_name(),
+            changes: chain::changes_topic_name(),
             statistics: statistics_topic(),
             chain: self.scene_text.as_deref().map(Chain::new),
             sparse: Vec::new(),
@@ -163,6 +179,17 @@ impl Course {
     /// The last checkpoint at or before a tick.
     pub fn checkpoint_before(&self, tick: u64) -> Option<&Place> {
         self.checkpoints.iter().rev().find(|place| place.tick <= tick)
+    }
+
+    /// The digest of the state after a tick.
+    pub fn digest_of(&self, tick: u64) -> Option<u64> {
+        let found = self.digests.binary_search_by_key(&tick, |(at, _)| *at).ok()?;
+        Some(self.digests[found].1)
+    }
+
+    /// What was done to the world after a tick.
+    pub fn changes_after(&self, tick: u64) -> impl Iterator<Item = &Alteration> {
+        self.changes.iter().filter(move |it| it.tick == tick)
     }
 
     /// The last tick whose digest is known.
@@ -212,6 +239,7 @@ struct Clerk {
     inputs: Inputs,
     tick_ns: u64,
     links: String,
+    changes: String,
     statistics: String,
     chain: Option<Chain>,
     sparse: Vec<(u64, u64)>,
@@ -241,6 +269,13 @@ impl Clerk {
             if let Ok(link) = StateDigest::from_cdr(cdr) {
                 self.link(&link);
             }
+        } else if *topic == self.changes {
+            if let Some(chain) = &mut self.chain {
+                chain.command(topic, cdr);
+            }
+            if let Ok(WorldChange { tick, what, change }) = WorldChange::from_cdr(cdr) {
+                self.course.changes.push(Alteration { tick, what, change, digest: None });
+            }
         } else if *topic == self.statistics {
             if let Ok(it) = Statistics::from_cdr(cdr) {
                 self.sparse.push((it.tick, it.state_digest));
@@ -256,16 +291,22 @@ impl Clerk {
 
     fn link(&mut self, link: &StateDigest) {
         let course = &mut self.course;
-        if let Some((last, _)) = course.digests.last()
+        let last = course.digests.last().map(|(tick, _)| *tick);
+        let is_of_change = last == Some(link.tick);
+        if let Some(last) = last
+            && !is_of_change
             && link.tick != last + 1
         {
-            course.gap_after = course.gap_after.or(Some(*last));
+            course.gap_after = course.gap_after.or(Some(last));
         }
         let fits = self.chain.as_mut().is_none_or(|it| it.link(link.tick, link.digest) == *link);
         if !fits {
             course.broken_at = course.broken_at.or(Some(link.tick));
         }
-        course.digests.push((link.tick, link.digest));
+        match course.changes.last_mut() {
+            Some(change) if is_of_change => change.digest = Some(link.digest),
+            _ => course.digests.push((link.tick, link.digest)),
+        }
     }
 
     fn finish(mut self) -> Course {

@@ -31,6 +31,9 @@ pub(super) enum Kind {
     Experiment(Spot),
     /// The whole session that picks and lifts.
     Lift,
+    /// The loop in real time.
+    #[cfg(all(feature = "ros", feature = "shm"))]
+    Latency,
 }
 
 /// Grains that lie in a closed box under pressure.
@@ -188,5 +191,13 @@ pub static CASES: &[Case] = &[
         work: Work { n_warm: 0, n_steps: 0 },
         limits: Limits::LIFTED,
         kind: Kind::Lift,
+    },
+    #[cfg(all(feature = "ros", feature = "shm"))]
+    Case {
+        name: "latency",
+        about: "commands and samples through ROS 2 and shared memory at 1 kHz beside a busy solver",
+        work: Work { n_warm: 0, n_steps: 0 },
+        limits: Limits::BAG,
+        kind: Kind::Latency,
     },
 ];

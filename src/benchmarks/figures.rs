@@ -4,6 +4,8 @@ use std::{collections::BTreeMap, fmt::Write};
 
 use serde::{Deserialize, Serialize};
 
+#[cfg(all(feature = "ros", feature = "shm"))]
+use super::Latency;
 use super::{
     PeerFigures,
     laps::{Lap, Work},
@@ -17,6 +19,9 @@ use crate::{
 /// Stages below this share are not shown to people.
 const SHARE_SHOWN: Real = 5e-4;
 
+/// Share of the processors below which others were at work.
+const SHARE_OWN: Real = 0.9;
+
 /// One case, measured.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Figures {
@@ -28,6 +33,8 @@ pub struct Figures {
     pub n_vertices: usize,
     /// Solver threads.
     pub threads: usize,
+    /// Numbers computed side by side, at most.
+    pub lanes: u8,
     /// Length of a substep [s].
     pub substep_s: Real,
     /// Substeps per second, the median of all laps.
@@ -79,6 +86,9 @@ pub struct Figures {
     pub stages: Vec<Stage>,
     /// Real-time factor of each phase of a session.
     pub phases: BTreeMap<String, Real>,
+    /// Latencies of the loop.
+    #[cfg(all(feature = "ros", feature = "shm"))]
+    pub latencies: Vec<Latency>,
     /// Other codes on the same packing.
     pub peers: Vec<PeerFigures>,
     /// Other codes that are not installed, with the remedy.
@@ -149,9 +159,33 @@ impl Figures {
         text
     }
 
+    #[cfg(all(feature = "ros", feature = "shm"))]
+    fn write_latencies(&self, text: &mut String) -> std::fmt::Result {
+        for it in &self.latencies {
+            writeln!(
+                text,
+                "  {}: p50 {:.0} us, p99 {:.0} us, p99.9 {:.0} us, at most {:.0} us, {} samples, {} lost",
+                it.path, it.p50_us, it.p99_us, it.p999_us, it.max_us, it.n, it.n_lost
+            )?;
+        }
+        Ok(())
+    }
+
     fn write(&self, text: &mut String) -> std::fmt::Result {
-        let Self { case, n_grains, n_vertices, threads, n_laps, n_lap_steps, .. } = self;
-        writeln!(text, "{case}: {n_grains} grains, {n_vertices} vertices, {threads} threads")?;
+        #[cfg(all(feature = "ros", feature = "shm"))]
+        if !self.latencies.is_empty() {
+            let Self { case, threads, real_time_factor, .. } = self;
+            writeln!(
+                text,
+                "{case}: a loop of 1 kHz, {threads} solver threads, real-time factor {real_time_factor:.4}"
+            )?;
+            return self.write_latencies(text);
+        }
+        let Self { case, n_grains, n_vertices, threads, lanes, n_laps, n_lap_steps, .. } = self;
+        writeln!(
+            text,
+            "{case}: {n_grains} grains, {n_vertices} vertices, threads: {threads}, lanes: {lanes}"
+        )?;
         let processors = or_unknown(self.processor_share, |it| format!("{:.0} %", 100.0 * it));
         writeln!(
             text,
@@ -177,6 +211,12 @@ impl Figures {
         )?;
         self.write_shares(text)?;
         self.write_peers(text)?;
+        if self.processor_share.is_some_and(|it| it < SHARE_OWN) {
+            writeln!(
+                text,
+                "  others had the processors: speeds and ratios say little; measure on a quiet machine"
+            )?;
+        }
         let memory = |bytes| format!("{:.0} MiB", real_of(bytes) / 1_048_576.0);
         writeln!(
             text,

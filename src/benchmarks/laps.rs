@@ -12,7 +12,7 @@ use super::{
     soundness::Seen,
 };
 use crate::{
-    base::{Real, digest::Digest, parallel},
+    base::{Real, digest::Digest, lanes, parallel},
     node::pacer::Stopwatch,
     physics::{
         System,
@@ -137,6 +137,7 @@ impl<'a> Course<'a> {
             n_grains: system.state.grains.len(),
             n_vertices: system.state.membrane.positions.len(),
             threads: self.options.n_threads,
+            lanes: lanes::width() as u8,
             substep_s: system.model.substep,
             digest: format!("{:016x}", by_stages.digest),
             digest_after_steps: work.n_warm + work.n_steps,

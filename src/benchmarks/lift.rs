@@ -9,7 +9,7 @@ use super::{
     soundness::{Seen, check_lift},
 };
 use crate::{
-    base::Real,
+    base::{Real, lanes},
     cosim::compile::Compiled,
     node::{
         judge::Judge,
@@ -23,7 +23,7 @@ use crate::{
         measure::{real, real_of},
         membrane::mesh::Mesh,
     },
-    scene::{self, Scene},
+    scene::{self, Scene, SceneError},
     session::Session,
     snapshot::take,
 };
@@ -51,7 +51,7 @@ struct Lap {
 
 /// Runs whole sessions, one at least.
 pub(super) fn run(case: &Case, options: &Options) -> Result<Figures, BenchError> {
-    let scene = scene::parse(SCENE.1, SCENE.0, Path::new("launch_configs"), &[])?;
+    let scene = scene(&[])?;
     let mut laps: Vec<Lap> = Vec::new();
     let mut start_digest = 0;
     while laps.is_empty() || laps.iter().map(|lap| lap.wall_s).sum::<Real>() < options.seconds {
@@ -71,7 +71,13 @@ pub(super) fn run(case: &Case, options: &Options) -> Result<Figures, BenchError>
     figures(case, options, &laps, start_digest)
 }
 
-fn session(scene: &Scene, options: &Options) -> Result<Session, BenchError> {
+/// The default scene with these changes.
+pub(super) fn scene(overrides: &[String]) -> Result<Scene, SceneError> {
+    scene::parse(SCENE.1, SCENE.0, Path::new("launch_configs"), overrides)
+}
+
+/// A session at its first tick.
+pub(super) fn session(scene: &Scene, options: &Options) -> Result<Session, BenchError> {
     let compiled = Compiled::new(scene, options.n_threads).map_err(start::StartError::from)?;
     let progress = Progress::new(options.is_quiet);
     let started = start::start(compiled, options.n_threads, &options.cache, &progress);
@@ -145,6 +151,7 @@ fn figures(
         n_grains: coupled.state.grains.len(),
         n_vertices: mesh.n_vertices(),
         threads: options.n_threads,
+        lanes: lanes::width() as u8,
         substep_s: coupled.model.substep,
         steps_per_s,
         steps_per_s_best: real_of(n_steps) / times[0],

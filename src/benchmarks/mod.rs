@@ -8,6 +8,8 @@
 
 mod cases; // what is measured
 pub mod figures; // what is told of a case
+#[cfg(all(feature = "ros", feature = "shm"))]
+mod latency; // of the loop
 mod laps; // stepping and timing
 mod lift; // a whole session
 mod packing; // grains in a box
@@ -19,6 +21,8 @@ mod soundness; // is it worth measuring?
 
 pub use cases::{CASES, Case};
 pub use figures::Figures;
+#[cfg(all(feature = "ros", feature = "shm"))]
+pub use latency::{Latency, LatencyError, PrivateError, listen};
 pub use peers::{PeerError, PeerFigures};
 pub use soundness::Unsound;
 
@@ -111,6 +115,13 @@ pub enum BenchError {
         /// What is wrong.
         fault: PeerError,
     },
+    /// The loop's latencies cannot be measured.
+    #[cfg(all(feature = "ros", feature = "shm"))]
+    #[error("latency: {fault}")]
+    Latency {
+        /// Why.
+        fault: LatencyError,
+    },
     /// The operating system gives no threads.
     #[error("solver threads: {0}; use fewer with --threads")]
     Threads(#[from] rayon::ThreadPoolBuildError),
@@ -151,6 +162,8 @@ pub fn run(case: &Case, options: &Options) -> Result<Figures, BenchError> {
     process::forget_peak();
     match &case.kind {
         cases::Kind::Lift => lift::run(case, options),
+        #[cfg(all(feature = "ros", feature = "shm"))]
+        cases::Kind::Latency => latency::run(case, options),
         cases::Kind::Grains(..) | cases::Kind::Experiment(..) => {
             let mut course = laps::Course::new(case, options)?;
             let mut peers = course.peers()?;

@@ -90,9 +90,7 @@ pub(super) fn subject(
             Ok(Subject { system: boxed.system(maker.boxed(boxed)?), after: |_| {} })
         }
         Kind::Experiment(spot) => maker.experiment(spot),
-        Kind::Lift => {
-            unreachable!("a session is no single system; `benchmarks::run` takes it elsewhere")
-        }
+        _ => Err(maker.no_moment()),
     }
 }
 

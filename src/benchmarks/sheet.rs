@@ -134,7 +134,8 @@ pub fn add(path: &Path, figures: &[Figures]) -> Result<(), SheetError> {
     file.and_then(|mut file| io::Write::write_all(&mut file, added.as_bytes())).map_err(unwritable)
 }
 
-/// The commit that the program was built from, with `-dirty` if the sources were changed since.
+/// The commit of the sources that the program was built from, as they are now; with `-dirty` if they
+/// differ from it.
 fn commit() -> String {
     if let Some(commit) = option_env!("JAMGRIP_COMMIT") {
         return commit.to_owned();

@@ -1,6 +1,8 @@
 //! What the outside may do to the world between two ticks, and no body could do by moving: put
 //! things elsewhere, add and remove them, go back to the start.
 
+use std::fmt;
+
 use crate::{
     base::{Pose, real::Twist},
     scene::{Object, Scene},
@@ -61,6 +63,16 @@ pub enum Knob {
 }
 
 impl Knob {
+    /// All of them. New ones come last: recordings number them.
+    pub const ALL: [Self; 6] = [
+        Self::ChamberLag,
+        Self::ChamberRateMax,
+        Self::GrainDissipationTime,
+        Self::GrainFriction,
+        Self::MembraneFriction,
+        Self::ObjectFriction,
+    ];
+
     /// Its value in a scene, SI.
     pub fn get(self, scene: &Scene) -> f64 {
         match self {
@@ -96,6 +108,20 @@ impl Knob {
     }
 }
 
+impl fmt::Display for Change {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Reset(scope) => write!(f, "reset of {scope}"),
+            Self::PlaceObject { object, .. } => write!(f, "`{object}` put elsewhere"),
+            Self::PlaceFlange { .. } => f.write_str("the gripper put elsewhere"),
+            Self::ZeroForceSensor => f.write_str("the wrist sensor set to zero"),
+            Self::Turn { knob, value } => write!(f, "{knob:?} set to {value}"),
+            Self::Insert(object) => write!(f, "object `{}` added", object.name),
+            Self::Remove { object } => write!(f, "object `{object}` taken away"),
+        }
+    }
+}
+
 /// What goes back to the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Scope {
@@ -111,6 +137,15 @@ pub struct Scope {
 impl Scope {
     /// Everything goes back.
     pub const ALL: Self = Self { time: true, state: true, spawned: true };
+}
+
+impl fmt::Display for Scope {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let parts = [(self.time, "time"), (self.state, "state"), (self.spawned, "added objects")];
+        let named: Vec<&str> = parts.iter().filter(|(is_in, _)| *is_in).map(|it| it.1).collect();
+        f.write_str(if named.is_empty() { "nothing" } else { "" })?;
+        f.write_str(&named.join(", "))
+    }
 }
 
 /// Why a change was not made. The world is then as it was.
@@ -141,6 +176,9 @@ pub enum ChangeRefused {
     /// The object cannot be simulated.
     #[error("{0}")]
     Unusable(String),
+    /// The run was taken up in its middle, and nobody told it how it began.
+    #[error("this run was taken up in its middle and does not know its start: reset time only")]
+    StartUnknown,
     /// This world does not change.
     #[error("this world cannot be changed like that")]
     Unchangeable,

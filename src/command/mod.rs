@@ -5,6 +5,7 @@
 
 pub mod apply;
 pub mod change; // what no body could do by moving
+mod saved_change; // the same as bytes
 mod saved_desk; // what was commanded, as bytes
 
 /// One wish of the outside.

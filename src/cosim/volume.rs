@@ -55,15 +55,30 @@ impl Volume {
                 (Box::new(Cuboid::new(Vector::new(half.x, half.y, half.z))), (*pose).into())
             }
             Self::Hull { points } => {
+                // What spans nothing is noticed here: the hull's algorithm is made for solids.
+                if !spans(points) {
+                    return Err(
+                        "these points lie on a line: give at least three that do not".into()
+                    );
+                }
                 let points: Vec<Vector> =
                     points.iter().map(|p| Vector::new(p.x, p.y, p.z)).collect();
                 let hull = ConvexPolyhedron::from_convex_hull(&points).ok_or(
-                    "these points span no convex hull: give at least four that are not flat",
+                    "these points span no convex hull: give at least three, not on a line",
                 )?;
                 (Box::new(hull), Pose::identity().into())
             }
         })
     }
+}
+
+/// True if the points do not lie on a line.
+fn spans(points: &[Vec3]) -> bool {
+    let Some(first) = points.first() else { return false };
+    let by_length = |a: &Vec3, b: &Vec3| a.norm_squared().total_cmp(&b.norm_squared());
+    let longest = points.iter().map(|it| it - first).max_by(by_length).unwrap_or_default();
+    let across = points.iter().map(|it| (it - first).cross(&longest).norm()).fold(0.0, Real::max);
+    1e-9 * longest.norm_squared() < across
 }
 
 #[cfg(test)]
@@ -86,7 +101,15 @@ mod tests {
             let hull = Volume::Hull { points: corners.to_vec() };
             assert_eq!(cube.overlaps(&hull), Ok(expected), "hull, {gap}");
         }
-        let flat = Volume::Hull { points: vec![Vec3::zeros(), Vec3::x(), Vec3::y()] };
-        assert!(cube.overlaps(&flat).is_err());
+        for points in [vec![], vec![Vec3::x(); 5], vec![Vec3::zeros(), Vec3::x(), Vec3::x() * 2.0]]
+        {
+            assert!(cube.overlaps(&Volume::Hull { points }).is_err(), "a line spans nothing");
+        }
+        let flat = |z: f64| {
+            let corners = [Vec3::zeros(), Vec3::x(), Vec3::y()].map(|it| it + Vec3::z() * z);
+            Volume::Hull { points: corners.to_vec() }
+        };
+        assert_eq!(cube.overlaps(&flat(0.05)), Ok(true), "a triangle through the cube");
+        assert_eq!(cube.overlaps(&flat(0.11)), Ok(false), "a triangle above it");
     }
 }

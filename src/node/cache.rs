@@ -53,6 +53,11 @@ impl Cache {
         Self::new(base.join("jamgrip"))
     }
 
+    /// Its folder.
+    pub fn folder(&self) -> &std::path::Path {
+        &self.folder
+    }
+
     /// Looks up `key`.
     pub fn load(&self, key: u64) -> Found {
         let path = self.path(key);

@@ -55,11 +55,13 @@ pub(super) struct Doors<'a> {
 
 /// Those who may command and ask from outside.
 #[derive(Default)]
-pub(super) struct Outside {
-    pub(super) sources: Vec<Box<dyn Source>>,
-    pub(super) front: Option<Front>,
+pub struct Outside {
+    /// Those who command.
+    pub sources: Vec<Box<dyn Source>>,
+    /// Those who ask.
+    pub front: Option<Front>,
     /// Another simulator's time [ns], if it is followed.
-    pub(super) clock: Option<Arc<AtomicU64>>,
+    pub clock: Option<Arc<AtomicU64>>,
 }
 
 impl Doors<'_> {

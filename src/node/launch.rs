@@ -6,6 +6,7 @@ use super::{
     Crew, Ending, Report,
     cache::Cache,
     doors::{Doors, Outside, Sizes},
+    front::Front,
     judge::Judge,
     lockstep::Gate,
     orders::Orders,
@@ -23,7 +24,6 @@ use crate::{
     physics::health::Diverged,
     scene::{Controller, Lockstep, Scene},
     sinks::RunStatistics,
-    sources::Source,
     wire::to_ros::Encoder,
 };
 
@@ -87,7 +87,9 @@ pub fn launch(scene: &Scene, options: &Options) -> Result<Finished, RunError> {
     let begin = |compiled: Compiled, progress: &Progress| {
         Ok(start::start(compiled, options.n_threads, &options.cache, progress)?)
     };
-    launch_with(scene, options, begin, |outside| Orders::new(scene, outside))
+    launch_with(scene, options, begin, |outside| {
+        (Orders::new(scene, outside.sources), outside.front)
+    })
 }
 
 /// Runs `scene` under the commands of `script` alone, to the end that `options` or the scene name.
@@ -103,11 +105,11 @@ pub fn launch_by(
     let begin = |compiled: Compiled, progress: &Progress| {
         Ok(start::start(compiled, options.n_threads, &options.cache, progress)?)
     };
-    launch_with(scene, options, begin, |_| Orders::from_outside(vec![Box::new(script)]))
+    launch_with(scene, options, begin, |_| (Orders::from_outside(vec![Box::new(script)]), None))
 }
 
 /// Runs `scene` to its end from a session that `begin` makes of the compiled scene, under the
-/// orders that `command` makes of those outside.
+/// orders that `command` makes of those outside. Whoever it leaves out can only look.
 ///
 /// # Errors
 /// If the run cannot begin.
@@ -115,7 +117,7 @@ pub fn launch_with(
     scene: &Scene,
     options: &Options,
     begin: impl FnOnce(Compiled, &Progress) -> Result<Started, RunError>,
-    command: impl FnOnce(Vec<Box<dyn Source>>) -> Orders,
+    command: impl FnOnce(Outside) -> (Orders, Option<Front>),
 ) -> Result<Finished, RunError> {
     let since_start = Pacer::start(false);
     let shutdown = Shutdown::listen()?;
@@ -126,18 +128,25 @@ pub fn launch_with(
     let encoder = Arc::new(Encoder::new(scene, &mesh.triangles, &mesh.positions));
     let sizes = Sizes { n_grains: scene.grains.count, n_vertices: mesh.n_vertices() };
     // Recording first: a folder that cannot be written is noticed before the bag is filled.
-    let facts = &options.facts;
-    let scene_file = &options.scene_file;
-    let (encoder, progress_here) = (&encoder, &progress);
-    let doors = Doors { scene, scene_file, encoder, progress: progress_here, substep_s, facts };
-    let (outlets, Outside { sources, front, clock }) = doors.open(sizes)?;
+    let (outlets, outside) = {
+        let Options { scene_file, facts, .. } = options;
+        Doors { scene, scene_file, encoder: &encoder, progress: &progress, substep_s, facts }
+            .open(sizes)?
+    };
     let Started { mut session, origin } = begin(compiled, &progress)?;
     let end_ns = end_ns(scene, options.duration);
     progress.running(end_ns);
+    let clock = outside.clock.clone();
+    let (orders, front) = command(outside);
+    // Only who commands from outside can be waited for; a script knows its ticks.
+    let in_step = if front.is_some() { lockstep(scene) } else { Lockstep::OFF };
+    let gate = Gate::new(in_step);
+    let gate = if front.is_some() { gate.following(clock, scene.time.tick_ns) } else { gate };
     let mut crew = Crew {
-        orders: command(sources),
-        gate: Gate::new(lockstep(scene)).following(clock, scene.time.tick_ns),
+        orders,
+        gate,
         front,
+        checkpoints: Vec::new(),
         outlets,
         schedule: Schedule::new(&scene.outputs, scene.time.tick_ns),
         judge: Judge::default(),

@@ -101,6 +101,8 @@ pub struct Crew {
     pub n_packets: u64,
     /// True once a command was missed that the run cannot go on without.
     pub has_missed: bool,
+    /// What the next packet keeps besides.
+    pub checkpoints: Vec<Checkpoint>,
 }
 
 /// How a run went, as far as clocks and plant know.
@@ -118,17 +120,16 @@ pub struct Report<Fault> {
 /// Runs `plant` until there is a reason to end. What was recorded is still open afterwards.
 pub fn run<P: Plant>(plant: &mut P, crew: &mut Crew) -> Report<P::Fault> {
     let mut seen = Arc::new(Packet::new(plant.snapshot(Parts::ALL), None));
+    let mut pacer = Pacer::start_at(crew.run_time_ns(&seen.snapshot), crew.is_real_time);
     // The start is kept whatever the rate, at whatever time it is.
-    let mut checkpoints: Vec<_> = crew.checkpoint(plant, true).into_iter().collect();
-    let mut pacer = Pacer::start_at(seen.snapshot.time_ns, crew.is_real_time);
+    crew.keep(plant, true);
     crew.greet();
     let ending = loop {
         if let Some(ending) = crew.ending(&seen.snapshot) {
             break Ok(ending);
         }
-        seen = crew.attend(plant, seen, &mut pacer); // questions between two ticks
-        crew.listen(&seen.snapshot); // outside to plain values
-        if !crew.may_tick(seen.snapshot.time_ns) {
+        seen = crew.attend(plant, seen); // questions between two ticks
+        if !crew.listen(&seen.snapshot) {
             crew.stand_still(plant, &seen, &mut pacer);
             continue;
         }
@@ -137,11 +138,10 @@ pub fn run<P: Plant>(plant: &mut P, crew: &mut Crew) -> Report<P::Fault> {
         }
         let time_ns = seen.snapshot.time_ns + crew.tick_ns;
         let snapshot = plant.snapshot(crew.schedule.parts(time_ns)); // a copy
-        crew.pace(&mut pacer, time_ns); // the only clock
-        let is_due = crew.schedule.checkpoint(time_ns);
-        checkpoints.extend(crew.checkpoint(plant, is_due));
-        let packet = crew.pack(snapshot, &pacer);
-        seen = Arc::new(packet.with_checkpoints(mem::take(&mut checkpoints)));
+        let run_time_ns = crew.run_time_ns(&snapshot);
+        crew.pace(&mut pacer, run_time_ns); // the only clock
+        crew.keep(plant, crew.schedule.checkpoint(run_time_ns));
+        seen = crew.pack(snapshot, &pacer);
         crew.outlets.publish(&plant.view(&seen.snapshot), &seen); // never fails the run
         crew.ticked(&seen);
     };
@@ -162,35 +162,23 @@ impl Crew {
         self.front.as_ref().map_or(self.orders.is_waiting(), |it| it.simulator().is_waiting())
     }
 
-    fn may_tick(&self, now_ns: u64) -> bool {
-        match &self.front {
-            None => !self.orders.is_waiting() && self.gate.is_open(false, now_ns),
-            Some(front) => {
-                let simulator = front.simulator();
-                simulator.may_tick() && self.gate.is_open(simulator.is_stepping(), now_ns)
-            }
-        }
-    }
-
-    /// Takes the commands that have come. While time stands still they wait where they came in,
-    /// where the oldest give way; a lockstep needs to see them.
-    fn listen(&mut self, seen: &Snapshot) {
-        let may_tick =
-            self.front.as_ref().map_or(!self.orders.is_waiting(), |it| it.simulator().may_tick());
-        if may_tick {
+    /// Takes the commands that have come, outside to plain values; true if the next tick may begin.
+    /// While time stands still they wait where they came in, where the oldest give way.
+    fn listen(&mut self, seen: &Snapshot) -> bool {
+        let (is_on, is_asked_for) = match &self.front {
+            None => (!self.orders.is_waiting(), false),
+            Some(front) => (front.simulator().may_tick(), front.simulator().is_stepping()),
+        };
+        if is_on {
             let mut commands = self.orders.drain(seen);
             commands.extend(self.front.iter_mut().flat_map(Front::take_commands));
             self.gate.offer(commands, seen.time_ns);
         }
+        is_on && self.gate.is_open(is_asked_for, seen.time_ns)
     }
 
     /// Answers questions, and shows what they have changed.
-    fn attend<P: Plant>(
-        &mut self,
-        plant: &mut P,
-        seen: Arc<Packet>,
-        pacer: &mut Pacer,
-    ) -> Arc<Packet> {
+    fn attend<P: Plant>(&mut self, plant: &mut P, seen: Arc<Packet>) -> Arc<Packet> {
         let Some(front) = &mut self.front else { return seen };
         if !self.orders.is_waiting() || front.has_commands() {
             front.first_command();
@@ -199,17 +187,14 @@ impl Crew {
             let mut world = World { subject: plant, seen: &seen.snapshot };
             front.attend(&mut world, self.n_packets)
         };
-        if !changed.is_changed {
+        if changed.changes.is_empty() {
             return seen;
         }
         if changed.is_state_reset || changed.is_time_reset {
             self.orders.restart();
             self.judge = Judge::default();
         }
-        if changed.is_time_reset {
-            pacer.restart();
-        }
-        let packet = Packet::new(plant.snapshot(Parts::ALL), None);
+        let packet = Packet::new(plant.snapshot(Parts::ALL), None).with_changes(changed.changes);
         let packet = Arc::new(self.number(packet));
         self.outlets.publish(&plant.view(&packet.snapshot), &packet);
         packet
@@ -240,11 +225,11 @@ impl Crew {
     }
 
     /// Steps that someone waits for are not paced.
-    fn pace(&self, pacer: &mut Pacer, time_ns: u64) {
+    fn pace(&self, pacer: &mut Pacer, run_time_ns: u64) {
         if self.front.as_ref().is_some_and(|it| it.simulator().is_stepping()) {
             pacer.stand_still();
         }
-        pacer.wait_until(time_ns);
+        pacer.wait_until(run_time_ns);
     }
 
     fn ticked(&mut self, seen: &Packet) {
@@ -255,12 +240,19 @@ impl Crew {
 
     fn number(&mut self, packet: Packet) -> Packet {
         self.n_packets += 1;
-        packet.numbered(self.n_packets)
+        packet.numbered(self.n_packets).with_checkpoints(mem::take(&mut self.checkpoints))
     }
 
-    /// All that is needed to go on, if it is due and someone keeps it.
-    fn checkpoint<P: Plant>(&self, plant: &P, is_due: bool) -> Option<Checkpoint> {
-        if is_due && self.outlets.bag.is_some() { plant.checkpoint() } else { None }
+    /// Takes all that is needed to go on, if it is due and someone keeps it, for the next packet.
+    fn keep<P: Plant>(&mut self, plant: &P, is_due: bool) {
+        if is_due && self.outlets.bag.is_some() {
+            self.checkpoints.extend(plant.checkpoint());
+        }
+    }
+
+    /// Time of the run: that of its ticks together, whatever became of simulated time.
+    fn run_time_ns(&self, seen: &Snapshot) -> u64 {
+        seen.run_tick.time_ns(self.tick_ns)
     }
 
     fn ending(&mut self, seen: &Snapshot) -> Option<Ending> {
@@ -285,7 +277,7 @@ impl Crew {
     }
 
     /// Judges a snapshot, shows it, and adds statistics where they are due.
-    fn pack(&mut self, snapshot: Snapshot, pacer: &Pacer) -> Packet {
+    fn pack(&mut self, snapshot: Snapshot, pacer: &Pacer) -> Arc<Packet> {
         self.judge.look(&snapshot, Duration::from_nanos(self.tick_ns).as_secs_f64());
         let phase = self.orders.phase().map_or("", |phase| phase.name());
         self.progress.tick(&snapshot, phase, pacer);
@@ -298,7 +290,7 @@ impl Crew {
             sinks: self.outlets.counters(),
             ..self.about.clone()
         });
-        self.number(Packet::new(snapshot, run))
+        Arc::new(self.number(Packet::new(snapshot, run)))
     }
 }
 

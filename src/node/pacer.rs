@@ -11,17 +11,17 @@ use std::{
 /// Wall time over which the present real-time factor is taken.
 const WINDOW: Duration = Duration::from_secs(1);
 
-/// Measures wall time against simulated time.
+/// Measures wall time against the time of the run, which counts on when simulated time is reset.
 pub struct Pacer {
     start: Instant,
+    /// Simulated time at the start [ns].
+    origin_ns: u64,
     /// When time last went on.
     last: Instant,
     /// How long time has stood still.
     stood: Duration,
     /// When something was last shown while time stood still.
     shown: Option<Instant>,
-    /// Simulated time at the start [ns].
-    origin_ns: u64,
     is_real_time: bool,
     time_ns: u64,
     /// Wall and simulated time now and then in the last second.
@@ -50,11 +50,6 @@ impl Pacer {
         }
     }
 
-    /// Simulated time has become zero.
-    pub fn restart(&mut self) {
-        *self = Self::start(self.is_real_time);
-    }
-
     /// Time stands still: the wall time since it last went on does not count.
     pub fn stand_still(&mut self) {
         let now = Instant::now();
@@ -78,7 +73,7 @@ impl Pacer {
         is_due
     }
 
-    /// Notes that simulated time has come to `time_ns`, and waits for it in real time.
+    /// Notes that the run has come to `time_ns`, and waits for it in real time.
     pub fn wait_until(&mut self, time_ns: u64) {
         self.time_ns = time_ns;
         if self.is_real_time {
@@ -205,6 +200,12 @@ impl Stopwatch {
 fn ratio(time_ns: u64, wall: Duration) -> f64 {
     let wall = wall.as_secs_f64();
     if wall == 0.0 { 0.0 } else { Duration::from_nanos(time_ns).as_secs_f64() / wall }
+}
+
+/// Wall time since 1970 [ns], the same for all processes of this host.
+pub fn wall_ns() -> u64 {
+    let since_epoch = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+    u64::try_from(since_epoch.as_nanos()).unwrap_or(u64::MAX)
 }
 
 /// How long the run waits for someone before it looks around.

@@ -49,8 +49,8 @@ impl Plant for Session {
     }
 
     fn checkpoint(&self) -> Option<Checkpoint> {
-        let (tick, time_ns, digest) = (self.now(), self.time_ns(), self.digest());
-        Some(Checkpoint { tick, time_ns, digest, bytes: self.save() })
+        let (tick, time_ns, digest) = (self.run_tick(), self.run_time_ns(), self.digest());
+        self.save().map(|bytes| Checkpoint { tick, time_ns, digest, bytes })
     }
 
     fn view<'a>(&'a self, seen: &'a Snapshot) -> View<'a> {

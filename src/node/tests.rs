@@ -83,6 +83,7 @@ pub(super) fn snapshot(tick: u64) -> Snapshot {
     Snapshot {
         tick: Tick(tick),
         time_ns: tick * TICK_NS,
+        run_tick: Tick(tick),
         flange: at_rest,
         objects: vec![ObjectSnapshot {
             name: "object".to_owned(),
@@ -160,6 +161,7 @@ fn crew(outside: Vec<Box<dyn Source>>) -> Crew {
     Crew {
         front: None,
         gate: Gate::new(scene::Lockstep::OFF),
+        checkpoints: Vec::new(),
         n_packets: 0,
         has_missed: false,
         orders: Orders::new(&scene, outside),

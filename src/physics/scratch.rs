@@ -101,8 +101,8 @@ pub struct Neighbours {
     pub sphere_starts: Vec<u32>,
     /// Where the walls near grain i begin in `walls`.
     pub wall_starts: Vec<u32>,
-    /// Walls that a grain may touch, by grain: their places in `Scratch::wall_forces`.
-    pub walls: Vec<u32>,
+    /// Walls that grains may touch, each with its grain, by grain.
+    pub walls: Vec<[u32; 2]>,
     /// The walls at the last build.
     pub walls_at_build: Vec<BodyMotion>,
     /// No grain was further than this, and the skin, from the origin of each wall [m].

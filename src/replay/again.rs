@@ -9,8 +9,9 @@ use std::{
 use crate::{
     bag::{
         NotABag,
-        recording::{Course, Order, Recording},
+        recording::{Alteration, Course, Order, Place, Recording},
     },
+    command::change::Change,
     cosim::{
         compile::{CompileError, Compiled},
         saved_state::SavedStateError,
@@ -94,6 +95,18 @@ pub enum ReplayError {
         /// What is wrong with it.
         fault: NotACommand,
     },
+    /// The world cannot be changed as it was.
+    #[error("after tick {tick} (recorded by jamgrip {version}): {what}: {fault}")]
+    Change {
+        /// The tick before.
+        tick: u64,
+        /// What was done to the world.
+        what: String,
+        /// The version that recorded it.
+        version: String,
+        /// Why not.
+        fault: String,
+    },
     /// The bag cannot be filled.
     #[error(transparent)]
     Start(#[from] StartError),
@@ -153,15 +166,38 @@ impl Again {
         n_threads: usize,
     ) -> Result<Option<Session>, ReplayError> {
         let Some(place) = self.course.checkpoint_before(tick) else { return Ok(None) };
-        let bytes = place
-            .read()
-            .map_err(|fault| ReplayError::Unreadable { path: self.path.clone(), fault })?;
-        let session = Session::resume(Compiled::new(scene, n_threads)?, &bytes);
-        session.map(Some).map_err(|fault| ReplayError::Checkpoint {
+        let unreadable = |fault| ReplayError::Unreadable { path: self.path.clone(), fault };
+        let read = |place: &Place| place.read().map_err(unreadable);
+        let bytes = read(place)?;
+        let of_no_use = |fault| ReplayError::Checkpoint {
             tick: place.tick,
             version: self.recording.version().to_owned(),
             fault,
-        })
+        };
+        let session = Session::resume(Compiled::new(scene, n_threads)?, &bytes);
+        let mut session = session.map_err(of_no_use)?;
+        if let Some(start) = self.course.checkpoints.first()
+            && (start.tick, self.course.changes.is_empty()) == (0, false)
+            && 0 < place.tick
+        {
+            session.remember_start(&read(start)?).map_err(of_no_use)?;
+        }
+        Ok(Some(session))
+    }
+
+    /// Changes the world as it was changed in the recorded run.
+    ///
+    /// # Errors
+    /// If the change cannot be read, or not be made.
+    pub fn change(&self, session: &mut Session, recorded: &Alteration) -> Result<(), ReplayError> {
+        let refused = |fault: String| ReplayError::Change {
+            tick: recorded.tick,
+            what: recorded.what.clone(),
+            version: self.recording.version().to_owned(),
+            fault,
+        };
+        let change = Change::from_bytes(&recorded.change).map_err(|it| refused(it.to_string()))?;
+        session.change(&change).map_err(|it| refused(it.to_string()))
     }
 
     /// The recorded commands.

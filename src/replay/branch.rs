@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use super::again::{Again, ReplayError};
 use crate::{
+    bag::recording::Alteration,
     cosim::compile::Compiled,
     node::{
         launch::{self, Finished, RunError},
@@ -66,6 +67,26 @@ pub enum BranchError {
         /// The tick.
         tick: u64,
     },
+    /// Objects were added or taken away before.
+    #[error(
+        "at tick {tick} there are other objects than the scene's: they were added or taken away \
+         while it was recorded; choose a time with the scene's own objects for --from"
+    )]
+    OtherObjects {
+        /// The tick.
+        tick: u64,
+    },
+    /// The world was changed later, which a branch does not repeat.
+    #[error(
+        "the recorded run was changed from outside at {at_s} s ({what}), which a branch does not \
+         repeat; end before with --end {at_s}s, or choose a later time for --from"
+    )]
+    Changed {
+        /// When, in time of the run [s].
+        at_s: f64,
+        /// What was done.
+        what: String,
+    },
     /// The new run could not begin or go on.
     #[error(transparent)]
     Run(#[from] RunError),
@@ -74,7 +95,11 @@ pub enum BranchError {
 impl BranchError {
     /// True if something else has to be asked for.
     pub fn is_of_command_line(&self) -> bool {
-        matches!(self, Self::Scene(_) | Self::Fixed { .. } | Self::OutOfRange { .. })
+        match self {
+            Self::Scene(_) | Self::Fixed { .. } | Self::OutOfRange { .. } => true,
+            Self::OtherObjects { .. } | Self::Changed { .. } => true,
+            Self::Replay(_) | Self::Differs { .. } | Self::Run(_) => false,
+        }
     }
 }
 
@@ -101,13 +126,22 @@ pub fn branch(
     };
     let script = again.script()?;
     let last = seconds(again.course.last_tick() * tick_ns);
-    let duration = Some(options.duration.unwrap_or(last));
-    let mut options = launch::Options { duration, ..options.clone() };
+    let duration = options.duration.unwrap_or(last);
+    refuse_changes(again, tick, duration)?;
+    let mut options = launch::Options { duration: Some(duration), ..options.clone() };
     let origin = format!("{} after tick {tick}", again.path.display());
     options.facts.push(("branched_from", origin));
     // Whoever is outside can only look: the commands are those of the recording.
-    let command = |_| Orders::from_outside(vec![Box::new(script)]);
+    let command = |_| (Orders::from_outside(vec![Box::new(script)]), None);
     Ok(launch::launch_with(&scene, &options, begin, command)?)
+}
+
+/// Refuses to leave out what was done to the world from outside after `tick` and before `end_s`.
+fn refuse_changes(again: &Again, tick: u64, end_s: f64) -> Result<(), BranchError> {
+    let at_s = |it: &Alteration| seconds(it.tick * again.scene.time.tick_ns);
+    let mut later = again.course.changes.iter().filter(|it| tick <= it.tick && at_s(it) < end_s);
+    let refused = |it: &Alteration| BranchError::Changed { at_s: at_s(it), what: it.what.clone() };
+    later.next().map_or(Ok(()), |it| Err(refused(it)))
 }
 
 /// The recorded run after `tick`, as bytes.
@@ -125,15 +159,18 @@ fn moment(again: &Again, tick: u64, n_threads: usize) -> Result<Vec<u8>, BranchE
     }
     let session = again.session_before(tick, &again.scene, n_threads)?;
     let mut session = session.ok_or_else(out_of_range)?;
-    while session.now().0 < tick {
-        let commands = script.of(session.now().0 + 1);
-        session.tick(&commands).map_err(ReplayError::from)?;
+    while session.run_tick().0 < tick {
+        let now = session.run_tick().0;
+        for it in course.changes.iter().filter(|it| it.tick == now) {
+            again.change(&mut session, it)?;
+        }
+        session.tick(&script.of(now + 1)).map_err(ReplayError::from)?;
     }
     let recorded = course.digests.iter().find(|(at, _)| *at == tick);
-    match recorded {
-        Some((_, digest)) if *digest != session.digest() => Err(BranchError::Differs { tick }),
-        _ => Ok(session.save()),
+    if recorded.is_some_and(|(_, digest)| *digest != session.digest()) {
+        return Err(BranchError::Differs { tick });
     }
+    session.save().ok_or(BranchError::OtherObjects { tick })
 }
 
 fn seconds(time_ns: u64) -> f64 {

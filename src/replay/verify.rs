@@ -5,6 +5,7 @@ use super::{
     history,
 };
 use crate::{
+    bag::recording::Alteration,
     cosim::compile::Compiled,
     node::{
         cache::Cache,
@@ -70,6 +71,31 @@ impl Verdict {
         self.first_difference.is_none() && 0 < self.n_compared && !self.is_interrupted
     }
 
+    fn goes_on(&self) -> bool {
+        self.first_difference.is_none() && !self.is_interrupted
+    }
+
+    /// Compares the state with what is recorded of it, if anything is.
+    fn compare(&mut self, recorded: Option<u64>, session: &Session) {
+        let (Some(recorded), simulated) = (recorded, session.digest()) else { return };
+        self.n_compared += 1;
+        if recorded != simulated && self.first_difference.is_none() {
+            let tick = session.run_tick().0;
+            self.first_difference = Some(Difference { tick, recorded, simulated });
+        }
+    }
+
+    /// The same after a change between two ticks.
+    fn compare_after(&mut self, change: &Alteration, session: &Session) {
+        let was_equal = self.first_difference.is_none();
+        self.compare(change.digest, session);
+        if was_equal && self.first_difference.is_some() {
+            let Alteration { tick, what, .. } = change;
+            self.remarks
+                .push(format!("the difference is behind a change after tick {tick}: {what}"));
+        }
+    }
+
     /// The verdict for machines.
     pub fn to_json(&self) -> serde_json::Value {
         serde_json::json!({
@@ -98,33 +124,31 @@ pub fn verify(again: &Again, options: &Options<'_>) -> Result<Verdict, ReplayErr
     };
     let tick_ns = again.scene.time.tick_ns;
     let mut session = session(again, options, &mut verdict)?;
-    verdict.start_tick = session.now().0;
+    verdict.start_tick = session.run_tick().0;
     let mut script = again.script()?;
     // Beyond a gap commands are missing.
     let last = again.course.gap_after.unwrap_or(u64::MAX).min(again.course.last_tick());
     let last = options.to_ns.map_or(last, |end_ns| last.min(end_ns / tick_ns));
-    let mut recorded = again.course.digests.iter().peekable();
     options.progress.running(Some(last * tick_ns));
     let stopwatch = Stopwatch::start();
     loop {
-        let tick = session.now().0;
-        while recorded.next_if(|(at, _)| *at < tick).is_some() {}
-        if let Some((_, digest)) = recorded.next_if(|(at, _)| *at == tick) {
-            verdict.n_compared += 1;
-            if *digest != session.digest() {
-                let simulated = session.digest();
-                let difference = Difference { tick, recorded: *digest, simulated };
-                verdict.first_difference = Some(difference);
-            }
-        }
+        let tick = session.run_tick().0;
+        verdict.compare(again.course.digest_of(tick), &session);
         verdict.is_interrupted = options.shutdown.is_requested();
-        if verdict.first_difference.is_some() || last <= tick || verdict.is_interrupted {
+        if !verdict.goes_on() {
+            break;
+        }
+        for it in again.course.changes_after(tick) {
+            again.change(&mut session, it)?;
+            verdict.compare_after(it, &session);
+        }
+        if !verdict.goes_on() || last <= tick {
             break;
         }
         session.tick(&script.of(tick + 1))?;
         verdict.n_ticks += 1;
         let simulated_s = seconds(verdict.n_ticks * tick_ns);
-        options.progress.share(session.time_ns(), simulated_s / stopwatch.total_s());
+        options.progress.share(session.run_time_ns(), simulated_s / stopwatch.total_s());
     }
     options.progress.end();
     let wall_s = stopwatch.total_s();

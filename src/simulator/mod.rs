@@ -78,10 +78,10 @@ pub enum Version {
 }
 
 /// What questions have done to the world since the last look.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Changed {
-    /// Something is not as it was.
-    pub is_changed: bool,
+    /// What was changed, in this order.
+    pub changes: Vec<Change>,
     /// Simulated time is zero again.
     pub is_time_reset: bool,
     /// The state is that of the start again.
@@ -286,7 +286,7 @@ impl Simulator {
     fn change(&mut self, change: &Change, world: &mut World<'_>) -> Result<(), ChangeRefused> {
         let changed = world.subject.change(change);
         if changed.is_ok() {
-            self.changed.is_changed = true;
+            self.changed.changes.push(change.clone());
             if let Change::Reset(scope) = change {
                 self.changed.is_time_reset |= scope.time;
                 self.changed.is_state_reset |= scope.state;

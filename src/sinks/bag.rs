@@ -1,8 +1,9 @@
 //! Recordings while they are made: a rosbag2 folder of MCAP files.
 //!
 //! They hold every message that is published, every command that was received, refused ones too,
-//! the digest of every tick and, now and then, all that is needed to go on. Log times are simulated
-//! time; a command has the time at which its tick began.
+//! what was done to the world between ticks, the digest of every tick and, now and then, all that is
+//! needed to go on. Log times are those of the run: simulated time, except that they go on when it is
+//! reset, because readers sort by them. A command has the time at which its tick began.
 
 use std::{
     collections::BTreeMap,
@@ -23,8 +24,9 @@ use crate::{
         metadata::{Contents, Row, file_text, information},
         writer::{OpenFile, WriteError, of_system, text},
     },
+    command::change::Change,
     wire::{
-        messages::RosMessage,
+        messages::{RosMessage, jamgrip_msgs::WorldChange},
         to_ros::Encoder,
         topics::{Message, Topic},
     },
@@ -117,7 +119,7 @@ pub struct Bag {
     encoder: Arc<Encoder>,
     subject: Subject,
     folder: PathBuf,
-    /// The encoder's topics, then that of the digests.
+    /// The encoder's topics, then those of the digests and of changes.
     topics: Vec<Topic>,
     file: Option<OpenFile>,
     /// What each file holds, the open one last.
@@ -157,6 +159,7 @@ impl Bag {
         }
         let mut topics = encoder.topics().to_vec();
         topics.push(chain::topic());
+        topics.push(chain::changes_topic());
         let mut bag = Self {
             folder: folder.to_owned(),
             file: None,
@@ -206,25 +209,33 @@ impl Bag {
     /// Records a packet's commands and messages, its digest and its checkpoints.
     fn record(&mut self, packet: &Packet) -> Result<(), WriteError> {
         let snapshot = &packet.snapshot;
-        let begin_ns = snapshot.time_ns.saturating_sub(self.encoder.tick_ns());
         let encoder = Arc::clone(&self.encoder);
-        if self.is_split_due(snapshot.time_ns) {
+        let time_ns = snapshot.run_tick.time_ns(encoder.tick_ns());
+        let begin_ns = time_ns.saturating_sub(encoder.tick_ns());
+        if self.is_split_due(time_ns) {
             self.split(begin_ns)?;
         }
         if self.chain.tick().is_none() && self.n_sent.iter().all(|n| *n == 0) {
             encoder.latched(begin_ns).iter().try_for_each(|message| self.put(message))?;
         }
         // The start's checkpoint comes with the first packet: its digest is the first link.
-        for checkpoint in packet.checkpoints.iter().filter(|it| it.tick < snapshot.tick) {
-            self.link(checkpoint.tick.0, checkpoint.time_ns, checkpoint.digest)?;
+        for it in &packet.checkpoints {
+            if it.tick < snapshot.run_tick || !packet.changes.is_empty() {
+                self.link(it.tick.0, it.time_ns, it.digest, false)?;
+            }
+        }
+        for change in &packet.changes {
+            self.alter(change, snapshot.run_tick.0, time_ns)?;
         }
         for record in &snapshot.commands {
             let message = encoder.commands().encode(&record.command, begin_ns);
             self.chain.command(&self.topics[message.topic].name, &message.cdr);
             self.put(&message)?;
         }
-        packet.messages(&encoder).iter().try_for_each(|message| self.put(message))?;
-        self.link(snapshot.tick.0, snapshot.time_ns, snapshot.digest)?;
+        for message in packet.messages(&encoder) {
+            self.put(&Message { time_ns, ..message.clone() })?;
+        }
+        self.link(snapshot.run_tick.0, time_ns, snapshot.digest, !packet.changes.is_empty())?;
         self.digest = snapshot.digest;
         if let Some(file) = &mut self.file {
             packet.checkpoints.iter().try_for_each(|checkpoint| file.attach(checkpoint))?;
@@ -235,13 +246,27 @@ impl Bag {
         Ok(())
     }
 
-    /// Links a tick, once.
-    fn link(&mut self, tick: u64, time_ns: u64, digest: u64) -> Result<(), WriteError> {
-        if self.chain.tick().is_some_and(|last| tick <= last) {
+    /// Links a tick, once, and once more after a change.
+    fn link(
+        &mut self,
+        tick: u64,
+        time_ns: u64,
+        digest: u64,
+        is_changed: bool,
+    ) -> Result<(), WriteError> {
+        if !is_changed && self.chain.tick().is_some_and(|last| tick <= last) {
             return Ok(());
         }
         let cdr = self.chain.link(tick, digest).to_cdr();
-        self.put(&Message { topic: self.topics.len() - 1, time_ns, cdr })
+        self.put(&Message { topic: self.topics.len() - 2, time_ns, cdr })
+    }
+
+    /// Records what was done to the world after a tick.
+    fn alter(&mut self, change: &Change, tick: u64, time_ns: u64) -> Result<(), WriteError> {
+        let message = WorldChange { tick, what: change.to_string(), change: change.to_bytes() };
+        let (topic, cdr) = (self.topics.len() - 1, message.to_cdr());
+        self.chain.command(&self.topics[topic].name, &cdr);
+        self.put(&Message { topic, time_ns, cdr })
     }
 
     fn put(&mut self, message: &Message) -> Result<(), WriteError> {

@@ -22,7 +22,8 @@ const FAULTS_MAX: usize = 64;
 /// What happens when a sink's queue is full.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Delivery {
-    /// The oldest packet is dropped and counted.
+    /// The oldest packet is dropped and counted; one with a change of the world, or all that is
+    /// needed to go on, only if there are no others.
     Latest {
         /// Packets that the queue holds, at least 1.
         depth: usize,
@@ -143,7 +144,8 @@ impl Lane {
                 queue = ignore_poison(self.shared.for_run.wait_while(queue, is_full));
             }
             Delivery::Latest { .. } if is_full(&mut queue) => {
-                queue.packets.pop_front();
+                let oldest = queue.packets.iter().position(|it| !it.is_precious()).unwrap_or(0);
+                queue.packets.remove(oldest);
                 queue.counters.n_dropped += 1;
             }
             Delivery::Latest { .. } => {}

@@ -17,6 +17,7 @@ use std::{sync::OnceLock, time::Duration};
 
 pub use crate::snapshot::run::{RunStatistics, SinkCounters};
 use crate::{
+    command::change::Change,
     snapshot::{Snapshot, checkpoint::Checkpoint},
     wire::{to_ros::Encoder, topics::Message},
 };
@@ -27,10 +28,12 @@ pub struct Packet {
     pub snapshot: Snapshot,
     /// How the run goes, in wall time; there when statistics are due.
     pub run: Option<RunStatistics>,
-    /// Number of the packet in its run; 0 if nobody counts.
-    pub number: u64,
     /// All that is needed to go on, where it is due; the start's too with the first packet.
     pub checkpoints: Vec<Checkpoint>,
+    /// How the world was changed since the packet before, if not by a tick.
+    pub changes: Vec<Change>,
+    /// Number of the packet in its run; 0 if nobody counts.
+    pub number: u64,
     /// The messages, once someone has asked for them.
     messages: OnceLock<Vec<Message>>,
 }
@@ -38,18 +41,34 @@ pub struct Packet {
 impl Packet {
     /// A packet whose messages are not encoded yet.
     pub fn new(snapshot: Snapshot, run: Option<RunStatistics>) -> Self {
-        let (checkpoints, messages) = (Vec::new(), OnceLock::new());
-        Self { snapshot, run, number: 0, checkpoints, messages }
-    }
-
-    /// The same packet with a number.
-    pub fn numbered(self, number: u64) -> Self {
-        Self { number, ..self }
+        Self {
+            snapshot,
+            run,
+            checkpoints: Vec::new(),
+            changes: Vec::new(),
+            number: 0,
+            messages: OnceLock::new(),
+        }
     }
 
     /// The same with checkpoints.
     pub fn with_checkpoints(self, checkpoints: Vec<Checkpoint>) -> Self {
         Self { checkpoints, ..self }
+    }
+
+    /// The same after changes of the world.
+    pub fn with_changes(self, changes: Vec<Change>) -> Self {
+        Self { changes, ..self }
+    }
+
+    /// True if nothing can be told without it of what comes after.
+    pub fn is_precious(&self) -> bool {
+        !self.changes.is_empty() || !self.checkpoints.is_empty()
+    }
+
+    /// The same packet with a number.
+    pub fn numbered(self, number: u64) -> Self {
+        Self { number, ..self }
     }
 
     /// The messages; `encoder` makes them if nobody has yet.

@@ -5,9 +5,9 @@ use crate::base::Tick;
 /// A run between two ticks.
 #[derive(Clone, Debug)]
 pub struct Checkpoint {
-    /// The tick that ended.
+    /// The tick of the run that ended.
     pub tick: Tick,
-    /// Simulated time at its end [ns].
+    /// Time of the run at its end [ns].
     pub time_ns: u64,
     /// Digest of the whole state.
     pub digest: u64,

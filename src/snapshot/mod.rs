@@ -23,6 +23,8 @@ pub struct Snapshot {
     pub tick: Tick,
     /// Simulated time at its end [ns].
     pub time_ns: u64,
+    /// Ticks since the start of the run. Other than `tick` it counts on when time is reset.
+    pub run_tick: Tick,
     /// The gripper's flange.
     pub flange: BodySnapshot,
     /// The objects, in the scene's order.

@@ -24,6 +24,7 @@ pub fn snapshot(session: &Session, parts: Parts) -> Snapshot {
     Snapshot {
         tick: session.now(),
         time_ns: session.time_ns(),
+        run_tick: session.run_tick(),
         flange: BodySnapshot { pose: flange.pose, twist: flange.twist },
         objects: objects(session),
         contact_wrench: in_flange_axes(&means.objects_on_gripper),

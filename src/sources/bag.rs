@@ -109,7 +109,7 @@ impl Source for Script {
     }
 
     fn drain(&mut self, seen: &Snapshot) -> Vec<Command> {
-        self.of(seen.tick.0 + 1)
+        self.of(seen.run_tick.0 + 1)
     }
 
     fn has_heard(&self) -> bool {

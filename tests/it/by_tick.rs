@@ -47,6 +47,7 @@ impl Synthetic {
             snapshot: Snapshot {
                 tick: Tick(0),
                 time_ns: 0,
+                run_tick: Tick(0),
                 flange: at_rest,
                 objects: vec![object],
                 contact_wrench: Wrench::zero(),
@@ -81,6 +82,7 @@ impl Synthetic {
     pub(crate) fn advance_to(&mut self, tick: u64) {
         self.snapshot.tick = Tick(tick);
         self.snapshot.time_ns = tick * 1_000_000;
+        self.snapshot.run_tick = Tick(tick);
         self.snapshot.digest = tick.wrapping_mul(0x9e37_79b9_7f4a_7c15);
         self.snapshot.contact_wrench.force.z = number(tick);
         self.snapshot.chamber.gauge = -number(tick);

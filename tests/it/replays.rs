@@ -4,9 +4,26 @@ use std::{
     fs,
     path::{Path, PathBuf},
     process::{Command as Process, Output},
-    sync::OnceLock,
+    sync::{Arc, OnceLock},
 };
 
+use jamgrip::{
+    bag::recording::Recording,
+    base::{Pose, real::Twist},
+    command::{
+        Command,
+        change::{Change, Scope},
+    },
+    node::plant::Plant,
+    scene::{Object, Shape},
+    session::Session,
+    sinks::{
+        Packet, Sink,
+        bag::{Bag, Format, Subject},
+    },
+    snapshot::{Parts, take},
+    wire::to_ros::Encoder,
+};
 use serde_json::Value;
 
 use crate::coarse;
@@ -259,4 +276,128 @@ fn recordings_of_others_command_a_run() {
     let ticks: Vec<u64> = course.commands.iter().map(|it| it.tick).collect();
     assert_eq!(ticks, [1, 51, 101]);
     assert_eq!(course.commands[2].cdr, (-2000.0_f64).to_le_bytes());
+}
+
+/// What was done to the world after a tick of the run.
+fn changes_after(tick: u64, session: &Session) -> Vec<Change> {
+    let object = || "cylinder".to_owned();
+    let ball = || {
+        let pose = Pose::translation(0.1, 0.0, 0.02);
+        let shape = Shape::Sphere { radius: 0.01 };
+        let like = session.scene().objects[0].clone();
+        Change::Insert(Box::new(Object { name: "ball".to_owned(), shape, pose, ..like }))
+    };
+    match tick {
+        0 => {
+            let pose = Pose::translation(0.002, 0.0, 0.025);
+            vec![Change::PlaceObject { object: object(), pose, twist: Twist::zero() }]
+        }
+        30 => vec![ball(), Change::PlaceFlange { pose: Pose::translation(0.001, 0.0, 0.11) }],
+        50 => vec![Change::Reset(Scope { time: false, state: true, spawned: true })],
+        70 => vec![Change::Reset(Scope { time: true, state: false, spawned: false })],
+        90 => vec![Change::Remove { object: object() }, ball()],
+        100 => vec![Change::Reset(Scope::ALL)],
+        _ => Vec::new(),
+    }
+}
+
+/// A recording of 130 ticks of a world that is changed now and then; `forgets` leaves the changes
+/// after this tick out of it.
+fn record_changes(folder: &Path, forgets: Option<u64>) {
+    let scene = coarse::scene(&[]);
+    let mut session = coarse::session(1, &[]);
+    let mesh = &session.coupled().model.membrane.mesh;
+    let encoder = Arc::new(Encoder::new(&scene, &mesh.triangles, &mesh.positions));
+    let facts = vec![("tick_ns", "1000000".to_owned())];
+    let scene_text = jamgrip::scene::to_yaml(&scene);
+    let subject = Subject { scene_text, scene_files: vec![], facts, format: Format::default() };
+    let mut bag = Bag::create(folder, encoder, subject).unwrap();
+    let packet = |session: &Session| Packet::new(take::snapshot(session, Parts::default()), None);
+    for tick in 0..=130 {
+        let is_due = tick % 20 == 0;
+        let kept = is_due.then(|| session.checkpoint()).flatten().into_iter().collect();
+        bag.write(&packet(&session).with_checkpoints(kept)).unwrap();
+        let changes = changes_after(tick, &session);
+        if !changes.is_empty() {
+            changes.iter().for_each(|it| session.change(it).unwrap());
+            let told = if forgets == Some(tick) { Vec::new() } else { changes };
+            bag.write(&packet(&session).with_changes(told)).unwrap();
+        }
+        let commands = match session.now().0 {
+            0 => vec![coarse::flange_to(0.09)],
+            10 => vec![Command::Vacuum { gauge_pa: -40e3 }],
+            _ => Vec::new(),
+        };
+        session.tick(&commands).unwrap();
+    }
+    assert_eq!((session.now().0, session.run_tick().0), (31, 131), "time was reset last after 100");
+    bag.close().unwrap();
+}
+
+/// Oracle: the session that was recorded, and the list of what was done to it.
+#[test]
+fn what_is_done_to_the_world_between_ticks_is_recorded_and_done_again() {
+    let place = tempfile::tempdir().unwrap();
+    let folder = place.path().join("bag");
+    record_changes(&folder, None);
+    let bag = folder.to_str().unwrap();
+    let (verdict, code) = told(&["replay", bag, "--verify", "--json"]);
+    assert_eq!((code, &verdict["ticks"]), (0, &130.into()), "{verdict}");
+    // 130 ticks, the start, and six times something was changed.
+    assert_eq!(verdict["compared"], 137, "{verdict}");
+    assert_eq!(verdict["remarks"], serde_json::json!([]));
+    // From checkpoints behind changes, to where a reset needs the start.
+    for (start, n_ticks) in [("30ms", 110), ("60ms", 70), ("99ms", 50), ("125ms", 10)] {
+        let (verdict, code) = told(&["replay", bag, "--verify", "--json", "--start", start]);
+        assert_eq!((code, &verdict["ticks"]), (0, &n_ticks.into()), "{start}: {verdict}");
+    }
+    let checked = jamgrip::bag::check::check(&folder).unwrap();
+    assert!(!checked.iter().any(|it| it.is_error), "{checked:?}");
+    let course = Recording::open(&folder).unwrap().course_of_all(1_000_000).unwrap();
+    let what: Vec<_> = course.changes.iter().map(|it| (it.tick, it.what.as_str())).collect();
+    assert_eq!(what[1], (30, "object `ball` added"));
+    assert_eq!(what[7], (100, "reset of time, state, added objects"));
+    // No checkpoints while there are other objects than the scene's: after 100 it was not yet reset.
+    let ticks: Vec<u64> = course.checkpoints.iter().map(|it| it.tick).collect();
+    assert_eq!(ticks, [0, 20, 60, 80, 120]);
+    let commands: Vec<u64> = course.commands.iter().map(|it| it.tick).collect();
+    assert_eq!(commands, [1, 11, 71, 81, 101, 111], "ticks of the run, whatever became of time");
+}
+
+/// Oracle: the tick of the change that is not in the recording.
+#[test]
+fn a_change_that_is_not_recorded_shows_as_a_difference() {
+    let place = tempfile::tempdir().unwrap();
+    let folder = place.path().join("bag");
+    record_changes(&folder, Some(50));
+    let (verdict, code) = told(&["replay", folder.to_str().unwrap(), "--verify", "--json"]);
+    assert_eq!((code, &verdict["first_difference"]), (1, &51.into()), "{verdict}");
+}
+
+/// Oracle: the list of changes: the reset after 100 ms is the last.
+#[test]
+fn a_branch_says_which_changes_it_cannot_repeat() {
+    let place = tempfile::tempdir().unwrap();
+    let folder = place.path().join("bag");
+    record_changes(&folder, None);
+    let bag = folder.to_str().unwrap();
+    let branch = |arguments: &[&str]| {
+        let all = [&["replay", bag, "--json", "--no-bag"], arguments];
+        let output = jamgrip(&all.concat());
+        let complaint = String::from_utf8_lossy(&output.stderr).into_owned();
+        (output.status.code(), complaint)
+    };
+    for (arguments, expected) in [
+        (&["--from", "40ms"][..], "changed from outside at 0.05 s (reset of state, added objects)"),
+        (&["--from", "40ms", "--end", "45ms"], "at tick 40 there are other objects"),
+        (&["--from", "100ms"], "changed from outside at 0.1 s (reset of time, state, added"),
+    ] {
+        let (code, complaint) = branch(arguments);
+        assert_eq!(code, Some(2), "{arguments:?}: {complaint}");
+        assert!(complaint.contains(expected), "{arguments:?}: {complaint}");
+    }
+    for arguments in [&["--from", "60ms", "--end", "70ms"][..], &["--from", "110ms"]] {
+        let (code, complaint) = branch(arguments);
+        assert_eq!(code, Some(0), "{arguments:?}: {complaint}");
+    }
 }

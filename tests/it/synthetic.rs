@@ -165,6 +165,7 @@ pub(crate) fn snapshot(tick: u64) -> Snapshot {
     Snapshot {
         tick: Tick(tick),
         time_ns: tick * TICK_NS,
+        run_tick: Tick(tick),
         flange: body(0.2),
         objects: vec![ObjectSnapshot {
             name: OBJECT.to_owned(),

@@ -13,7 +13,6 @@ mod one;
 mod vector;
 
 use std::{
-    fmt,
     ops::{Add, Div, Mul, Neg, Sub},
     sync::atomic::{AtomicU8, Ordering},
 };
@@ -103,16 +102,6 @@ pub enum Width {
     Four = 4,
     /// Eight lanes.
     Eight = 8,
-}
-
-impl fmt::Display for Width {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::One => "1 lane",
-            Self::Four => "4 lanes (AVX2)",
-            Self::Eight => "8 lanes (AVX-512)",
-        })
-    }
 }
 
 /// The widest that may be used.

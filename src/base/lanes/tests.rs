@@ -151,7 +151,7 @@ fn operations_have_the_bits_of_plain_numbers() {
                     assert_eq!(
                         bits(&[found]),
                         bits(&[expected]),
-                        "{width}, operation {operation} of {a} and {b}: {found}"
+                        "{width:?}, operation {operation} of {a} and {b}: {found}"
                     );
                 }
             }
@@ -181,11 +181,11 @@ fn rows_come_in_and_go_out_unchanged() {
         for lane in 0..8 {
             // Oracle: plain indexing.
             let ([x, y, z], [a, b, c, d]) = (three[lane], four[lane * 5 % 6]);
-            assert_eq!(bits(&to_3[lane]), bits(&[y, z, x]), "{width}");
-            assert_eq!(bits(&to_4[lane]), bits(&[d, a, c, b]), "{width}");
-            assert_eq!(bits(&to_8[lane]), bits(&[a, b, c, d, x, y, z, a + x]), "{width}");
+            assert_eq!(bits(&to_3[lane]), bits(&[y, z, x]), "{width:?}");
+            assert_eq!(bits(&to_4[lane]), bits(&[d, a, c, b]), "{width:?}");
+            assert_eq!(bits(&to_8[lane]), bits(&[a, b, c, d, x, y, z, a + x]), "{width:?}");
             let column: Vec<f64> = columns.iter().map(|column| column[lane]).collect();
-            assert_eq!(bits(&column), bits(&[x, y, z, a, b, c, d]), "{width}");
+            assert_eq!(bits(&column), bits(&[x, y, z, a, b, c, d]), "{width:?}");
         }
     });
 }

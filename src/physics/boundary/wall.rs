@@ -47,19 +47,44 @@ pub enum WallShape {
 }
 
 impl WallShape {
+    /// The surface where a motion has brought it.
+    pub fn placed(&self, motion: &BodyMotion) -> Placed {
+        match *self {
+            Self::Plane { normal } => Placed::Plane { normal: motion.pose.rotation * normal },
+            Self::Tube { radius } => {
+                Placed::Tube { radius, axis: motion.pose.rotation * Vec3::z() }
+            }
+            Self::Bowl { radius } => Placed::Bowl { radius },
+            Self::Ball { radius } => Placed::Ball { radius },
+            Self::Frame => Placed::Frame,
+        }
+    }
+
     /// Distance [m] of the point at `arm` [m] from the wall's origin, and the normal towards it,
     /// world axes. `None` where the wall has no surface.
-    #[inline(always)]
     pub fn distance(&self, motion: &BodyMotion, arm: &Vec3) -> Option<(Real, Vec3)> {
+        self.placed(motion).distance(arm)
+    }
+}
+
+/// The surface of a wall, with its directions in world axes; see `WallShape`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[expect(missing_docs, reason = "as in `WallShape`")]
+pub enum Placed {
+    Plane { normal: Vec3 },
+    Tube { radius: Real, axis: Vec3 },
+    Bowl { radius: Real },
+    Ball { radius: Real },
+    Frame,
+}
+
+impl Placed {
+    /// As that of `WallShape`.
+    #[inline(always)]
+    pub fn distance(&self, arm: &Vec3) -> Option<(Real, Vec3)> {
         match self {
-            Self::Plane { normal } => {
-                let normal = motion.pose.rotation * normal;
-                Some((normal.dot(arm), normal))
-            }
-            Self::Tube { radius } => {
-                let axis = motion.pose.rotation * Vec3::z();
-                inside(*radius, arm - axis * axis.dot(arm))
-            }
+            Self::Plane { normal } => Some((normal.dot(arm), *normal)),
+            Self::Tube { radius, axis } => inside(*radius, arm - axis * axis.dot(arm)),
             Self::Bowl { radius } => inside(*radius, *arm),
             Self::Ball { radius } => {
                 let length = arm.norm();

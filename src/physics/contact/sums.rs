@@ -86,8 +86,9 @@ pub fn with_others(scratch: &Scratch, i: usize, of_pairs: &[Real; 8]) -> (Vec3, 
         }
     }
     let walls = lists.wall_starts[i] as usize..lists.wall_starts[i + 1] as usize;
-    for &place in &lists.walls[walls] {
-        let wall = &scratch.wall_forces[place as usize];
+    let n_grains = lists.wall_starts.len() - 1;
+    for &[w, _] in &lists.walls[walls] {
+        let wall = &scratch.wall_forces[w as usize * n_grains + i];
         if wall.normal > 0.0 {
             force += wall.force;
             torque += wall.arm.cross(&wall.force);
@@ -162,12 +163,11 @@ pub fn on_walls(model: &Model, controls: &Controls, state: &State, scratch: &mut
         wall_wrenches[wall].torque += arm.cross(&force);
     };
     let n_grains = state.grains.len();
-    for &place in &neighbours.walls {
-        let k = place as usize;
-        let contact = &wall_forces[k];
+    for &[w, i] in &neighbours.walls {
+        let (w, i) = (w as usize, i as usize);
+        let contact = &wall_forces[w * n_grains + i];
         if contact.normal > 0.0 {
-            let position = &state.grains.positions[k % n_grains];
-            add(k / n_grains, &(position + contact.arm), -contact.force);
+            add(w, &(state.grains.positions[i] + contact.arm), -contact.force);
         }
     }
     for (v, &holder) in model.membrane.holders.iter().enumerate().filter(|(_, it)| **it != FREE) {

@@ -1,11 +1,11 @@
 //! Contacts between grains and walls.
 
-use super::law::{self, Touch};
+use super::law::{self, PairLaw, Touch};
 use crate::{
-    base::Vec3,
+    base::{Real, Vec3},
     physics::{
         Model,
-        boundary::{body::BodyMotion, wall::WallModel},
+        boundary::{body::BodyMotion, wall::Placed},
         scratch::{Neighbours, WallForce},
         state::{Grains, State},
     },
@@ -22,26 +22,28 @@ pub fn forces(
 ) {
     wall_forces.resize(springs.len(), WallForce::default());
     let n_grains = state.grains.len();
-    for &place in &lists.walls {
-        let place = place as usize;
-        let (w, i) = (place / n_grains, place % n_grains);
-        let contact = Contact { wall: &model.walls[w], motion: &state.walls[w], dt: model.substep };
-        wall_forces[place] = contact.force(&state.grains, i, &mut springs[place]);
+    let placed: Vec<Placed> =
+        model.walls.iter().zip(&state.walls).map(|(it, motion)| it.shape.placed(motion)).collect();
+    for &[w, i] in &lists.walls {
+        let (w, i) = (w as usize, i as usize);
+        let wall = Contact { law: &model.walls[w].law, shape: &placed[w], motion: &state.walls[w] };
+        let place = w * n_grains + i;
+        wall_forces[place] = wall.force(&state.grains, i, model.substep, &mut springs[place]);
     }
 }
 
 struct Contact<'a> {
-    wall: &'a WallModel,
+    law: &'a PairLaw,
+    shape: &'a Placed,
     motion: &'a BodyMotion,
-    dt: f64,
 }
 
 impl Contact<'_> {
     #[inline(always)]
-    fn force(&self, grains: &Grains, i: usize, spring: &mut Vec3) -> WallForce {
+    fn force(&self, grains: &Grains, i: usize, dt: Real, spring: &mut Vec3) -> WallForce {
         let radius = grains.radii[i];
         let from_wall = grains.positions[i] - self.motion.pose.translation.vector;
-        let nearest = self.wall.shape.distance(self.motion, &from_wall);
+        let nearest = self.shape.distance(&from_wall);
         let Some((distance, normal)) = nearest.filter(|(distance, _)| *distance < radius) else {
             *spring = Vec3::zeros();
             return WallForce::default();
@@ -57,7 +59,7 @@ impl Contact<'_> {
             radius,
             mass: grains.masses[i],
         };
-        let force = law::single(&self.wall.law, &touch, self.dt, spring);
+        let force = law::single(self.law, &touch, dt, spring);
         WallForce {
             force: normal * force.normal + force.tangential,
             arm,

@@ -17,8 +17,8 @@ pub(super) fn build(
     wall_forces: &mut [WallForce],
 ) {
     let n_grains = state.grains.len();
-    for &place in &lists.walls {
-        if let Some(force) = wall_forces.get_mut(place as usize) {
+    for &[w, i] in &lists.walls {
+        if let Some(force) = wall_forces.get_mut(w as usize * n_grains + i as usize) {
             *force = WallForce::default();
         }
     }
@@ -33,7 +33,7 @@ pub(super) fn build(
             lists.wall_extents[w] = lists.wall_extents[w].max(arm.norm() + model.skin);
             let cut = state.grains.radii[i] + model.skin;
             if wall.shape.distance(motion, &arm).is_some_and(|(distance, _)| distance < cut) {
-                lists.walls.push(id(w * n_grains + i));
+                lists.walls.push([w, i].map(id));
             }
         }
         lists.wall_starts.push(id(lists.walls.len()));

@@ -14,6 +14,7 @@
 //! `growth.progress()` with the `State` is all that is needed to go on: `Growth::resumed`.
 
 pub mod grow;
+pub mod numbering; // neighbours in space, neighbours in memory
 pub mod scatter;
 
 pub use grow::{Grown, Growth, Laws, Recipe};

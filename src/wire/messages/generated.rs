@@ -1360,6 +1360,27 @@ uint32 nanosec
 "##,
         };
     }
+
+    /// What was done.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct WorldChange {
+        /// Tick.
+        pub r#tick: u64,
+        /// What.
+        pub r#what: String,
+        /// Bytes.
+        #[serde(with = "serde_bytes")]
+        pub r#change: Vec<u8>,
+    }
+
+    impl RosMessage for WorldChange {
+        const TYPE: MessageType = MessageType {
+            name: "jamgrip_msgs/msg/WorldChange",
+            dds_name: "jamgrip_msgs::msg::dds_::WorldChange_",
+            type_hash: "",
+            definition: "",
+        };
+    }
 }
 
 /// Messages of `rcl_interfaces`.

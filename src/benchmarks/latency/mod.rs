@@ -1,0 +1,269 @@
+//! Latency of the loop at 1 kHz beside a busy solver: from a command on a topic to the first tick that uses
+//! it, and from a tick to its sample at a subscriber, over ROS 2 and in shared memory.
+//!
+//! The loop is `node::run` itself with its own sinks and sources. In place of the bag stands a plant
+//! that keeps all solver threads at work for most of each tick. Who listens and commands is another
+//! process; both take the time of the same clock. All of it happens in a network of its own: nothing leaves
+//! this host, and nothing comes in.
+
+mod listener; // the other process
+mod private; // a network of its own
+mod standing; // a plant that ticks in real time
+
+use std::{
+    process::{Child, Command, Stdio},
+    sync::Arc,
+};
+
+use serde::{Deserialize, Serialize};
+
+use super::{BenchError, Case, Figures, Options, lift};
+use crate::{
+    base::Real,
+    node::{
+        Crew, judge::Judge, lockstep::Gate, orders::Orders, outlets::Outlets, progress::Progress,
+        schedule::Schedule, shutdown::Shutdown,
+    },
+    physics::measure::{real, real_of},
+    scene::{Lockstep, Scene},
+    sinks::{
+        RunStatistics,
+        fanout::Delivery,
+        reach::{Extent, Reach},
+        ros::{RosNode, RosSink},
+        shm::Stream,
+    },
+    sources::ros::RosSource,
+    wire::to_ros::Encoder,
+};
+pub use listener::listen;
+use listener::{Heard, Samples};
+pub use private::PrivateError;
+use standing::Standing;
+
+/// The scene whose sizes the messages have, commanded from outside at 1 kHz.
+const OVERRIDES: [&str; 2] = ["controller=topics", "outputs.state_rate=1 kHz"];
+/// Ticks that are not counted: matching readers, filling caches.
+const N_FIRST: u64 = 200;
+/// Shortest time that is worth a percentile of 99.9 [s].
+const SECONDS_MIN: Real = 3.0;
+
+/// The loop's latencies cannot be measured.
+#[derive(Debug, thiserror::Error)]
+pub enum LatencyError {
+    /// There is no network of its own.
+    #[error(transparent)]
+    Private(#[from] PrivateError),
+    /// ROS 2 or shared memory cannot be opened.
+    #[error("{0}")]
+    Closed(String),
+    /// The other process failed.
+    #[error("the listener failed: {0}")]
+    Listener(String),
+    /// Nothing came through.
+    #[error("{path}: only {n} samples came through, {expected} were expected at least")]
+    Silent {
+        /// Which way.
+        path: &'static str,
+        /// How many did.
+        n: usize,
+        /// How many should have.
+        expected: usize,
+    },
+}
+
+/// Latency on one way through the loop.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Latency {
+    /// Which way.
+    pub path: String,
+    /// Samples.
+    pub n: usize,
+    /// Samples that were sent, and not seen.
+    pub n_lost: usize,
+    /// Half are below [us].
+    pub p50_us: Real,
+    /// 99 % are below [us].
+    pub p99_us: Real,
+    /// 99.9 % are below [us].
+    pub p999_us: Real,
+    /// The largest [us].
+    pub max_us: Real,
+}
+
+/// Measures here, if this is a network of its own, or else in one.
+pub(super) fn run(case: &Case, options: &Options) -> Result<Figures, BenchError> {
+    if private::is_private() {
+        return here(case, options);
+    }
+    let figures = private::run(case, options);
+    figures.map_err(|fault| BenchError::Latency { fault: fault.into() })
+}
+
+fn here(case: &Case, options: &Options) -> Result<Figures, BenchError> {
+    let latency = |fault| BenchError::Latency { fault };
+    let overrides = OVERRIDES.map(str::to_owned);
+    let scene = lift::scene(&overrides)?;
+    let session = lift::session(&scene, options)?;
+    let seconds = options.seconds.max(SECONDS_MIN);
+    let mut plant = Standing::new(session, scene.time.tick_ns, options)?;
+    let prefix = format!("jamgrip_bench_{}", std::process::id());
+    let mesh = &plant.session().coupled().model.membrane.mesh;
+    let encoder = Arc::new(Encoder::new(&scene, &mesh.triangles, &mesh.positions));
+    let mut crew = crew(&scene, &encoder, &prefix, &plant, seconds).map_err(latency)?;
+    let child = spawn(&prefix, seconds).map_err(latency)?;
+    let shutdown = crew.shutdown.clone();
+    let listening = std::thread::spawn(move || {
+        let heard = heard(child);
+        // Without the other process nobody commands, and the run would wait for ever.
+        shutdown.request();
+        heard
+    });
+    let report = crate::node::run(&mut plant, &mut crew);
+    report.ending.map_err(|fault| BenchError::Diverged { case: case.name.to_owned(), fault })?;
+    let heard = listening.join().expect("a panic is a fault of this program").map_err(latency)?;
+    crew.outlets.close();
+    let latencies = plant.latencies(&heard).map_err(latency)?;
+    let state = &plant.session().coupled().state;
+    Ok(Figures {
+        case: case.name.to_owned(),
+        n_grains: state.grains.len(),
+        n_vertices: state.membrane.positions.len(),
+        threads: options.n_threads,
+        real_time_factor: report.real_time_factor,
+        latencies,
+        peak_rss_bytes: super::process::peak(),
+        ..Figures::default()
+    })
+}
+
+/// All that is around the plant, in real time.
+fn crew(
+    scene: &Scene,
+    encoder: &Arc<Encoder>,
+    prefix: &str,
+    plant: &Standing,
+    seconds: Real,
+) -> Result<Crew, LatencyError> {
+    let closed = |error: &dyn std::fmt::Display| LatencyError::Closed(error.to_string());
+    let node = RosNode::join(&reach()).map_err(|it| closed(&it))?;
+    let sink = RosSink::new(&node, encoder).map_err(|it| closed(&it))?;
+    let source = RosSource::new(&node, encoder).map_err(|it| closed(&it))?;
+    let mut outlets = Outlets::default();
+    let delivery = Delivery::Latest { depth: 500 };
+    outlets.fanout.add(Box::new(sink), delivery).map_err(|it| closed(&it))?;
+    let state = &plant.session().coupled().state;
+    let (n_grains, n_vertices) = (state.grains.len(), state.membrane.positions.len());
+    let stream = Stream::open(prefix, n_grains, n_vertices).map_err(|it| closed(&it))?;
+    outlets.stream = Some(stream);
+    let end = std::time::Duration::from_secs_f64(seconds).as_nanos();
+    Ok(Crew {
+        gate: Gate::new(Lockstep::OFF),
+        has_missed: false,
+        orders: Orders::new(scene, vec![Box::new(source)]),
+        front: None,
+        outlets,
+        schedule: Schedule::new(&scene.outputs, scene.time.tick_ns),
+        judge: Judge::default(),
+        progress: Progress::new(true),
+        shutdown: Shutdown::default(),
+        tick_ns: scene.time.tick_ns,
+        end_ns: Some(u64::try_from(end).unwrap_or(u64::MAX)),
+        is_real_time: true,
+        about: RunStatistics::default(),
+        n_packets: 0,
+        checkpoints: Vec::new(),
+    })
+}
+
+/// The domain is nobody else's: the network is this process' own.
+fn reach() -> Reach {
+    Reach { domain_id: 0, extent: Extent::Host }
+}
+
+/// This program once more, as the one who listens and commands.
+fn spawn(prefix: &str, seconds: Real) -> Result<Child, LatencyError> {
+    let failed = |error: std::io::Error| LatencyError::Listener(error.to_string());
+    let program = std::env::current_exe().map_err(failed)?;
+    let mut command = Command::new(program);
+    command.args(["bench-listener", prefix, &seconds.to_string()]);
+    command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    command.spawn().map_err(failed)
+}
+
+fn heard(child: Child) -> Result<Heard, LatencyError> {
+    let failed = |text: String| LatencyError::Listener(text);
+    let output = child.wait_with_output().map_err(|error| failed(error.to_string()))?;
+    if !output.status.success() {
+        return Err(failed(String::from_utf8_lossy(&output.stderr).trim().to_owned()));
+    }
+    serde_json::from_slice(&output.stdout).map_err(|error| failed(error.to_string()))
+}
+
+/// Times from `sent` to `seen` by their marks; marks up to `first` do not count.
+fn latency(
+    path: &'static str,
+    first: u64,
+    sent: &Samples,
+    seen: &Samples,
+) -> Result<Latency, LatencyError> {
+    let sent: Vec<(u64, u64)> = sent.iter().copied().filter(|(mark, _)| first < *mark).collect();
+    let mut times = Vec::with_capacity(sent.len());
+    let mut rest = seen.iter().peekable();
+    for &(mark, left_ns) in &sent {
+        while rest.next_if(|(other, _)| *other < mark).is_some() {}
+        if let Some((_, came_ns)) = rest.next_if(|(other, _)| *other == mark) {
+            times.push(1e-3 * real_of(came_ns.saturating_sub(left_ns)));
+        }
+    }
+    // Half of them: a way that loses more is broken, and its percentiles mean nothing.
+    let expected = sent.len().div_ceil(2).max(1);
+    if times.len() < expected {
+        return Err(LatencyError::Silent { path, n: times.len(), expected });
+    }
+    Ok(percentiles(path, times, sent.len()))
+}
+
+/// The percentiles of `times` [us], of `n_sent` samples.
+fn percentiles(path: &str, mut times: Vec<Real>, n_sent: usize) -> Latency {
+    times.sort_by(Real::total_cmp);
+    let n = times.len();
+    let at = |share: Real| {
+        let rank = crate::base::real::count(share * real(n));
+        times[rank.min(n) - 1]
+    };
+    Latency {
+        path: path.to_owned(),
+        n,
+        n_lost: n_sent - n,
+        p50_us: at(0.5),
+        p99_us: at(0.99),
+        p999_us: at(0.999),
+        max_us: times[n - 1],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Oracle: by hand. Sample k takes k us; two get lost, one is of the first ones.
+    #[test]
+    fn percentiles_are_of_those_that_came() {
+        let sent: Samples = (1..=1003).map(|k| (k, 10_000 * k)).collect();
+        let came = |(mark, left): &(u64, u64)| (*mark, left + 1000 * (mark - 1));
+        let seen: Samples =
+            sent.iter().filter(|(mark, _)| *mark != 500 && *mark != 501).map(came).collect();
+        let found = latency("way", 1, &sent, &seen).unwrap();
+        assert_eq!((found.n, found.n_lost), (1000, 2));
+        let [p50, p99, p999] = [found.p50_us, found.p99_us, found.p999_us].map(|it| it.round());
+        assert_eq!(format!("{p50} {p99} {p999} {}", found.max_us.round()), "502 992 1001 1002");
+    }
+
+    #[test]
+    fn a_silent_way_is_no_way() {
+        let sent: Samples = (1..=100).map(|k| (k, k)).collect();
+        let error = latency("way", 0, &sent, &sent[..49].to_vec()).unwrap_err();
+        assert!(matches!(error, LatencyError::Silent { n: 49, expected: 50, .. }), "{error}");
+    }
+}

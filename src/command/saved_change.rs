@@ -1,0 +1,209 @@
+//! Changes of the world as bytes, so that a recorded run can be changed again in the same way.
+//!
+//! All numbers come back with their bits; nothing is checked that was checked when it was changed first.
+
+use std::path::PathBuf;
+
+use serde::{Deserialize, Serialize};
+
+use super::change::{Change, Knob, Scope};
+use crate::{
+    base::{Real, Vec3, real::Twist},
+    cosim::saved_state::{pose, pose_row},
+    scene::{Material, Object, Shape},
+};
+
+/// Bytes that are no change that this version knows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{n_bytes} bytes are no change of the world that this version knows")]
+pub struct UnknownChange {
+    n_bytes: usize,
+}
+
+/// The numbers of a change. New kinds come last, so that older recordings stay readable.
+#[derive(Serialize, Deserialize)]
+enum Saved {
+    Reset { time: bool, state: bool, spawned: bool },
+    PlaceObject { object: String, pose: [Real; 7], twist: [[Real; 3]; 2] },
+    PlaceFlange { pose: [Real; 7] },
+    Insert(SavedObject),
+    Remove { object: String },
+    ZeroForceSensor,
+    Turn { knob: u8, value: Real },
+}
+
+#[derive(Serialize, Deserialize)]
+struct SavedObject {
+    name: String,
+    shape: SavedShape,
+    /// Young's modulus, Poisson's ratio, density.
+    material: [Real; 3],
+    friction: Real,
+    pose: [Real; 7],
+    drive_timeout: Real,
+}
+
+#[derive(Serialize, Deserialize)]
+enum SavedShape {
+    Sphere { radius: Real },
+    Box { size: [Real; 3] },
+    Cylinder { radius: Real, height: Real },
+    Capsule { radius: Real, height: Real },
+    ConvexHull { points: Vec<[Real; 3]> },
+    Mesh { file: PathBuf, unit: Real, vertices: Vec<[Real; 3]>, triangles: Vec<[u32; 3]> },
+}
+
+impl Change {
+    /// The bytes of this change.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let saved = match self {
+            Self::Reset(Scope { time, state, spawned }) => {
+                Saved::Reset { time: *time, state: *state, spawned: *spawned }
+            }
+            Self::PlaceObject { object, pose, twist } => Saved::PlaceObject {
+                object: object.clone(),
+                pose: pose_row(pose),
+                twist: [twist.linear, twist.angular].map(Into::into),
+            },
+            Self::PlaceFlange { pose } => Saved::PlaceFlange { pose: pose_row(pose) },
+            Self::Insert(object) => Saved::Insert(saved_object(object)),
+            Self::Remove { object } => Saved::Remove { object: object.clone() },
+            Self::ZeroForceSensor => Saved::ZeroForceSensor,
+            Self::Turn { knob, value } => {
+                let number = Knob::ALL.iter().zip(0..).find(|(it, _)| *it == knob);
+                let number = number.expect("every knob has a number").1;
+                Saved::Turn { knob: number, value: *value }
+            }
+        };
+        postcard::to_stdvec(&saved).expect("numbers and names always serialise")
+    }
+
+    /// The change in `bytes`, with the same bits.
+    ///
+    /// # Errors
+    /// If they are none.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, UnknownChange> {
+        let unknown = |_| UnknownChange { n_bytes: bytes.len() };
+        Ok(match postcard::from_bytes(bytes).map_err(unknown)? {
+            Saved::Reset { time, state, spawned } => Self::Reset(Scope { time, state, spawned }),
+            Saved::PlaceObject { object, pose: row, twist } => {
+                let [linear, angular] = twist.map(Vec3::from);
+                Self::PlaceObject { object, pose: pose(&row), twist: Twist { linear, angular } }
+            }
+            Saved::PlaceFlange { pose: row } => Self::PlaceFlange { pose: pose(&row) },
+            Saved::Insert(object) => Self::Insert(Box::new(read_object(object))),
+            Saved::Remove { object } => Self::Remove { object },
+            Saved::ZeroForceSensor => Self::ZeroForceSensor,
+            Saved::Turn { knob, value } => {
+                let knob = Knob::ALL.get(usize::from(knob));
+                let knob = *knob.ok_or(UnknownChange { n_bytes: bytes.len() })?;
+                Self::Turn { knob, value }
+            }
+        })
+    }
+}
+
+fn saved_object(object: &Object) -> SavedObject {
+    let Material { youngs_modulus, poisson_ratio, density } = object.material;
+    SavedObject {
+        name: object.name.clone(),
+        shape: saved_shape(&object.shape),
+        material: [youngs_modulus, poisson_ratio, density],
+        friction: object.friction,
+        pose: pose_row(&object.pose),
+        drive_timeout: object.drive_timeout,
+    }
+}
+
+fn read_object(saved: SavedObject) -> Object {
+    let [youngs_modulus, poisson_ratio, density] = saved.material;
+    Object {
+        name: saved.name,
+        shape: read_shape(saved.shape),
+        material: Material { youngs_modulus, poisson_ratio, density },
+        friction: saved.friction,
+        pose: pose(&saved.pose),
+        drive_timeout: saved.drive_timeout,
+    }
+}
+
+fn saved_shape(shape: &Shape) -> SavedShape {
+    let rows = |points: &[Vec3]| points.iter().map(|&it| it.into()).collect();
+    match shape {
+        Shape::Sphere { radius } => SavedShape::Sphere { radius: *radius },
+        Shape::Box { size } => SavedShape::Box { size: (*size).into() },
+        Shape::Cylinder { radius, height } => {
+            SavedShape::Cylinder { radius: *radius, height: *height }
+        }
+        Shape::Capsule { radius, height } => {
+            SavedShape::Capsule { radius: *radius, height: *height }
+        }
+        Shape::ConvexHull { points } => SavedShape::ConvexHull { points: rows(points) },
+        Shape::Mesh { file, unit, vertices, triangles } => SavedShape::Mesh {
+            file: file.clone(),
+            unit: *unit,
+            vertices: rows(vertices),
+            triangles: triangles.clone(),
+        },
+    }
+}
+
+fn read_shape(saved: SavedShape) -> Shape {
+    let vectors = |rows: Vec<[Real; 3]>| rows.into_iter().map(Vec3::from).collect();
+    match saved {
+        SavedShape::Sphere { radius } => Shape::Sphere { radius },
+        SavedShape::Box { size } => Shape::Box { size: size.into() },
+        SavedShape::Cylinder { radius, height } => Shape::Cylinder { radius, height },
+        SavedShape::Capsule { radius, height } => Shape::Capsule { radius, height },
+        SavedShape::ConvexHull { points } => Shape::ConvexHull { points: vectors(points) },
+        SavedShape::Mesh { file, unit, vertices, triangles } => {
+            Shape::Mesh { file, unit, vertices: vectors(vertices), triangles }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::base::{Pose, Quat};
+
+    /// Oracle: the identity, for numbers that no decimal has.
+    #[test]
+    fn changes_come_back_bit_by_bit() {
+        let third = Vec3::new(1.0 / 3.0, -0.1, 2e-300);
+        let pose = Pose::from_parts(third.into(), Quat::from_euler_angles(0.1, 0.2, 0.3));
+        let twist = Twist { linear: third, angular: -third };
+        let triangles = vec![[0, 1, 2]];
+        let shapes = [
+            Shape::Sphere { radius: 0.1 },
+            Shape::Box { size: third },
+            Shape::Cylinder { radius: 0.1, height: 0.3 },
+            Shape::Capsule { radius: 0.1, height: 0.3 },
+            Shape::ConvexHull { points: vec![third; 4] },
+            Shape::Mesh { file: "x.stl".into(), unit: 1e-3, vertices: vec![third], triangles },
+        ];
+        let object = |shape: Shape| Object {
+            name: "ball".to_owned(),
+            shape,
+            material: Material { youngs_modulus: 1e6 / 3.0, poisson_ratio: 0.3, density: 1e3 },
+            friction: 0.1 + 0.2,
+            pose,
+            drive_timeout: 0.1,
+        };
+        let mut changes: Vec<Change> =
+            shapes.into_iter().map(|it| Change::Insert(Box::new(object(it)))).collect();
+        let name = || "ball".to_owned();
+        changes.push(Change::PlaceObject { object: name(), pose, twist });
+        changes.push(Change::PlaceFlange { pose });
+        changes.push(Change::Remove { object: name() });
+        changes.push(Change::ZeroForceSensor);
+        changes.extend(Knob::ALL.map(|knob| Change::Turn { knob, value: 1.0 / 3.0 }));
+        changes.push(Change::Reset(Scope { time: true, state: false, spawned: true }));
+        for change in changes {
+            let bytes = change.to_bytes();
+            assert_eq!(Change::from_bytes(&bytes), Ok(change.clone()));
+            assert!(Change::from_bytes(&bytes[..bytes.len() - 1]).is_err(), "{change}, cut off");
+        }
+        assert!(Change::from_bytes(&[200]).is_err(), "a kind that there is not");
+    }
+}
