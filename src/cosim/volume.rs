@@ -1,5 +1,7 @@
 //! Plain volumes, and whether they overlap: for questions about places.
 
+use std::panic::catch_unwind;
+
 use rapier3d_f64::{
     math::{Pose as ParryPose, Vector},
     parry::{
@@ -63,9 +65,10 @@ impl Volume {
                 }
                 let points: Vec<Vector> =
                     points.iter().map(|p| Vector::new(p.x, p.y, p.z)).collect();
-                let hull = ConvexPolyhedron::from_convex_hull(&points).ok_or(
-                    "these points span no convex hull: give at least three, not on a line",
-                )?;
+                // Its inner checks panic on some points that are nearly one; whoever asks may be wrong
+                // without ending the run.
+                let made = catch_unwind(|| ConvexPolyhedron::from_convex_hull(&points));
+                let hull = made.ok().flatten().ok_or("these points span no convex hull")?;
                 (Box::new(hull), Pose::identity().into())
             }
         })

@@ -1361,14 +1361,15 @@ uint32 nanosec
         };
     }
 
-    /// What was done.
+    /// What was done to the world between two ticks from outside: a reset, something put elsewhere, an object
+    /// added or taken away. Only recordings hold it.
     #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
     pub struct WorldChange {
-        /// Tick.
+        /// Ticks since the start of the run after which it was done \[1\].
         pub r#tick: u64,
-        /// What.
+        /// What was done, in words.
         pub r#what: String,
-        /// Bytes.
+        /// The same with all its numbers, in a form that only the simulator reads.
         #[serde(with = "serde_bytes")]
         pub r#change: Vec<u8>,
     }
@@ -1377,8 +1378,17 @@ uint32 nanosec
         const TYPE: MessageType = MessageType {
             name: "jamgrip_msgs/msg/WorldChange",
             dds_name: "jamgrip_msgs::msg::dds_::WorldChange_",
-            type_hash: "",
-            definition: "",
+            type_hash: "RIHS01_22a4a646e7733b7483d705af67570a5da4cb816a79530683d373850e3b9a77e6",
+            definition: r##"# What was done to the world between two ticks from outside: a reset, something put elsewhere, an object
+# added or taken away. Only recordings hold it.
+
+# Ticks since the start of the run after which it was done [1].
+uint64 tick
+# What was done, in words.
+string what
+# The same with all its numbers, in a form that only the simulator reads.
+uint8[] change
+"##,
         };
     }
 }
