@@ -72,6 +72,12 @@ pub(crate) struct Replay {
         value_parser = factor, conflicts_with_all = ["verify", "from"]
     )]
     pub(crate) clock: Option<f64>,
+    /// Waits so long between announcing the topics and the first message, for readers to find them
+    #[arg(
+        long, value_name = "TIME", default_value = "0.5s", value_parser = time_or_zero,
+        conflicts_with_all = ["verify", "from"]
+    )]
+    pub(crate) delay: f64,
     /// Takes cues from standard input while it plays
     #[arg(long, conflicts_with_all = ["verify", "from"])]
     pub(crate) cues: bool,

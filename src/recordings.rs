@@ -158,6 +158,7 @@ fn play(args: &Replay) -> Result<ExitCode, Box<dyn Error>> {
         is_loop: args.is_loop,
         topics: args.topics.clone(),
         exclude: args.exclude.clone(),
+        delay: Duration::from_secs_f64(args.delay),
         clock_rate: args.clock,
     };
     let (teller, cues) = mpsc::channel();

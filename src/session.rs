@@ -31,8 +31,6 @@ struct Start {
     state: Option<State>,
     /// The scene's own objects.
     objects: Vec<Object>,
-    /// Bits of the scene's own values of what may be turned.
-    knobs: [u64; Knob::ALL.len()],
 }
 
 /// A run.
@@ -48,6 +46,8 @@ pub struct Session {
     means: Means,
     /// What the wrist sensor takes for zero, flange axes.
     sensor_zero: Wrench,
+    /// Properties that are not those of the scene any more.
+    turned: Vec<(Knob, f64)>,
     records: Vec<CommandRecord>,
     digest: u64,
     normal_forces: Vec<f64>,
@@ -62,6 +62,9 @@ struct Saved<'a> {
     state: &'a [u8],
     world: &'a [u8],
     desk: &'a [u8],
+    /// Force and torque.
+    sensor_zero: [[f64; 3]; 2],
+    turned: Vec<(Knob, f64)>,
 }
 
 impl Session {
@@ -102,6 +105,9 @@ impl Session {
         session.desk.restore(saved.desk)?;
         session.tick = Tick(saved.tick);
         session.run_tick = Tick(saved.run_tick);
+        let [force, torque] = saved.sensor_zero.map(Vec3::from);
+        session.sensor_zero = Wrench { force, torque };
+        saved.turned.iter().for_each(|(knob, value)| session.turn(*knob, *value));
         if 0 < saved.run_tick {
             session.start.state = None;
         }
@@ -128,19 +134,21 @@ impl Session {
     }
 
     /// Everything that is needed to go on, as bytes; nothing while there are other objects than the
-    /// scene's own, or in another order, or while materials or pump are not the scene's.
+    /// scene's own, or in another order.
     pub fn save(&self) -> Option<Vec<u8>> {
         let names = |objects: &[Object]| objects.iter().map(|it| it.name.clone()).collect();
         let (there, own): (Vec<_>, Vec<_>) =
             (names(&self.scene.objects), names(&self.start.objects));
-        let is_turned = Knob::ALL.map(|it| it.get(&self.scene).to_bits()) != self.start.knobs;
-        if there != own || is_turned {
+        if there != own {
             return None;
         }
         let (state, world) = (saved_state::write(&self.coupled.state), self.coupled.world.save());
         let desk = self.desk.save();
         let (tick, run_tick) = (self.tick.0, self.run_tick.0);
-        let saved = Saved { tick, run_tick, state: &state, world: &world, desk: &desk };
+        let Wrench { force, torque } = self.sensor_zero;
+        let sensor_zero = [force, torque].map(Into::into);
+        let (state, world, desk, turned) = (&state, &world, &desk, self.turned.clone());
+        let saved = Saved { tick, run_tick, state, world, desk, sensor_zero, turned };
         Some(saved_state::sealed(postcard::to_stdvec(&saved).expect("bytes always serialise")))
     }
 
@@ -151,8 +159,7 @@ impl Session {
 
     fn assemble(compiled: Compiled, state: State) -> Self {
         let Compiled { scene, model, plan, bulks, limits, pool, .. } = compiled;
-        let knobs = Knob::ALL.map(|it| it.get(&scene).to_bits());
-        let start = Start { state: Some(state.clone()), objects: scene.objects.clone(), knobs };
+        let start = Start { state: Some(state.clone()), objects: scene.objects.clone() };
         let step = plan.tick / measure::real(plan.n_substeps / plan.n_per_exchange);
         let world = RapierWorld::new(&scene, &model, bulks, step);
         let (n_objects, n_grains) = (scene.objects.len(), state.grains.positions.len());
@@ -167,6 +174,7 @@ impl Session {
             run_tick: Tick(0),
             means: no_forces(n_objects),
             sensor_zero: Wrench::zero(),
+            turned: Vec::new(),
             records: Vec::new(),
             digest: 0,
             // Nothing is known of forces before the first tick.
@@ -214,14 +222,12 @@ impl Session {
             }
             Change::ZeroForceSensor => {
                 self.sensor_zero = self.sensed();
+                self.records.clear();
                 return Ok(());
             }
             Change::Turn { knob, value } => {
-                knob.set(&mut self.scene, *value);
-                if *knob == Knob::ObjectFriction {
-                    self.start.objects.iter_mut().for_each(|it| it.friction = *value);
-                }
-                retune(&self.scene, &mut self.coupled.model);
+                self.turn(*knob, *value);
+                self.records.clear();
                 return Ok(());
             }
             Change::Insert(object) => self.insert(object)?,
@@ -235,6 +241,16 @@ impl Session {
         self.records.clear();
         self.digest = self.take_digest();
         Ok(())
+    }
+
+    fn turn(&mut self, knob: Knob, value: f64) {
+        knob.set(&mut self.scene, value);
+        if knob == Knob::ObjectFriction {
+            self.start.objects.iter_mut().for_each(|it| it.friction = value);
+        }
+        retune(&self.scene, &mut self.coupled.model);
+        self.turned.retain(|(other, _)| *other != knob);
+        self.turned.push((knob, value));
     }
 
     fn reset(&mut self, scope: Scope) -> Result<(), ChangeRefused> {

@@ -23,6 +23,9 @@ use crate::wire::{
     topics::{NODE, Topic},
 };
 
+/// The fact that names the topics of commands, in the order of the list of topics.
+pub const INPUTS: &str = "inputs";
+
 /// What a recording says about its run before anything happens in it.
 #[derive(Clone, Debug, Default)]
 pub struct Recording {
@@ -134,13 +137,20 @@ impl Recording {
         self.facts.get("version").map(String::as_str).or_else(by_library).unwrap_or("unknown")
     }
 
+    /// The topics of commands, where the recording says which: a node may have other names than the
+    /// scene says.
+    pub fn inputs(&self) -> Option<Vec<String>> {
+        serde_json::from_str(self.facts.get(INPUTS)?).ok()
+    }
+
     /// Reads all files: digests, commands on those of `topics` that are inputs, places of
     /// checkpoints. A tick has `tick_ns` nanoseconds.
     ///
     /// # Errors
     /// If a file cannot be opened.
     pub fn course(&self, topics: &[Topic], tick_ns: u64) -> io::Result<Course> {
-        let inputs = topics.iter().filter(|it| it.is_input).map(|it| it.name.clone()).collect();
+        let names = || topics.iter().filter(|it| it.is_input).map(|it| it.name.clone()).collect();
+        let inputs = self.inputs().unwrap_or_else(names);
         self.read_course(Inputs::Named(inputs), tick_ns)
     }
 
@@ -149,7 +159,7 @@ impl Recording {
     /// # Errors
     /// If a file cannot be opened.
     pub fn course_of_all(&self, tick_ns: u64) -> io::Result<Course> {
-        self.read_course(Inputs::ByName, tick_ns)
+        self.read_course(self.inputs().map_or(Inputs::ByName, Inputs::Named), tick_ns)
     }
 
     fn read_course(&self, inputs: Inputs, tick_ns: u64) -> io::Result<Course> {
@@ -229,7 +239,10 @@ impl Inputs {
     fn contains(&self, topic: &str) -> bool {
         match self {
             Self::Named(names) => names.iter().any(|it| it == topic),
-            Self::ByName => topic.starts_with(NODE) && topic.ends_with("_cmd"),
+            Self::ByName => {
+                let is_command = topic.ends_with("_cmd") || topic.ends_with("/joint_commands");
+                topic.starts_with(NODE) && is_command
+            }
         }
     }
 }

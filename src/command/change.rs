@@ -3,6 +3,8 @@
 
 use std::fmt;
 
+use serde::{Deserialize, Serialize};
+
 use crate::{
     base::{Pose, real::Twist},
     scene::{Object, Scene},
@@ -45,8 +47,22 @@ pub enum Change {
     },
 }
 
-/// A property that may change while time goes on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+impl fmt::Display for Change {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Reset(scope) => write!(f, "reset of {scope}"),
+            Self::PlaceObject { object, .. } => write!(f, "`{object}` put elsewhere"),
+            Self::PlaceFlange { .. } => f.write_str("the gripper put elsewhere"),
+            Self::Insert(object) => write!(f, "object `{}` added", object.name),
+            Self::Remove { object } => write!(f, "object `{object}` taken away"),
+            Self::ZeroForceSensor => f.write_str("wrist sensor set to zero"),
+            Self::Turn { knob, value } => write!(f, "{knob:?} set to {value}"),
+        }
+    }
+}
+
+/// A property that may change while time goes on. New ones come last: recordings hold their places.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Knob {
     /// Time constant of pump and line [s].
     ChamberLag,
@@ -63,16 +79,6 @@ pub enum Knob {
 }
 
 impl Knob {
-    /// All of them. New ones come last: recordings number them.
-    pub const ALL: [Self; 6] = [
-        Self::ChamberLag,
-        Self::ChamberRateMax,
-        Self::GrainDissipationTime,
-        Self::GrainFriction,
-        Self::MembraneFriction,
-        Self::ObjectFriction,
-    ];
-
     /// Its value in a scene, SI.
     pub fn get(self, scene: &Scene) -> f64 {
         match self {
@@ -104,20 +110,6 @@ impl Knob {
             Self::ChamberRateMax => [1e3, 1e8],
             Self::GrainDissipationTime => [0.0, 1e-4],
             Self::GrainFriction | Self::MembraneFriction | Self::ObjectFriction => [0.0, 5.0],
-        }
-    }
-}
-
-impl fmt::Display for Change {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Reset(scope) => write!(f, "reset of {scope}"),
-            Self::PlaceObject { object, .. } => write!(f, "`{object}` put elsewhere"),
-            Self::PlaceFlange { .. } => f.write_str("the gripper put elsewhere"),
-            Self::ZeroForceSensor => f.write_str("the wrist sensor set to zero"),
-            Self::Turn { knob, value } => write!(f, "{knob:?} set to {value}"),
-            Self::Insert(object) => write!(f, "object `{}` added", object.name),
-            Self::Remove { object } => write!(f, "object `{object}` taken away"),
         }
     }
 }

@@ -13,7 +13,9 @@ use crate::{
         messages::{
             RosMessage,
             geometry_msgs::{PoseStamped, WrenchStamped},
-            jamgrip_msgs::{ObjectCommand, ObjectDetectionStatus, Statistics, VacuumState},
+            jamgrip_msgs::{
+                ObjectCommand, ObjectDetectionStatus, Statistics, VacuumState, WorldChange,
+            },
             std_msgs::Float64,
         },
         topics::NODE,
@@ -121,6 +123,11 @@ impl Course {
             "/statistics" => self.statistics(time_s, cdr),
             "/vacuum_cmd" => self.vacuum_command(time_s, cdr),
             "/object_cmd" => self.object_command(time_s, cdr),
+            "/world_change" => {
+                if let Ok(it) = WorldChange::from_cdr(cdr) {
+                    self.events.push((time_s, format!("changed from outside: {}", it.what)));
+                }
+            }
             "/object_detection_status" => {
                 if let Ok(it) = ObjectDetectionStatus::from_cdr(cdr) {
                     self.detection(time_s, it.status);

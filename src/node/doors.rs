@@ -10,7 +10,7 @@ use std::{
 
 use super::{front::Front, launch::RunError, outlets::Outlets, progress::Progress};
 #[cfg(feature = "bag")]
-use crate::{cosim::compile::PHYSICS_VERSION, scene::Shape};
+use crate::{bag::recording::INPUTS, cosim::compile::PHYSICS_VERSION, scene::Shape};
 use crate::{
     scene::{Controller, OnError, Scene},
     sources::Source,
@@ -149,6 +149,9 @@ impl Doors<'_> {
             ("substep_s", format!("{:e}", self.substep_s)),
             ("machine", format!("{} {}", std::env::consts::OS, std::env::consts::ARCH)),
         ];
+        let inputs = self.encoder.topics().iter().filter(|it| it.is_input);
+        let inputs: Vec<&str> = inputs.map(|it| it.name.as_str()).collect();
+        facts.push((INPUTS, serde_json::json!(inputs).to_string()));
         facts.extend_from_slice(self.facts);
         let scene_text = crate::scene::to_yaml(self.scene);
         crate::bag::Subject { scene_text, scene_files: self.scene_files(), facts, format }

@@ -99,10 +99,10 @@ pub struct Crew {
     pub about: RunStatistics,
     /// Packets given out so far.
     pub n_packets: u64,
-    /// True once a command was missed that the run cannot go on without.
-    pub has_missed: bool,
     /// What the next packet keeps besides.
     pub checkpoints: Vec<Checkpoint>,
+    /// True once a command was missed that the run cannot go on without.
+    pub has_missed: bool,
 }
 
 /// How a run went, as far as clocks and plant know.
@@ -129,6 +129,7 @@ pub fn run<P: Plant>(plant: &mut P, crew: &mut Crew) -> Report<P::Fault> {
             break Ok(ending);
         }
         seen = crew.attend(plant, seen); // questions between two ticks
+        // Outside to plain values.
         if !crew.listen(&seen.snapshot) {
             crew.stand_still(plant, &seen, &mut pacer);
             continue;
@@ -141,7 +142,7 @@ pub fn run<P: Plant>(plant: &mut P, crew: &mut Crew) -> Report<P::Fault> {
         let run_time_ns = crew.run_time_ns(&snapshot);
         crew.pace(&mut pacer, run_time_ns); // the only clock
         crew.keep(plant, crew.schedule.checkpoint(run_time_ns));
-        seen = crew.pack(snapshot, &pacer);
+        seen = Arc::new(crew.pack(snapshot, &pacer));
         crew.outlets.publish(&plant.view(&seen.snapshot), &seen); // never fails the run
         crew.ticked(&seen);
     };
@@ -162,19 +163,20 @@ impl Crew {
         self.front.as_ref().map_or(self.orders.is_waiting(), |it| it.simulator().is_waiting())
     }
 
-    /// Takes the commands that have come, outside to plain values; true if the next tick may begin.
-    /// While time stands still they wait where they came in, where the oldest give way.
+    /// Takes the commands that have come; true if the next tick may begin. While time stands still
+    /// they wait where they came in, where the oldest give way; a lockstep needs to see them.
     fn listen(&mut self, seen: &Snapshot) -> bool {
-        let (is_on, is_asked_for) = match &self.front {
+        // Asked once: a first command that comes right after is for the next look.
+        let (is_playing, is_stepping) = match &self.front {
             None => (!self.orders.is_waiting(), false),
             Some(front) => (front.simulator().may_tick(), front.simulator().is_stepping()),
         };
-        if is_on {
+        if is_playing {
             let mut commands = self.orders.drain(seen);
             commands.extend(self.front.iter_mut().flat_map(Front::take_commands));
             self.gate.offer(commands, seen.time_ns);
         }
-        is_on && self.gate.is_open(is_asked_for, seen.time_ns)
+        is_playing && self.gate.is_open(is_stepping, seen.time_ns)
     }
 
     /// Answers questions, and shows what they have changed.
@@ -277,7 +279,7 @@ impl Crew {
     }
 
     /// Judges a snapshot, shows it, and adds statistics where they are due.
-    fn pack(&mut self, snapshot: Snapshot, pacer: &Pacer) -> Arc<Packet> {
+    fn pack(&mut self, snapshot: Snapshot, pacer: &Pacer) -> Packet {
         self.judge.look(&snapshot, Duration::from_nanos(self.tick_ns).as_secs_f64());
         let phase = self.orders.phase().map_or("", |phase| phase.name());
         self.progress.tick(&snapshot, phase, pacer);
@@ -290,7 +292,7 @@ impl Crew {
             sinks: self.outlets.counters(),
             ..self.about.clone()
         });
-        Arc::new(self.number(Packet::new(snapshot, run)))
+        self.number(Packet::new(snapshot, run))
     }
 }
 

@@ -160,8 +160,8 @@ fn crew(outside: Vec<Box<dyn Source>>) -> Crew {
     let scene = scene::parse(text, "x", std::path::Path::new(""), &[]).unwrap();
     Crew {
         front: None,
-        gate: Gate::new(scene::Lockstep::OFF),
         checkpoints: Vec::new(),
+        gate: Gate::new(scene::Lockstep::OFF),
         n_packets: 0,
         has_missed: false,
         orders: Orders::new(&scene, outside),

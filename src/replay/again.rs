@@ -205,7 +205,11 @@ impl Again {
     /// # Errors
     /// If one cannot be read.
     pub fn script(&self) -> Result<Script, ReplayError> {
-        let topics = topics(&self.scene);
+        let mut topics = topics(&self.scene);
+        let inputs = self.recording.inputs().unwrap_or_default();
+        for (topic, name) in topics.iter_mut().filter(|it| it.is_input).zip(inputs) {
+            topic.name = name;
+        }
         let objects = self.scene.objects.iter().map(|it| it.name.clone()).collect();
         let codec = CommandCodec::new(topics.clone(), objects);
         let mut commands = Vec::with_capacity(self.course.commands.len());

@@ -118,6 +118,9 @@ pub fn branch(
     }
     let tick_ns = again.scene.time.tick_ns;
     let tick = branch.from_ns / tick_ns;
+    let last = seconds(again.course.last_tick() * tick_ns);
+    let duration = options.duration.unwrap_or(last);
+    refuse_changes(again, tick, duration)?;
     let bytes = moment(again, tick, options.n_threads)?;
     let begin = |compiled: Compiled, _: &Progress| {
         let resumed = Session::resume(compiled, &bytes);
@@ -125,9 +128,6 @@ pub fn branch(
         Ok(Started { session, origin: "branched" })
     };
     let script = again.script()?;
-    let last = seconds(again.course.last_tick() * tick_ns);
-    let duration = options.duration.unwrap_or(last);
-    refuse_changes(again, tick, duration)?;
     let mut options = launch::Options { duration: Some(duration), ..options.clone() };
     let origin = format!("{} after tick {tick}", again.path.display());
     options.facts.push(("branched_from", origin));

@@ -10,6 +10,7 @@ use std::{
     io,
     path::PathBuf,
     sync::{Arc, mpsc::Receiver},
+    time::Duration,
 };
 
 use crate::{
@@ -47,6 +48,8 @@ pub struct Options {
     pub topics: Vec<String>,
     /// Not these.
     pub exclude: Vec<String>,
+    /// Time between announcing the topics and the first message, for readers to find them.
+    pub delay: Duration,
     /// Publish recorded time this often in wall time, in place of the recorded clock [Hz].
     pub clock_rate: Option<f64>,
 }
@@ -137,6 +140,7 @@ pub fn play(
         is_open: BTreeMap::new(),
         played: Played::default(),
     };
+    player.announce(files)?;
     let mut start_ns = options.start_ns;
     loop {
         match player.pass(files, start_ns)? {
@@ -172,6 +176,19 @@ struct Player<'a> {
 }
 
 impl Player<'_> {
+    /// Opens the topics that are known before the first message, and waits for readers.
+    fn announce(&mut self, files: &[PathBuf]) -> io::Result<()> {
+        for (_, item) in items(files)? {
+            match item {
+                Item::Channel(channel) => drop(self.is_played(&channel)),
+                Item::Message(_) => break,
+                _ => {}
+            }
+        }
+        std::thread::sleep(self.options.delay);
+        Ok(())
+    }
+
     /// Plays once through the files from `start_ns` on.
     fn pass(&mut self, files: &[PathBuf], start_ns: u64) -> io::Result<Ending> {
         let mut latched: BTreeMap<String, Recorded> = BTreeMap::new();

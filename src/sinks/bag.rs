@@ -131,6 +131,8 @@ pub struct Bag {
     chain: Chain,
     /// Digest of the last state.
     digest: u64,
+    /// Number of the last packet.
+    number: u64,
     /// Why the recording has ended early.
     fault: Option<BagError>,
     flushed_at: Instant,
@@ -168,6 +170,7 @@ impl Bag {
             latched: BTreeMap::new(),
             chain: Chain::new(&subject.scene_text),
             digest: 0,
+            number: 0,
             fault: None,
             flushed_at: now(),
             reporter: BagReporter::default(),
@@ -204,6 +207,12 @@ impl Bag {
         self.files.push(Contents::new(name, self.topics.len()));
         self.file = Some(OpenFile::create(&self.path(), &self.topics, &self.subject)?);
         Ok(())
+    }
+
+    /// True for a packet that is shown once more while time stands still.
+    fn is_known(&mut self, packet: &Packet) -> bool {
+        let before = std::mem::replace(&mut self.number, packet.number);
+        packet.number != 0 && packet.number == before
     }
 
     /// Records a packet's commands and messages, its digest and its checkpoints.
@@ -378,6 +387,9 @@ impl Sink for Bag {
     fn write(&mut self, packet: &Packet) -> Result<(), Box<dyn Error + Send + Sync>> {
         if let Some(fault) = &self.fault {
             return Err(Box::new(fault.clone()));
+        }
+        if self.is_known(packet) {
+            return Ok(());
         }
         let outcome = self.record(packet);
         Ok(self.conclude(outcome)?)

@@ -1,21 +1,27 @@
 //! Recordings: what goes in comes out, in other people's libraries too; full disks lose nothing.
 
 use std::{
-    collections::BTreeMap, fs, path::Path, process::Command as Process, sync::Arc, time::Duration,
+    collections::BTreeMap, fs, io::Write, path::Path, process::Command as Process, sync::Arc,
+    time::Duration,
 };
 
 use jamgrip::{
+    base::{
+        Vec3,
+        random::{Random, Stream},
+    },
     scene::BagCompression,
     sinks::{
-        Sink,
+        Packet, Sink,
         bag::{Bag, BagError, BagReport, Format, Subject},
         fanout::{Delivery, Fanout},
     },
+    snapshot::{GrainsSnapshot, MembraneSnapshot},
     wire::to_ros::Encoder,
 };
 use serde_json::Value;
 
-use crate::{peers, synthetic};
+use crate::{by_tick, peers, synthetic};
 
 const SCENE_TEXT: &str = "name: synthetic\n";
 /// Digest of the state after 1000 ticks, in `synthetic::snapshot`.
@@ -369,4 +375,76 @@ fn a_recording_becomes_a_page() {
         assert!(page.contains(told), "{told}");
     }
     assert_eq!(page.matches("<figure>").count(), 6);
+}
+
+/// Processor time of this process's thread of that name [s].
+fn thread_time_s(name: &str) -> f64 {
+    for task in fs::read_dir("/proc/self/task").unwrap().map(|it| it.unwrap().path()) {
+        let read = |file: &str| fs::read_to_string(task.join(file)).unwrap_or_default();
+        if read("comm").trim() != name {
+            continue;
+        }
+        // After the name in parentheses: the 12th and 13th fields are ticks of a hundredth.
+        let stat = read("stat");
+        let fields: Vec<&str> = stat.rsplit(") ").next().unwrap().split(' ').collect();
+        let ticks: f64 = fields[11..13].iter().map(|it| it.parse::<f64>().unwrap()).sum();
+        return ticks / 100.0;
+    }
+    panic!("no thread {name}");
+}
+
+/// 1 kHz of states and 100 Hz of all grains and vertices, as fast as real time, with numbers that do
+/// not compress, for two seconds or `JAMGRIP_RECORD_SECONDS`. Oracle: nothing is dropped, though
+/// the queue may drop; what was given is what is there.
+#[test]
+fn a_recording_keeps_up_with_real_time() {
+    let seconds = std::env::var("JAMGRIP_RECORD_SECONDS").ok().and_then(|it| it.parse().ok());
+    let n_ticks: u64 = 1000 * seconds.unwrap_or(2);
+    let mut scene = by_tick::scene();
+    scene.outputs.state_rate = 1000.0;
+    scene.outputs.pressure_rate = 1000.0;
+    let encoder = Arc::new(Encoder::new(&scene, &[], &[]));
+    let mut noise = Random::new(1, Stream::Position);
+    let mut vectors = |n: usize| -> Vec<Vec3> {
+        (0..n).map(|_| Vec3::from_fn(|_, _| noise.between(-1.0, 1.0))).collect()
+    };
+    let lists: Vec<(Vec<Vec3>, Vec<Vec3>)> =
+        (0..8).map(|_| (vectors(by_tick::N_GRAINS), vectors(by_tick::N_VERTICES))).collect();
+    let folder = tempfile::tempdir().unwrap();
+    let place = folder.path().join("bag");
+    let bag = Bag::create(&place, encoder, subject()).unwrap();
+    let reporter = bag.reporter();
+    let mut fanout = Fanout::new();
+    fanout.add(Box::new(bag), Delivery::Latest { depth: 1000 }).unwrap();
+    let mut system = by_tick::Synthetic::new("cylinder");
+    let (grains, membrane) = (system.grains(), system.membrane());
+    #[expect(clippy::disallowed_methods, reason = "real time is what is tested")]
+    let start = std::time::Instant::now();
+    for tick in 1..=n_ticks {
+        system.snapshot.tick = jamgrip::base::Tick(tick);
+        system.snapshot.time_ns = tick * 1_000_000;
+        let mut snapshot = system.snapshot.clone();
+        if tick.is_multiple_of(10) {
+            let (of_grains, of_vertices) = &lists[usize::try_from(tick / 10 % 8).unwrap()];
+            snapshot.grains =
+                Some(GrainsSnapshot { positions: of_grains.clone(), ..grains.clone() });
+            let positions = of_vertices.clone();
+            snapshot.membrane = Some(MembraneSnapshot { positions, ..membrane.clone() });
+        }
+        fanout.publish(&Arc::new(Packet::new(snapshot, None)));
+        let due = Duration::from_millis(tick);
+        std::thread::sleep(due.saturating_sub(start.elapsed()));
+    }
+    let share = thread_time_s("sink-bag") / start.elapsed().as_secs_f64();
+    let (ends, faults) = fanout.close(Duration::from_secs(60));
+    assert!(faults.is_empty(), "{faults:?}");
+    let counters = &ends[0].counters;
+    assert_eq!((counters.n_dropped, counters.n_written), (0, n_ticks));
+    let counts: BTreeMap<String, u64> = reporter.report().message_counts.into_iter().collect();
+    assert_eq!((counts["/jamgrip/wrench"], counts["/jamgrip/grains"]), (n_ticks, n_ticks / 10));
+    assert_eq!(counts["/jamgrip/membrane"], n_ticks / 10);
+    let n_bytes = fs::metadata(place.join("bag_0.mcap")).unwrap().len();
+    // For people who ask with `--nocapture`.
+    let text = format!("{n_ticks} ticks, {n_bytes} bytes, {:.1} % of a processor", 100.0 * share);
+    writeln!(std::io::stderr().lock(), "{text}").unwrap();
 }

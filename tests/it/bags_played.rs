@@ -73,6 +73,7 @@ fn options() -> Options {
         is_loop: false,
         topics: Vec::new(),
         exclude: Vec::new(),
+        delay: Duration::ZERO,
         clock_rate: None,
     }
 }
@@ -168,4 +169,62 @@ fn cues_are_read_and_refused() {
     for wrong in ["seek", "seek -1s", "seek 3", "rate 0", "rate fast", "stop"] {
         assert!(Cue::parse(wrong).is_err(), "{wrong}");
     }
+}
+
+/// Oracle: the recording; the clock is 1 kHz there, and told at 100 Hz of wall time here.
+#[cfg(feature = "ros")]
+#[test]
+fn a_played_recording_reaches_a_subscriber() {
+    use jamgrip::{
+        replay::stage::RosStage,
+        sinks::ros::RosNode,
+        wire::{
+            messages::{geometry_msgs::WrenchStamped, rosgraph_msgs::Clock, tf2_msgs::TFMessage},
+            topics::{Topic, topics},
+        },
+    };
+
+    use crate::private_network::{inside, reach};
+
+    inside("bags_played::a_played_recording_reaches_a_subscriber", || {
+        let folder = tempfile::tempdir().unwrap();
+        let files = record(folder.path());
+        let topic = |name: &str| -> Topic {
+            topics(&synthetic::scene()).into_iter().find(|it| it.name == name).unwrap()
+        };
+        let there = RosNode::join_as("listener", &reach()).unwrap();
+        let wrench = there.subscription::<WrenchStamped>(&topic("/jamgrip/wrench")).unwrap();
+        let clock = there.subscription::<Clock>(&topic("/clock")).unwrap();
+        let mut stage = RosStage::join(&reach(), true).unwrap();
+        let options = Options {
+            rate: 1.0,
+            delay: Duration::from_secs(2),
+            clock_rate: Some(100.0),
+            exclude: vec!["/jamgrip/*_cmd".to_owned()],
+            ..options()
+        };
+        let (_teller, listener) = mpsc::channel();
+        let played = play(&files, &options, &mut stage, &listener, &Shutdown::default()).unwrap();
+        assert!(played.refused.is_empty() && stage.faults.0 == 0, "{:?}", stage.faults);
+        let (mut forces, mut times, mut late) = (Vec::new(), Vec::new(), None);
+        let frames = there.subscription::<TFMessage>(&topic("/tf_static")).unwrap();
+        let begin = now();
+        while now() - begin < Duration::from_secs(60) && (forces.len() < 40 || late.is_none()) {
+            while let Some((message, _)) = wrench.take().unwrap() {
+                forces.push((message.header.stamp.nanosec / 1_000_000, message.wrench.force.z));
+            }
+            while let Some((message, _)) = clock.take().unwrap() {
+                times.push(message.clock.nanosec);
+            }
+            late = late.or_else(|| frames.take().unwrap());
+            std::thread::sleep(Duration::from_millis(2));
+        }
+        // Who comes late gets the frames that stay, though they were published long ago.
+        assert!(late.is_some());
+        let expected: Vec<(u32, f64)> = (1..=40).map(|i| (10 * i, -9.81)).collect();
+        // A subscription keeps ten; the last ones are there, in order.
+        let n = forces.len();
+        assert!(10 <= n && forces == expected[40 - n..], "{forces:?}");
+        assert!(!times.is_empty() && times.windows(2).all(|it| it[0] < it[1]), "{times:?}");
+    });
 }

@@ -37,7 +37,8 @@ impl Running {
         let child = Command::new(env!("CARGO_BIN_EXE_jamgrip"))
             .arg("run")
             .arg(&scene)
-            .args(["--set", "controller=topics", "--no-bag", "--no-stream", "--threads", "1"])
+            .args(["--set", "controller=topics", "--no-stream", "--threads", "1"])
+            .args(if more.contains(&"--bag") { None } else { Some("--no-bag") })
             .args(changes.iter().flat_map(|it| ["--set", it]))
             .args(["--cache", concat!(env!("CARGO_TARGET_TMPDIR"), "/starts")])
             .args(more)
@@ -46,6 +47,15 @@ impl Running {
             .spawn()
             .unwrap();
         Self(child)
+    }
+}
+
+impl Running {
+    /// Asks it to end, and waits until it has.
+    pub(crate) fn end(mut self) {
+        let kill = Command::new("kill").args(["-INT", &self.0.id().to_string()]).status();
+        assert!(kill.unwrap().success());
+        self.0.wait().unwrap();
     }
 }
 

@@ -1,6 +1,6 @@
 //! What ROS 2 users ask of a simulator, asked of the whole program from outside.
 
-use std::{process::Command, time::Duration};
+use std::{path::Path, process::Command, time::Duration};
 
 use jamgrip::{
     command::change::{Change, ChangeRefused},
@@ -42,7 +42,9 @@ use crate::{
 
 fn conformance(changes: &[&str], arguments: &[&str]) {
     let folder = tempfile::tempdir().unwrap();
-    let _node = Running::start(folder.path(), changes);
+    let bag = folder.path().join("bag");
+    let bag = bag.to_str().unwrap();
+    let node = Running::start_with(folder.path(), changes, &["--bag", bag]);
     let output = Command::new(example("conformance"))
         .args(["--patience", "60"])
         .args(arguments)
@@ -54,6 +56,26 @@ fn conformance(changes: &[&str], arguments: &[&str]) {
     assert!(output.status.success(), "{said}{complained}");
     // A tool that skips everything would pass too.
     assert!(!said.contains("skip"), "everything is advertised:\n{said}");
+    node.end();
+    is_verified(bag);
+}
+
+/// Whatever was done to the world from outside, the recording can be simulated again.
+fn is_verified(bag: &str) {
+    let replay = Command::new(env!("CARGO_BIN_EXE_jamgrip"))
+        .args(["replay", bag, "--verify", "--json"])
+        .output()
+        .unwrap();
+    let told = String::from_utf8_lossy(&replay.stdout);
+    assert!(replay.status.success(), "{told}{}", String::from_utf8_lossy(&replay.stderr));
+    let verdict: serde_json::Value = serde_json::from_str(&told).unwrap();
+    // Oracle: the digests of the run itself; the tool makes some hundred steps.
+    assert!(verdict["ticks"].as_u64().is_some_and(|it| 50 < it), "{verdict}");
+    assert_eq!(verdict["remarks"], serde_json::json!([]));
+    let recording = jamgrip::bag::recording::Recording::open(Path::new(bag)).unwrap();
+    let course = recording.course_of_all(1_000_000).unwrap();
+    assert!(5 < course.changes.len(), "the tool resets, places, spawns and deletes");
+    assert_eq!(course.broken_at, None);
 }
 
 /// Oracle: the standard, as a tool that knows nothing else tries it from outside.

@@ -158,9 +158,8 @@ fn crew(
     outlets.stream = Some(stream);
     let end = std::time::Duration::from_secs_f64(seconds).as_nanos();
     Ok(Crew {
-        gate: Gate::new(Lockstep::OFF),
-        has_missed: false,
         orders: Orders::new(scene, vec![Box::new(source)]),
+        gate: Gate::new(Lockstep::OFF),
         front: None,
         outlets,
         schedule: Schedule::new(&scene.outputs, scene.time.tick_ns),
@@ -172,6 +171,7 @@ fn crew(
         is_real_time: true,
         about: RunStatistics::default(),
         n_packets: 0,
+        has_missed: false,
         checkpoints: Vec::new(),
     })
 }

@@ -110,7 +110,8 @@ impl Plant for Standing {
 
     fn snapshot(&self, parts: Parts) -> Snapshot {
         let time_ns = self.tick * self.tick_ns;
-        Snapshot { tick: Tick(self.tick), time_ns, ..take::snapshot(&self.session, parts) }
+        let (tick, run_tick) = (Tick(self.tick), Tick(self.tick));
+        Snapshot { tick, time_ns, run_tick, ..take::snapshot(&self.session, parts) }
     }
 
     fn view<'a>(&'a self, seen: &'a Snapshot) -> View<'a> {
