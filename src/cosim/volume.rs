@@ -1,5 +1,7 @@
 //! Plain volumes, and whether they overlap: for questions about places.
 
+use std::panic::catch_unwind;
+
 use rapier3d_f64::{
     math::{Pose as ParryPose, Vector},
     parry::{
@@ -55,16 +57,37 @@ impl Volume {
                 (Box::new(Cuboid::new(Vector::new(half.x, half.y, half.z))), (*pose).into())
             }
             Self::Hull { points } => {
+                // What spans nothing is noticed here: the hull's algorithm is made for solids.
+                if !spans(points) {
+                    return Err(
+                        "these points lie on a line: give at least three that do not".into()
+                    );
+                }
                 let points: Vec<Vector> =
                     points.iter().map(|p| Vector::new(p.x, p.y, p.z)).collect();
-                // Flat ones may pass as a hull without a volume.
-                let hull = ConvexPolyhedron::from_convex_hull(&points)
+                // Its inner checks panic on some points that are nearly one; whoever asks may be wrong
+                // without ending the run. Flat ones may pass as a hull without a volume.
+                let made = catch_unwind(|| ConvexPolyhedron::from_convex_hull(&points));
+                let hull = made
+                    .ok()
+                    .flatten()
                     .filter(|hull| hull.mass_properties(1.0).mass() > 0.0)
-                    .ok_or("these points span no convex hull: give at least four that are not flat")?;
+                    .ok_or(
+                        "these points span no convex hull: give at least four that are not flat",
+                    )?;
                 (Box::new(hull), Pose::identity().into())
             }
         })
     }
+}
+
+/// True if the points do not lie on a line.
+fn spans(points: &[Vec3]) -> bool {
+    let Some(first) = points.first() else { return false };
+    let by_length = |a: &Vec3, b: &Vec3| a.norm_squared().total_cmp(&b.norm_squared());
+    let longest = points.iter().map(|it| it - first).max_by(by_length).unwrap_or_default();
+    let across = points.iter().map(|it| (it - first).cross(&longest).norm()).fold(0.0, Real::max);
+    1e-9 * longest.norm_squared() < across
 }
 
 #[cfg(test)]
@@ -87,7 +110,11 @@ mod tests {
             let hull = Volume::Hull { points: corners.to_vec() };
             assert_eq!(cube.overlaps(&hull), Ok(expected), "hull, {gap}");
         }
+        for points in [vec![], vec![Vec3::x(); 5], vec![Vec3::zeros(), Vec3::x(), Vec3::x() * 2.0]]
+        {
+            assert!(cube.overlaps(&Volume::Hull { points }).is_err(), "a line spans nothing");
+        }
         let flat = Volume::Hull { points: vec![Vec3::zeros(), Vec3::x(), Vec3::y()] };
-        assert!(cube.overlaps(&flat).is_err());
+        assert!(cube.overlaps(&flat).is_err(), "a triangle has no volume");
     }
 }

@@ -3,7 +3,10 @@
 
 #[cfg(feature = "bag")]
 use std::time::Duration;
-use std::{path::Path, sync::Arc};
+use std::{
+    path::Path,
+    sync::{Arc, atomic::AtomicU64},
+};
 
 use super::{front::Front, launch::RunError, outlets::Outlets, progress::Progress};
 #[cfg(feature = "bag")]
@@ -57,6 +60,8 @@ pub struct Outside {
     pub sources: Vec<Box<dyn Source>>,
     /// Those who ask.
     pub front: Option<Front>,
+    /// Another simulator's time [ns], if it is followed.
+    pub clock: Option<Arc<AtomicU64>>,
 }
 
 impl Doors<'_> {
@@ -223,7 +228,7 @@ impl Doors<'_> {
                 reach::Reach,
                 ros::{RosNode, RosSink},
             },
-            sources::ros::RosSource,
+            sources::ros::{RosClock, RosSource},
             wire::topics::full_name,
         };
 
@@ -231,6 +236,8 @@ impl Doors<'_> {
         let reach = reach.map_err(|error| error.to_string())?;
         let node = RosNode::join_as(&self.scene.outputs.ros.node, &reach);
         let node = node.map_err(|error| error.to_string())?;
+        let log = Arc::clone(&node);
+        self.progress.tell_too(Box::new(move |text| log.say(text)));
         let announced = Arc::new(Announced::default());
         let sink = RosSink::new(&node, self.encoder).map_err(|error| error.to_string())?;
         let sink = sink.announcing(&announced);
@@ -239,6 +246,12 @@ impl Doors<'_> {
         let delivery = Delivery::Latest { depth: 500 };
         outlets.fanout.add(Box::new(sink), delivery).map_err(|error| error.to_string())?;
         outside.sources.push(Box::new(source));
+        if self.encoder.follows_clock() {
+            let name = full_name(&self.scene.outputs.ros, "/clock");
+            let clock = RosClock::new(&node, &name).map_err(|error| error.to_string())?;
+            outside.clock = Some(clock.time_ns());
+            outside.sources.push(Box::new(clock));
+        }
         let ros = &self.scene.outputs.ros;
         let prefix = ros.interfaces_prefix.as_deref();
         let (mut offers, asked) = asks::asked(&ros.node, prefix);

@@ -136,9 +136,12 @@ pub fn launch_with(
     let Started { mut session, origin } = begin(compiled, &progress)?;
     let end_ns = end_ns(scene, options.duration);
     progress.running(end_ns);
+    let clock = outside.clock.clone();
     let (orders, front) = command(outside);
-    // A script has no commands but its own: nobody waits for others.
-    let gate = Gate::new(if front.is_some() { lockstep(scene) } else { Lockstep::OFF });
+    // Only who commands from outside can be waited for; a script knows its ticks.
+    let in_step = if front.is_some() { lockstep(scene) } else { Lockstep::OFF };
+    let gate = Gate::new(in_step);
+    let gate = if front.is_some() { gate.following(clock, scene.time.tick_ns) } else { gate };
     let mut crew = Crew {
         orders,
         gate,

@@ -1,7 +1,13 @@
 //! Ticks that wait for a controller: a command stamped not before the present time lets some pass.
+//! Or for another simulator: a tick begins when its end is not beyond that one's clock.
 //!
 //! Commands that come while a tick waits are kept for it in the order of arrival, so a controller
 //! that sends everything before its stamped command knows at which tick it acts: the next one.
+
+use std::sync::{
+    Arc,
+    atomic::{AtomicU64, Ordering},
+};
 
 use crate::{
     command::Command,
@@ -15,6 +21,8 @@ pub struct Gate {
     left: u64,
     pending: Vec<Command>,
     has_missed: bool,
+    /// The other simulator's clock, and the length of a tick [ns].
+    clock: Option<(Arc<AtomicU64>, u64)>,
 }
 
 /// What a missed command leads to.
@@ -31,12 +39,17 @@ pub enum Missed {
 impl Gate {
     /// A gate with these rules.
     pub fn new(rules: Lockstep) -> Self {
-        Self { rules, left: 0, pending: Vec::new(), has_missed: false }
+        Self { rules, left: 0, pending: Vec::new(), has_missed: false, clock: None }
     }
 
-    /// True if ticks wait for commands.
+    /// The same that follows a clock [ns], in ticks of `tick_ns`.
+    pub fn following(self, clock: Option<Arc<AtomicU64>>, tick_ns: u64) -> Self {
+        Self { clock: clock.map(|it| (it, tick_ns)), ..self }
+    }
+
+    /// True if ticks wait for others.
     pub fn is_lockstep(&self) -> bool {
-        self.rules.is_on
+        self.rules.is_on || self.clock.is_some()
     }
 
     /// Takes commands that came; `now_ns` is the simulated time.
@@ -50,13 +63,23 @@ impl Gate {
         self.pending.extend(commands);
     }
 
-    /// True if the next tick may begin; `is_asked_for` says that someone waits for steps.
-    pub fn is_open(&self, is_asked_for: bool) -> bool {
-        !self.rules.is_on || is_asked_for || 0 < self.left
+    /// True if the next tick may begin; `is_asked_for` says that someone waits for steps, `now_ns` is
+    /// the simulated time.
+    pub fn is_open(&self, is_asked_for: bool, now_ns: u64) -> bool {
+        if is_asked_for {
+            return true;
+        }
+        match &self.clock {
+            Some((clock, tick_ns)) => now_ns + tick_ns <= clock.load(Ordering::Acquire),
+            None => !self.rules.is_on || 0 < self.left,
+        }
     }
 
     /// The next tick begins, under these commands.
     pub fn pass(&mut self) -> Vec<Command> {
+        if self.clock.is_some() {
+            self.has_missed = false;
+        }
         self.left = self.left.saturating_sub(1);
         std::mem::take(&mut self.pending)
     }
@@ -91,14 +114,26 @@ mod tests {
         let mut gate = Gate::new(Lockstep { is_on: true, steps_per_command: 2, ..Lockstep::OFF });
         gate.offer(vec![Command::Vacuum { gauge_pa: -1.0 }], 5_000_000);
         gate.offer(joints(4_999_999), 5_000_000);
-        assert!(!gate.is_open(false), "no stamp, or one of the past");
-        assert!(gate.is_open(true), "steps that are asked for wait for nobody");
+        assert!(!gate.is_open(false, 0), "no stamp, or one of the past");
+        assert!(gate.is_open(true, 0), "steps that are asked for wait for nobody");
         gate.offer(joints(5_000_000), 5_000_000);
-        assert!(gate.is_open(false));
+        assert!(gate.is_open(false, 0));
         assert_eq!(gate.pass().len(), 3, "all of them, in one tick");
-        assert!(gate.is_open(false));
+        assert!(gate.is_open(false, 0));
         assert!(gate.pass().is_empty());
-        assert!(!gate.is_open(false), "two ticks have passed");
+        assert!(!gate.is_open(false, 0), "two ticks have passed");
+    }
+
+    /// Oracle: the contract. No tick ends beyond the other clock.
+    #[test]
+    fn ticks_follow_another_clock() {
+        let clock = Arc::new(AtomicU64::new(0));
+        let gate = Gate::new(Lockstep { follows_clock: true, ..Lockstep::OFF });
+        let gate = gate.following(Some(Arc::clone(&clock)), 1_000_000);
+        assert!(gate.is_lockstep() && !gate.is_open(false, 0));
+        clock.store(2_500_000, Ordering::Release);
+        let open: Vec<bool> = (0..3).map(|tick| gate.is_open(false, tick * 1_000_000)).collect();
+        assert_eq!(open, [true, true, false]);
     }
 
     /// Oracle: the contract. A missed command is noticed once, until one comes.

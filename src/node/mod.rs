@@ -176,7 +176,7 @@ impl Crew {
             commands.extend(self.front.iter_mut().flat_map(Front::take_commands));
             self.gate.offer(commands, seen.time_ns);
         }
-        is_playing && self.gate.is_open(is_stepping)
+        is_playing && self.gate.is_open(is_stepping, seen.time_ns)
     }
 
     /// Answers questions, and shows what they have changed.

@@ -4,6 +4,7 @@
 use std::{
     fmt::Display,
     io::{self, Write},
+    sync::{Mutex, PoisonError},
     time::Duration,
 };
 
@@ -20,14 +21,20 @@ const SETTLE_STEPS: u64 = 1000;
 /// The line on standard error.
 pub struct Progress {
     bar: ProgressBar,
+    /// Who is told the same.
+    others: Mutex<Vec<Teller>>,
 }
+
+/// Tells a text to someone else.
+type Teller = Box<dyn Fn(&str) + Send>;
 
 impl Progress {
     /// A line for a terminal; `is_quiet` and pipes get none.
     pub fn new(is_quiet: bool) -> Self {
         let target =
             if is_quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
-        Self { bar: ProgressBar::with_draw_target(Some(SETTLE_STEPS), target) }
+        let bar = ProgressBar::with_draw_target(Some(SETTLE_STEPS), target);
+        Self { bar, others: Mutex::default() }
     }
 
     /// The filling of the bag: `share` of the longest time it can take.
@@ -89,6 +96,13 @@ impl Progress {
             // If standard error is gone there is nobody to tell.
             drop(writeln!(io::stderr().lock(), "jamgrip: {text}"));
         });
+        let others = self.others.lock().unwrap_or_else(PoisonError::into_inner);
+        others.iter().for_each(|tell| tell(&text.to_string()));
+    }
+
+    /// From now on someone else is told what is said.
+    pub fn tell_too(&self, tell: Teller) {
+        self.others.lock().unwrap_or_else(PoisonError::into_inner).push(tell);
     }
 
     /// Removes the line.

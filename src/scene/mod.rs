@@ -245,11 +245,13 @@ pub enum Controller {
     },
 }
 
-/// Whether ticks wait for commands, and for how long.
+/// Whether ticks wait for commands or another simulator's clock, and for how long.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lockstep {
     /// True if they do: a command stamped not before the present time lets time go on.
     pub is_on: bool,
+    /// True if time follows `/clock`, which another simulator publishes; it is not published here.
+    pub follows_clock: bool,
     /// How many ticks such a command lets pass.
     pub steps_per_command: u64,
     /// Wall time after which a command is missed; `None` waits for ever [s].
@@ -260,8 +262,13 @@ pub struct Lockstep {
 
 impl Lockstep {
     /// Ticks wait for nobody.
-    pub const OFF: Self =
-        Self { is_on: false, steps_per_command: 1, timeout: None, on_timeout: OnTimeout::Hold };
+    pub const OFF: Self = Self {
+        is_on: false,
+        follows_clock: false,
+        steps_per_command: 1,
+        timeout: None,
+        on_timeout: OnTimeout::Hold,
+    };
 }
 
 /// What is done when a command is missed.

@@ -228,8 +228,14 @@ fn controller(walk: &mut impl Walk, controller: &mut Controller, object: &str) {
 }
 
 fn lockstep(walk: &mut impl Walk, it: &mut Lockstep) {
-    let current = if it.is_on { "wait_command" } else { "none" };
-    it.is_on = walk.choice("lockstep", &["none", "wait_command"], current) == "wait_command";
+    let current = match (it.is_on, it.follows_clock) {
+        (true, _) => "wait_command",
+        (false, true) => "external_clock",
+        (false, false) => "none",
+    };
+    let known = ["none", "wait_command", "external_clock"];
+    let chosen = walk.choice("lockstep", &known, current);
+    (it.is_on, it.follows_clock) = (chosen == "wait_command", chosen == "external_clock");
     walk.whole("steps_per_command", 1, 1_000_000, &mut it.steps_per_command);
     let wall = Quantity::above_zero(&TIME);
     walk.quantity_or("command_timeout", "unlimited", wall, &mut it.timeout);

@@ -14,6 +14,9 @@ use crate::{
     },
 };
 
+/// Points that a convex hull may have.
+const POINTS_MAX: usize = 1000;
+
 /// A volume in the world.
 pub(super) struct Volume(volume::Volume);
 
@@ -31,7 +34,9 @@ impl Volume {
                 let pose = Pose::translation(middle.x, middle.y, middle.z);
                 volume::Volume::Box { pose, half: (a - b).abs() / 2.0 }
             }
-            (Bounds::TYPE_CONVEX_HULL, [_, _, _, ..]) => volume::Volume::Hull { points },
+            (Bounds::TYPE_CONVEX_HULL, [_, _, _, ..]) if points.len() <= POINTS_MAX => {
+                volume::Volume::Hull { points }
+            }
             (Bounds::TYPE_SPHERE, &[centre, size]) if 0.0 <= size.x => {
                 volume::Volume::Ball { centre, radius: size.x }
             }

@@ -177,6 +177,12 @@ impl RosNode {
         self.open(topic, |node, it| node.create_subscription(it, None))
     }
 
+    /// Says something on `/rosout`, as a warning.
+    pub fn say(&self, text: &str) {
+        let node = self.node.lock().unwrap_or_else(PoisonError::into_inner);
+        ros2_client::rosout!((*node), ros2_client::ros2::LogLevel::Warn, "{text}");
+    }
+
     /// The participant itself, for services.
     pub fn participant(&self) -> rustdds::DomainParticipant {
         self.context.domain_participant()
@@ -238,13 +244,14 @@ impl RosSink {
     /// # Errors
     /// When a topic cannot be opened.
     pub fn new(node: &Arc<RosNode>, encoder: &Arc<Encoder>) -> Result<Self, RosError> {
-        let open = |topic: &Topic| {
-            if topic.is_input {
+        let open = |(index, topic): (usize, &Topic)| {
+            let is_others = index == common(Common::Clock) && encoder.follows_clock();
+            if topic.is_input || is_others {
                 return Ok(None);
             }
             node.publisher(topic).map(|it| Some((topic.name.clone(), it)))
         };
-        let publishers = encoder.topics().iter().map(open).collect::<Result<_, _>>()?;
+        let publishers = encoder.topics().iter().enumerate().map(open).collect::<Result<_, _>>()?;
         let sink = Self {
             publishers,
             encoder: Arc::clone(encoder),

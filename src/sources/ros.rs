@@ -1,7 +1,10 @@
 //! Commands from ROS 2 topics: subscriptions that fill the inbox on a thread of their own.
 
 use std::{
-    sync::{Arc, Mutex, MutexGuard, PoisonError},
+    sync::{
+        Arc, Mutex, MutexGuard, PoisonError,
+        atomic::{AtomicU64, Ordering},
+    },
     thread::JoinHandle,
     time::Duration,
 };
@@ -18,9 +21,10 @@ use crate::{
     wire::{
         messages::{
             RosMessage, geometry_msgs::PoseStamped, jamgrip_msgs::ObjectCommand,
-            sensor_msgs::JointState, std_msgs::Float64,
+            rosgraph_msgs::Clock, sensor_msgs::JointState, std_msgs::Float64,
         },
         to_ros::Encoder,
+        topics::{Qos, Topic},
     },
 };
 
@@ -79,6 +83,90 @@ impl Source for RosSource {
 }
 
 impl Drop for RosSource {
+    fn drop(&mut self) {
+        self.stop.close();
+        if let Some(listener) = self.listener.take() {
+            // A listener that panicked has nothing left to stop.
+            drop(listener.join());
+        }
+    }
+}
+
+/// The clock of another simulator, for a run that follows it.
+pub struct RosClock {
+    time_ns: Arc<AtomicU64>,
+    stop: channel::Sender<()>,
+    listener: Option<JoinHandle<()>>,
+    _node: Arc<RosNode>,
+}
+
+impl RosClock {
+    /// Listens to the clock of this name from now on.
+    ///
+    /// # Errors
+    /// When it cannot be opened.
+    pub fn new(node: &Arc<RosNode>, name: &str) -> Result<Self, RosError> {
+        let topic = Topic {
+            name: name.to_owned(),
+            type_name: Clock::TYPE.name,
+            message_type: Clock::TYPE,
+            // Only the last one matters, and any publisher will do.
+            qos: Qos { is_reliable: false, depth: 1, is_latched: false },
+            is_input: true,
+        };
+        let subscription = node.subscription::<Clock>(&topic)?;
+        let time_ns = Arc::new(AtomicU64::new(0));
+        let (stop, stopped) = channel::bounded(1);
+        let heard = Arc::clone(&time_ns);
+        let listener = std::thread::Builder::new()
+            .name("ros-clock".to_owned())
+            .spawn(move || {
+                let executor = LocalExecutor::new();
+                executor.spawn(hear_clock(subscription, heard)).detach();
+                // The channel carries nothing: its only news is that it was closed.
+                let _closed = smol::block_on(executor.run(stopped.recv()));
+            })
+            .map_err(|it| RosError::Thread { reason: it })?;
+        Ok(Self { time_ns, stop, listener: Some(listener), _node: Arc::clone(node) })
+    }
+
+    /// Its time, as it goes on [ns].
+    pub fn time_ns(&self) -> Arc<AtomicU64> {
+        Arc::clone(&self.time_ns)
+    }
+}
+
+async fn hear_clock(subscription: Subscription<Clock>, heard: Arc<AtomicU64>) {
+    let mut messages = std::pin::pin!(subscription.async_stream());
+    while let Some(message) = messages.next().await {
+        if let Ok((Clock { clock }, _)) = message
+            && let Ok(seconds) = u64::try_from(clock.sec)
+        {
+            let time_ns = seconds * 1_000_000_000 + u64::from(clock.nanosec);
+            heard.store(time_ns, Ordering::Release);
+        }
+    }
+}
+
+impl Source for RosClock {
+    fn name(&self) -> &'static str {
+        "clock"
+    }
+
+    fn drain(&mut self, _seen: &Snapshot) -> Vec<Command> {
+        Vec::new()
+    }
+
+    fn has_heard(&self) -> bool {
+        0 < self.time_ns.load(Ordering::Acquire)
+    }
+
+    fn counters(&self) -> SourceCounters {
+        SourceCounters::default()
+    }
+}
+
+impl Drop for RosClock {
     fn drop(&mut self) {
         self.stop.close();
         if let Some(listener) = self.listener.take() {

@@ -93,7 +93,6 @@ fn expected_counts() -> BTreeMap<String, u64> {
         ("/jamgrip/ready", 0),
         ("/jamgrip/world_change", 0),
         ("/jamgrip/state_digest", 1000),
-        ("/jamgrip/world_change", 0),
         ("/jamgrip/object/cylinder/contact_wrench", state),
         ("/jamgrip/object/cylinder/pose", state),
         ("/jamgrip/object/cylinder/twist", state),

@@ -313,3 +313,32 @@ fn a_controller_in_lockstep_misses_no_tick() {
         assert!((seen.gauge_setpoint + 0.75 * STRONGEST).abs() < 1e-6, "{}", seen.gauge_setpoint);
     });
 }
+
+/// Oracle: the other clock. Time comes to it and stands there, and nobody else publishes it.
+#[test]
+fn time_follows_the_clock_of_another_simulator() {
+    inside("ros_gripper::time_follows_the_clock_of_another_simulator", || {
+        let folder = tempfile::tempdir().unwrap();
+        let changes = ["topics.lockstep=external_clock", "outputs.state_rate=1000 Hz"];
+        let _program = Running::start(folder.path(), &changes);
+        let node = RosNode::join_as("other", &reach()).unwrap();
+        let joints = node.subscription::<JointState>(&topic("/jamgrip/joint_states")).unwrap();
+        let clock = node.publisher(&topic("/clock")).unwrap();
+        wait_until("the node's ear", || 0 < node.n_readers("/clock"));
+        for milliseconds in [7_u32, 40, 41] {
+            let mut message = Clock::default();
+            // Half a tick beyond: a tick that would end later does not begin.
+            message.clock.nanosec = milliseconds * 1_000_000 + 500_000;
+            clock.publish(Body::new(message.to_cdr())).unwrap();
+            let mut now = None;
+            wait_until("that time", || {
+                now = last(&joints).map(|it| it.header.stamp.nanosec).or(now);
+                now.is_some_and(|it| milliseconds * 1_000_000 <= it)
+            });
+            std::thread::sleep(Duration::from_millis(100));
+            let now = last(&joints).map_or(now.unwrap(), |it| it.header.stamp.nanosec);
+            assert_eq!(now, milliseconds * 1_000_000, "time stands at the other clock");
+        }
+        assert_eq!(node.n_writers("/clock"), 0, "nobody else publishes it");
+    });
+}

@@ -38,10 +38,13 @@ class Node:
         reader = DataReader(self.participant, topic, qos=qos)
         found = {}
         deadline = time.monotonic() + timeout_s
-        while time.monotonic() < deadline and not found:
+        while time.monotonic() < deadline:
             for info in reader.take(N=100):
                 for node in getattr(info, "node_entities_info_seq", []):
                     name = node.node_namespace.rstrip("/") + "/" + node.node_name
+                    if not found:
+                        # A node tells of itself anew with every topic it opens.
+                        deadline = time.monotonic() + 0.5
                     found[name] = (len(node.reader_gid_seq), len(node.writer_gid_seq))
             time.sleep(0.02)
         return found

@@ -18,7 +18,7 @@ use super::{
 };
 use crate::{
     base::Vec3,
-    scene::Scene,
+    scene::{Controller, Scene},
     snapshot::{
         Snapshot,
         due::{is_due, is_first_of},
@@ -76,6 +76,11 @@ impl Encoder {
     /// Messages to commands and back.
     pub fn commands(&self) -> &CommandCodec {
         &self.commands
+    }
+
+    /// True if `/clock` is another simulator's.
+    pub fn follows_clock(&self) -> bool {
+        matches!(self.scene.controller, Controller::Topics { lockstep, .. } if lockstep.follows_clock)
     }
 
     /// What never changes and is sent once, before all else: frames that stay, the mesh.
