@@ -117,6 +117,14 @@ pub struct Report<Fault> {
     pub real_time_factor: f64,
 }
 
+/// What comes next.
+enum Turn {
+    /// A tick.
+    Tick,
+    /// Nothing yet; perhaps the run waits for its first command.
+    StandStill { is_waiting: bool },
+}
+
 /// Runs `plant` until there is a reason to end. What was recorded is still open afterwards.
 pub fn run<P: Plant>(plant: &mut P, crew: &mut Crew) -> Report<P::Fault> {
     let mut seen = Arc::new(Packet::new(plant.snapshot(Parts::ALL), None));
@@ -130,8 +138,8 @@ pub fn run<P: Plant>(plant: &mut P, crew: &mut Crew) -> Report<P::Fault> {
         }
         seen = crew.attend(plant, seen); // questions between two ticks
         // Outside to plain values.
-        if !crew.listen(&seen.snapshot) {
-            crew.stand_still(plant, &seen, &mut pacer);
+        if let Turn::StandStill { is_waiting } = crew.listen(&seen.snapshot) {
+            crew.stand_still(plant, &seen, &mut pacer, is_waiting);
             continue;
         }
         if let Err(fault) = plant.tick(&crew.gate.pass()) {
@@ -163,12 +171,13 @@ impl Crew {
         self.front.as_ref().map_or(self.orders.is_waiting(), |it| it.simulator().is_waiting())
     }
 
-    /// Takes the commands that have come; true if the next tick may begin. While time stands still
-    /// they wait where they came in, where the oldest give way; a lockstep needs to see them.
-    fn listen(&mut self, seen: &Snapshot) -> bool {
+    /// Takes the commands that have come, and says what is next. While time stands still they wait
+    /// where they came in, where the oldest give way; a lockstep needs to see them.
+    fn listen(&mut self, seen: &Snapshot) -> Turn {
         // Asked once: a first command that comes right after is for the next look.
+        let is_waiting = self.is_waiting();
         let (is_playing, is_stepping) = match &self.front {
-            None => (!self.orders.is_waiting(), false),
+            None => (!is_waiting, false),
             Some(front) => (front.simulator().may_tick(), front.simulator().is_stepping()),
         };
         if is_playing {
@@ -176,7 +185,8 @@ impl Crew {
             commands.extend(self.front.iter_mut().flat_map(Front::take_commands));
             self.gate.offer(commands, seen.time_ns);
         }
-        is_playing && self.gate.is_open(is_stepping, seen.time_ns)
+        let may_tick = is_playing && self.gate.is_open(is_stepping, seen.time_ns);
+        if may_tick { Turn::Tick } else { Turn::StandStill { is_waiting } }
     }
 
     /// Answers questions, and shows what they have changed.
@@ -204,8 +214,14 @@ impl Crew {
 
     /// Time stands still: waits a moment for someone to change that. Who waits for a first command
     /// is shown the start.
-    fn stand_still<P: Plant>(&mut self, plant: &P, seen: &Arc<Packet>, pacer: &mut Pacer) {
-        if self.is_waiting() && pacer.is_due(WAITING_RATE) {
+    fn stand_still<P: Plant>(
+        &mut self,
+        plant: &P,
+        seen: &Arc<Packet>,
+        pacer: &mut Pacer,
+        is_waiting: bool,
+    ) {
+        if is_waiting && pacer.is_due(WAITING_RATE) {
             self.outlets.publish(&plant.view(&seen.snapshot), seen);
         }
         let patience = if self.gate.is_lockstep() { pacer::NAP } else { pacer::PAUSE };
