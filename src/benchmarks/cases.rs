@@ -36,36 +36,20 @@ pub(super) enum Kind {
     Latency,
 }
 
-/// Grains that lie in a closed box under pressure.
-const fn rest(
+/// Grains that lie in a closed box under pressure, or slide down in an opened, tilted one.
+const fn grains(
     name: &'static str,
     about: &'static str,
+    phase: Phase,
     (n_grains, n_tiles): (usize, [usize; 3]),
     (n_warm, n_steps): (u64, u64),
 ) -> Case {
-    Case {
-        name,
-        about,
-        work: Work { n_warm, n_steps },
-        limits: Limits::PACKED_AT_REST,
-        kind: Kind::Grains(Boxed { n_grains, n_tiles, phase: Phase::Rest }),
-    }
-}
-
-/// Grains that slide down in an opened, tilted box.
-const fn flow(
-    name: &'static str,
-    about: &'static str,
-    (n_grains, n_tiles): (usize, [usize; 3]),
-    (n_warm, n_steps): (u64, u64),
-) -> Case {
-    Case {
-        name,
-        about,
-        work: Work { n_warm, n_steps },
-        limits: Limits::FLOWING,
-        kind: Kind::Grains(Boxed { n_grains, n_tiles, phase: Phase::Flow }),
-    }
+    let limits = match phase {
+        Phase::Rest => Limits::PACKED_AT_REST,
+        Phase::Flow => Limits::FLOWING,
+    };
+    let work = Work { n_warm, n_steps };
+    Case { name, about, work, limits, kind: Kind::Grains(Boxed { n_grains, n_tiles, phase }) }
 }
 
 const ONE: [usize; 3] = [1, 1, 1];
@@ -108,18 +92,37 @@ const fn triaxial(name: &'static str, about: &'static str, case: &'static str) -
 
 /// All cases.
 pub static CASES: &[Case] = &[
-    rest("grains_3k_rest", "3 000 grains in a closed box", (3000, ONE), (200, 1000)),
-    flow("grains_3k_flow", "3 000 grains in an opened, tilted box", (3000, ONE), (200, 1000)),
-    rest("grains_30k_rest", "30 000 grains in a closed box", (30_000, ONE), (30, 200)),
-    flow("grains_30k_flow", "30 000 grains in an opened, tilted box", (30_000, ONE), (50, 400)),
-    rest("grains_300k_rest", "8 x 37 500 grains", (37_500, [2, 2, 2]), (5, 30)),
-    flow(
+    grains("grains_3k_rest", "3 000 grains in a closed box", Phase::Rest, (3000, ONE), (200, 1000)),
+    grains(
+        "grains_3k_flow",
+        "3 000 grains in an opened, tilted box",
+        Phase::Flow,
+        (3000, ONE),
+        (200, 1000),
+    ),
+    grains(
+        "grains_30k_rest",
+        "30 000 grains in a closed box",
+        Phase::Rest,
+        (30_000, ONE),
+        (30, 200),
+    ),
+    grains(
+        "grains_30k_flow",
+        "30 000 grains in an opened, tilted box",
+        Phase::Flow,
+        (30_000, ONE),
+        (50, 400),
+    ),
+    grains("grains_300k_rest", "8 x 37 500 grains", Phase::Rest, (37_500, [2, 2, 2]), (5, 30)),
+    grains(
         "grains_300k_flow",
         "8 x 37 500 grains, opened and tilted",
+        Phase::Flow,
         (37_500, [2, 2, 2]),
         (20, 100),
     ),
-    rest("grains_1m_rest", "27 x 37 500 grains", (37_500, [3, 3, 3]), (3, 10)),
+    grains("grains_1m_rest", "27 x 37 500 grains", Phase::Rest, (37_500, [3, 3, 3]), (3, 10)),
     gripper(
         "gripper_5mpa_free",
         "4200 grains of 5 MPa, bag vented",

@@ -19,6 +19,7 @@ use crate::{
             wall::{WallModel, WallShape},
         },
         contact::law::{PairLaw, Surface},
+        neighbours::weigh_pairs,
         packing::{
             Grown, Growth, Recipe, Room, first_scale, numbering::along_curve, scatter,
             scatter::NoRoom, sphere_volume,
@@ -65,7 +66,7 @@ const OPENED: Real = 1.5;
 /// Standard gravity [m/s²].
 const GRAVITY: Real = 9.81;
 /// Changes whenever the same box would be filled otherwise.
-const VERSION: u64 = 4;
+const VERSION: u64 = 5;
 
 /// Grains in a box.
 #[derive(Clone, Copy, Debug)]
@@ -169,6 +170,7 @@ impl Boxed {
             drag(&mut system, DRAG[0]);
         }
         system.state.grains.masses = masses_of(&system.state.grains);
+        weigh_pairs(&system.state, &mut system.scratch.neighbours);
         come_to_rest(&mut system, N_REST[0]);
         Ok(system.state)
     }

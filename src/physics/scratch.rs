@@ -146,8 +146,6 @@ pub struct NearSamples {
 /// Closest points of the candidate triangles that are awake.
 #[derive(Clone, Default)]
 pub struct CandidateScratch {
-    /// Position of each vertex [m], and nothing.
-    pub vertices: Vec<[Real; 4]>,
     /// Candidates that are awake, ascending: their places in `Neighbours::triangles`.
     pub awake: Vec<u32>,
     /// Where those of each grain of `Neighbours::sheet_grains` begin.

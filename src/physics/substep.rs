@@ -15,6 +15,10 @@ pub static STAGES: &[(&str, Stage)] = &[
     ("neighbours", |model, controls, state, scratch| {
         neighbours::refresh(model, controls, state, scratch);
     }),
+    // Before those that touch the sheet: it brings its vertices into rows, which they read.
+    ("membrane", |model, _, state, scratch| {
+        membrane::forces(&model.membrane, &state.membrane, state.gauge, &mut scratch.membrane);
+    }),
     ("contact_grains", |model, _, state, scratch| {
         let mut springs = std::mem::take(&mut state.springs.pairs);
         let Scratch { neighbours, grain_rows, pair_forces, .. } = scratch;
@@ -23,14 +27,9 @@ pub static STAGES: &[(&str, Stage)] = &[
     }),
     ("contact_membrane", |model, _, state, scratch| {
         let mut springs = std::mem::take(&mut state.springs.patches);
-        let Scratch { neighbours, grain_rows, candidates, patch_forces, .. } = scratch;
-        sheet::forces(
-            model,
-            state,
-            &mut springs,
-            neighbours,
-            (grain_rows, candidates, patch_forces),
-        );
+        let Scratch { neighbours, grain_rows, membrane, candidates, patch_forces, .. } = scratch;
+        let rows = (&**grain_rows, &*membrane.vertices);
+        sheet::forces(model, state, &mut springs, neighbours, rows, (candidates, patch_forces));
         state.springs.patches = springs;
     }),
     ("contact_spheres", |model, _, state, scratch| {
@@ -49,9 +48,6 @@ pub static STAGES: &[(&str, Stage)] = &[
         let Scratch { neighbours, sample_forces, .. } = scratch;
         bodies::forces(model, controls, state, &mut springs, (&neighbours.bodies, sample_forces));
         state.springs.bodies = springs;
-    }),
-    ("membrane", |model, _, state, scratch| {
-        membrane::forces(&model.membrane, &state.membrane, state.gauge, &mut scratch.membrane);
     }),
     ("sums", |model, controls, state, scratch| {
         sums::on_membrane(model, controls, scratch);

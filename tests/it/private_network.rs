@@ -17,18 +17,11 @@ const INSIDE: &str = "JAMGRIP_TEST_PRIVATE_NETWORK";
 /// Printed once the namespace is made and its loopback interface is up.
 const READY: &str = "private network is ready";
 
-/// Brings loopback up and becomes the test. Bare systems have no `ip`; Python does it as well.
-const ENTER: &str = r#"
-ip link set lo up 2>/dev/null || python3 -c '
-import fcntl, socket, struct
-s = socket.socket()
-IFF_UP, SIOCGIFFLAGS, SIOCSIFFLAGS = 1, 0x8913, 0x8914
-flags = struct.unpack("16sh14x", fcntl.ioctl(s, SIOCGIFFLAGS, struct.pack("16sh14x", b"lo", 0)))[1]
-fcntl.ioctl(s, SIOCSIFFLAGS, struct.pack("16sh14x", b"lo", flags | IFF_UP))
-' || exit 1
-echo "private network is ready"
-exec "$0" "$@"
-"#;
+/// Brings loopback up and becomes the test.
+const ENTER: &str = concat!(
+    include_str!("../../src/benchmarks/latency/loopback_up.sh"),
+    "echo \"private network is ready\"\nexec \"$0\" \"$@\"\n"
+);
 
 /// Runs `body` for the test of this name, inside a private network.
 pub(crate) fn inside(test: &str, body: impl FnOnce()) {

@@ -219,11 +219,6 @@ impl Mask for Truths {
     }
 
     #[inline(always)]
-    fn or(self, other: Self) -> Self {
-        Self(unsafe { _mm256_or_pd(self.0, other.0) })
-    }
-
-    #[inline(always)]
     fn not(self) -> Self {
         Self(unsafe {
             let all = _mm256_castsi256_pd(_mm256_set1_epi64x(-1));
@@ -232,7 +227,7 @@ impl Mask for Truths {
     }
 
     #[inline(always)]
-    fn bits(self) -> u32 {
-        unsafe { _mm256_movemask_pd(self.0) }.cast_unsigned()
+    fn any(self) -> bool {
+        (unsafe { _mm256_movemask_pd(self.0) }) != 0
     }
 }

@@ -259,17 +259,12 @@ impl Mask for __mmask8 {
     }
 
     #[inline(always)]
-    fn or(self, other: Self) -> Self {
-        self | other
-    }
-
-    #[inline(always)]
     fn not(self) -> Self {
         !self
     }
 
     #[inline(always)]
-    fn bits(self) -> u32 {
-        u32::from(self)
+    fn any(self) -> bool {
+        self != 0
     }
 }

@@ -71,18 +71,10 @@ pub trait Lanes:
 pub trait Mask: Copy {
     /// Where both hold.
     fn and(self, other: Self) -> Self;
-    /// Where one or both hold.
-    fn or(self, other: Self) -> Self;
     /// Where it does not hold.
     fn not(self) -> Self;
-    /// As bits, the first lane lowest.
-    fn bits(self) -> u32;
-
     /// True if it holds somewhere.
-    #[inline(always)]
-    fn any(self) -> bool {
-        self.bits() != 0
-    }
+    fn any(self) -> bool;
 }
 
 /// Work that can be done at any width. `run` must be `#[inline(always)]`, and what it calls too, so
@@ -116,33 +108,46 @@ pub fn limit(width: Width) {
 #[inline]
 pub fn width() -> Width {
     let limit = LIMIT.load(Ordering::Relaxed);
-    #[cfg(target_arch = "x86_64")]
-    {
-        let has_512 = is_x86_feature_detected!("avx512f")
-            && is_x86_feature_detected!("avx512dq")
-            && is_x86_feature_detected!("avx512vl");
-        if limit >= Width::Eight as u8 && has_512 {
-            return Width::Eight;
+    let fits = |width: &Width| *width as u8 <= limit && has(*width);
+    [Width::Eight, Width::Four].into_iter().find(fits).unwrap_or(Width::One)
+}
+
+/// True if this processor has registers of this width.
+#[inline]
+fn has(width: Width) -> bool {
+    match width {
+        Width::One => true,
+        #[cfg(target_arch = "x86_64")]
+        Width::Four => is_x86_feature_detected!("avx2"),
+        #[cfg(target_arch = "x86_64")]
+        Width::Eight => {
+            is_x86_feature_detected!("avx512f")
+                && is_x86_feature_detected!("avx512dq")
+                && is_x86_feature_detected!("avx512vl")
         }
-        if limit >= Width::Four as u8 && is_x86_feature_detected!("avx2") {
-            return Width::Four;
-        }
+        #[cfg(not(target_arch = "x86_64"))]
+        _ => false,
     }
-    let _ = limit;
-    Width::One
 }
 
 /// Runs `kernel` with the widest registers.
 #[inline]
 pub fn widest(kernel: impl Kernel) {
-    match width() {
+    run_at(width(), kernel);
+}
+
+/// Runs `kernel` with registers of a width that this processor has.
+#[inline]
+fn run_at(width: Width, kernel: impl Kernel) {
+    assert!(has(width), "{width:?} lanes");
+    match width {
         #[cfg(target_arch = "x86_64")]
         #[expect(unsafe_code, reason = "code for a processor's extension")]
-        // SAFETY: `width` has found the extension.
+        // SAFETY: the processor has it.
         Width::Eight => unsafe { avx512::run(kernel) },
         #[cfg(target_arch = "x86_64")]
         #[expect(unsafe_code, reason = "code for a processor's extension")]
-        // SAFETY: `width` has found the extension.
+        // SAFETY: the processor has it.
         Width::Four => unsafe { avx2::run(kernel) },
         _ => kernel.run::<f64>(),
     }

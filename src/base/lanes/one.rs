@@ -94,17 +94,12 @@ impl Mask for bool {
     }
 
     #[inline(always)]
-    fn or(self, other: Self) -> Self {
-        self || other
-    }
-
-    #[inline(always)]
     fn not(self) -> Self {
         !self
     }
 
     #[inline(always)]
-    fn bits(self) -> u32 {
-        u32::from(self)
+    fn any(self) -> bool {
+        self
     }
 }

@@ -8,17 +8,8 @@ use std::{
 
 use crate::benchmarks::{Case, Figures, Options};
 
-/// Brings loopback up and becomes the program. Bare systems have no `ip`; Python does it as well.
-const ENTER: &str = r#"
-ip link set lo up 2>/dev/null || python3 -c '
-import fcntl, socket, struct
-s = socket.socket()
-IFF_UP, SIOCGIFFLAGS, SIOCSIFFLAGS = 1, 0x8913, 0x8914
-flags = struct.unpack("16sh14x", fcntl.ioctl(s, SIOCGIFFLAGS, struct.pack("16sh14x", b"lo", 0)))[1]
-fcntl.ioctl(s, SIOCSIFFLAGS, struct.pack("16sh14x", b"lo", flags | IFF_UP))
-' || exit 1
-exec "$0" "$@"
-"#;
+/// Brings loopback up and becomes the program.
+const ENTER: &str = concat!(include_str!("loopback_up.sh"), "exec \"$0\" \"$@\"\n");
 /// Set inside, so that a namespace that is none does not make another.
 const INSIDE: &str = "JAMGRIP_BENCH_PRIVATE_NETWORK";
 /// Interfaces that a new namespace may have from the start, all of them down.

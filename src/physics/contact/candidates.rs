@@ -12,23 +12,20 @@ use crate::{
     },
     physics::{
         Model,
-        membrane::{contact_geometry::closest, mesh::Mesh},
+        membrane::{VertexRow, contact_geometry::closest, mesh::Mesh},
         scratch::{CandidateScratch, GrainRow, Neighbours},
-        state::State,
     },
 };
 
 /// Finds the closest points of all candidates that are awake.
 pub(super) fn look(
     model: &Model,
-    state: &State,
     lists: &mut Neighbours,
-    rows: &[GrainRow],
+    (rows, vertices): (&[GrainRow], &[VertexRow]),
     scratch: &mut CandidateScratch,
 ) {
-    line_up(state, &mut scratch.vertices);
     wake(lists, scratch);
-    let CandidateScratch { vertices, awake, found, .. } = scratch;
+    let CandidateScratch { awake, found, .. } = scratch;
     found.resize(awake.len(), [0.0; 8]);
     let view = View { mesh: &model.membrane.mesh, lists, rows, vertices };
     parallel::for_parts_of_two(found, awake, |_, found, awake| {
@@ -41,12 +38,6 @@ pub(super) fn look(
             lists.wake_at[k as usize] = lists.travel + (found[0].sqrt() - radius) * (1.0 - 1e-9);
         }
     }
-}
-
-/// Positions of the vertices as rows of four.
-fn line_up(state: &State, vertices: &mut Vec<[Real; 4]>) {
-    vertices.clear();
-    vertices.extend(state.membrane.positions.iter().map(|it| [it.x, it.y, it.z, 0.0]));
 }
 
 /// Lists the candidates that are awake, grain by grain.
@@ -81,7 +72,7 @@ struct View<'a> {
     mesh: &'a Mesh,
     lists: &'a Neighbours,
     rows: &'a [GrainRow],
-    vertices: &'a [[Real; 4]],
+    vertices: &'a [VertexRow],
 }
 
 /// Closest points of candidates.
@@ -115,7 +106,7 @@ impl View<'_> {
         };
         let triangle =
             |lane: usize| &self.mesh.triangles[self.lists.triangles[awake[lane] as usize] as usize];
-        let corner = |lane: usize, k: usize| &self.vertices[triangle(lane)[k] as usize];
+        let corner = |lane: usize, k: usize| &self.vertices[triangle(lane)[k] as usize].place;
         let vector = |[x, y, z, _]: [L; 4]| Vector::new(x, y, z);
         let corners = [
             vector(L::from_rows_of_4(|lane| corner(lane, 0))),

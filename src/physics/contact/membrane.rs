@@ -22,7 +22,7 @@ use crate::{
     base::{Real, Vec3, parallel},
     physics::{
         Model,
-        membrane::contact_geometry::Feature,
+        membrane::{VertexRow, contact_geometry::Feature},
         scratch::{CandidateScratch, GrainRow, Neighbours, PatchForce, PatchForces},
         state::{N_PATCHES, Patch, Patches, State},
     },
@@ -53,19 +53,21 @@ struct Contact {
     overlap: Real,
 }
 
-/// Forces of the membrane on all grains near it; carries their springs on by one substep.
+/// Forces of the membrane on all grains near it; carries their springs on by one substep. `rows` are of
+/// the present positions.
 pub fn forces(
     model: &Model,
     state: &State,
     springs: &mut [Patches],
     lists: &mut Neighbours,
-    (rows, candidates, patch_forces): (&[GrainRow], &mut CandidateScratch, &mut Vec<PatchForces>),
+    rows: (&[GrainRow], &[VertexRow]),
+    (candidates, patch_forces): (&mut CandidateScratch, &mut Vec<PatchForces>),
 ) {
     patch_forces.resize(springs.len(), PatchForces::NONE);
     if lists.sheet_grains.is_empty() {
         return;
     }
-    candidates::look(model, state, lists, rows, candidates);
+    candidates::look(model, lists, rows, candidates);
     let (lists, candidates) = (&*lists, &*candidates);
     parallel::for_listed_of_two(&lists.sheet_grains, patch_forces, springs, |s, force, patches| {
         let mut touched = ArrayVec::new();

@@ -86,7 +86,7 @@ fn forget_patches(lists: &Neighbours, springs: &mut [Patches], forces: &mut Vec<
     }
 }
 
-/// Effective radii and masses of the listed pairs; to be called again whenever grains grow.
+/// Effective radii and masses of the listed pairs; to be called again whenever radii or masses change.
 pub fn weigh_pairs(state: &State, lists: &mut Neighbours) {
     let parallel = |a: f64, b: f64| a * b / (a + b);
     let of_pairs = |quantity: &[f64]| {

@@ -43,8 +43,6 @@ const STUCK: Real = 2e-4;
 const CALM: Real = 0.01;
 /// Windows for which grains at their last size are given time to get calm.
 const N_CALM_WINDOWS: u32 = 3;
-/// Share of the skin by which grains may grow before the lists are built anew.
-const SKIN_SHARE: Real = 0.05;
 
 /// The contact laws that hold while grains grow.
 #[derive(Clone, Copy, Debug)]
@@ -153,8 +151,6 @@ pub struct Growth {
     progress: Progress,
     /// The model's own laws while those of the recipe hold.
     kept: Option<Kept>,
-    /// Common factor when the lists were last known to be complete.
-    scale_listed: Real,
 }
 
 #[derive(Clone, Debug)]
@@ -182,7 +178,7 @@ impl Growth {
     /// Growth that goes on from `progress` with the `State` that belongs to it.
     pub fn resumed(recipe: Recipe, final_radii: Vec<Real>, progress: Progress) -> Self {
         // Nothing is known about lists: the first substep builds them.
-        Self { recipe, final_radii, progress, kept: None, scale_listed: 0.0 }
+        Self { recipe, final_radii, progress, kept: None }
     }
 
     /// How far it is.
@@ -243,16 +239,10 @@ impl Growth {
         }
     }
 
-    /// Makes all grains `scale` times their final size, and sees that no new contact is missed.
+    /// Makes all grains `scale` times their final size.
     fn resize(&mut self, system: &mut System, scale: Real) {
         self.progress.scale = scale;
-        let closer = 2.0 * system.model.radius_max * (scale - self.scale_listed);
-        if closer > SKIN_SHARE * system.model.skin {
-            resize(system, &self.final_radii, scale);
-            self.scale_listed = scale;
-        } else {
-            set_radii(system, &self.final_radii, scale);
-        }
+        resize(system, &self.final_radii, scale);
     }
 
     /// Looks at the window when it is over.
@@ -279,21 +269,15 @@ impl Growth {
     }
 }
 
-/// Makes all grains of `system` `scale` times as large as `final_radii` [m]; the lists are built anew.
+/// Makes all grains of `system` `scale` times as large as `final_radii` [m].
 pub fn resize(system: &mut System, final_radii: &[Real], scale: Real) {
-    set_radii(system, final_radii, scale);
-    let largest = system.state.grains.radii.iter().copied().fold(0.0, Real::max);
-    system.model.radius_max = system.model.radius_max.max(largest);
-    system.scratch.neighbours.is_built = false;
-}
-
-fn set_radii(system: &mut System, final_radii: &[Real], scale: Real) {
-    for (radius, last) in system.state.grains.radii.iter_mut().zip(final_radii) {
+    let System { model, state, scratch, .. } = system;
+    for (radius, last) in state.grains.radii.iter_mut().zip(final_radii) {
         *radius = scale * last;
+        model.radius_max = model.radius_max.max(*radius);
     }
-    if system.scratch.neighbours.is_built {
-        weigh_pairs(&system.state, &mut system.scratch.neighbours);
-    }
+    // The lists are told: they hold only as long as nobody has grown too far.
+    weigh_pairs(state, &mut scratch.neighbours);
 }
 
 /// Mean overlap of touching grains over their distance at first touch.
