@@ -7,7 +7,7 @@ use crate::{
     command::{
         Command, CommandRecord,
         apply::{Desk, Frames},
-        change::{Change, ChangeRefused, Knob, Scope},
+        change::{Change, ChangeRefused, Knob, Scope, SettledScene},
     },
     cosim::{
         Coupled, FLANGE, Inputs, Means,
@@ -46,6 +46,8 @@ pub struct Session {
     means: Means,
     /// What the wrist sensor takes for zero, flange axes.
     sensor_zero: Wrench,
+    /// True once another scene has taken the place of the first.
+    is_loaded: bool,
     /// Properties that are not those of the scene any more.
     turned: Vec<(Knob, f64)>,
     records: Vec<CommandRecord>,
@@ -134,12 +136,12 @@ impl Session {
     }
 
     /// Everything that is needed to go on, as bytes; nothing while there are other objects than the
-    /// scene's own, or in another order.
+    /// scene's own, or in another order, or if the scene is not the first.
     pub fn save(&self) -> Option<Vec<u8>> {
         let names = |objects: &[Object]| objects.iter().map(|it| it.name.clone()).collect();
         let (there, own): (Vec<_>, Vec<_>) =
             (names(&self.scene.objects), names(&self.start.objects));
-        if there != own {
+        if there != own || self.is_loaded {
             return None;
         }
         let (state, world) = (saved_state::write(&self.coupled.state), self.coupled.world.save());
@@ -174,6 +176,7 @@ impl Session {
             run_tick: Tick(0),
             means: no_forces(n_objects),
             sensor_zero: Wrench::zero(),
+            is_loaded: false,
             turned: Vec::new(),
             records: Vec::new(),
             digest: 0,
@@ -230,6 +233,7 @@ impl Session {
                 self.records.clear();
                 return Ok(());
             }
+            Change::LoadScene(settled) => return self.load(settled),
             Change::Insert(object) => self.insert(object)?,
             Change::Remove { object } => {
                 let i = self.find(object)?;
@@ -251,6 +255,30 @@ impl Session {
         retune(&self.scene, &mut self.coupled.model);
         self.turned.retain(|(other, _)| *other != knob);
         self.turned.push((knob, value));
+    }
+
+    /// Begins another scene; ticks of the run and counts of commands go on.
+    fn load(&mut self, settled: &SettledScene) -> Result<(), ChangeRefused> {
+        let SettledScene { scene, start, keeps_time } = settled;
+        let [now, then] = [&self.scene, scene].map(|it| it.time.tick_ns);
+        if now != then {
+            let why = format!("its ticks are {then} ns long, those of this run {now} ns");
+            return Err(ChangeRefused::Unusable(why));
+        }
+        let compiled = Compiled::new(scene, self.pool.current_num_threads())
+            .map_err(|fault| ChangeRefused::Unusable(fault.to_string()))?;
+        let mut next = Self::from_start_state(compiled, start)
+            .map_err(|fault| ChangeRefused::Unusable(fault.to_string()))?;
+        next.run_tick = self.run_tick;
+        next.is_loaded = true;
+        next.desk.count_on(self.desk.counts());
+        if *keeps_time {
+            next.tick = self.tick;
+            next.desk.place_flange(scene.flange.pose, next.time_ns());
+        }
+        next.digest = next.take_digest();
+        *self = next;
+        Ok(())
     }
 
     fn reset(&mut self, scope: Scope) -> Result<(), ChangeRefused> {

@@ -6,7 +6,7 @@ use jamgrip::wire::messages::simulation_interfaces::{
 
 use crate::{
     client::{Client, ensure},
-    entities, running, spawning,
+    entities, running, spawning, worlds,
 };
 
 /// What came of a check.
@@ -83,6 +83,11 @@ const CHECKS: &[Check] = &[
         &[F::SPAWNING, F::DELETING, F::SPAWNING_RESOURCE_STRING],
         spawning::in_and_out,
     ),
+    (
+        "spawn: a mesh and its convex hull",
+        &[F::SPAWNING, F::DELETING, F::SPAWNING_RESOURCE_STRING, F::ENTITY_BOUNDS_CONVEX],
+        spawning::convex_hull,
+    ),
     ("spawn: what is refused", &[F::SPAWNING, F::SPAWNING_RESOURCE_STRING], spawning::refused),
     ("spawn: many at once", &[F::SPAWNING_ENTITIES, F::SPAWNING_RESOURCE_STRING], spawning::many),
     ("spawn: what is there to spawn", &[F::SPAWNABLES, F::SPAWNING], spawning::spawnables),
@@ -92,8 +97,28 @@ const CHECKS: &[Check] = &[
         spawning::gone_after_reset,
     ),
     ("named poses", &[F::NAMED_POSES, F::POSE_BOUNDS], spawning::named_poses),
-    ("worlds: the present one", &[F::WORLD_INFO_GETTING], spawning::current_world),
-    ("worlds: others, by tags", &[F::AVAILABLE_WORLDS, F::WORLD_TAGS], spawning::available_worlds),
+    ("worlds: the present one", &[F::WORLD_INFO_GETTING], worlds::current_world),
+    ("worlds: others, by tags", &[F::AVAILABLE_WORLDS, F::WORLD_TAGS], worlds::available_worlds),
+    (
+        "worlds: unloaded, and loaded again",
+        &[F::WORLD_LOADING, F::WORLD_UNLOADING, F::WORLD_INFO_GETTING, F::SIMULATION_STATE_GETTING],
+        worlds::unloaded_and_loaded,
+    ),
+    (
+        "worlds: loaded from a text",
+        &[F::WORLD_LOADING, F::WORLD_RESOURCE_STRING, F::WORLD_INFO_GETTING],
+        worlds::loaded_from_text,
+    ),
+    (
+        "worlds: what is refused",
+        &[F::WORLD_LOADING, F::WORLD_RESOURCE_STRING, F::WORLD_INFO_GETTING],
+        worlds::refused,
+    ),
+    (
+        "worlds: each in turn",
+        &[F::WORLD_LOADING, F::AVAILABLE_WORLDS, F::WORLD_INFO_GETTING],
+        worlds::others_loaded,
+    ),
     ("reset: what was spawned", &[F::SIMULATION_RESET_SPAWNED], entities::reset_spawned),
     ("reset: everything, twice the same", &[F::SIMULATION_RESET], running::reset_all),
 ];
@@ -141,6 +166,7 @@ fn consistent(features: &[u16]) -> Result<(), String> {
         (F::SIMULATION_STATE_PAUSE, F::SIMULATION_STATE_SETTING),
         (F::STEP_SIMULATION_MULTIPLE, F::STEP_SIMULATION_SINGLE),
         (F::SPAWNING_RESOURCE_STRING, F::SPAWNING),
+        (F::WORLD_RESOURCE_STRING, F::WORLD_LOADING),
     ];
     for (feature, needs) in implied {
         ensure(!has(feature) || has(needs), || format!("feature {feature} without {needs}"))?;

@@ -12,7 +12,8 @@ mod checks; // what is tried
 mod client; // how it is asked
 mod entities; // checks on entities
 mod running; // checks on states, steps and resets
-mod spawning; // checks on spawning, named poses and worlds
+mod spawning; // checks on spawning and named poses
+mod worlds; // checks on worlds
 
 use std::{
     io::{self, Write},

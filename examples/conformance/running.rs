@@ -36,7 +36,8 @@ pub(crate) fn state(client: &mut Client) -> Result<u8, String> {
     Ok(answer.state.state)
 }
 
-fn set(client: &mut Client, state: u8) -> Result<Told, String> {
+/// Asks for a state.
+pub(crate) fn set(client: &mut Client, state: u8) -> Result<Told, String> {
     let request = SetSimulationStateRequest { state: S { state } };
     Ok(client.ask::<srv::SetSimulationState>("set_simulation_state", &request)?.result)
 }

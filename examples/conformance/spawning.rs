@@ -1,4 +1,4 @@
-//! Checks on spawning, named poses and worlds.
+//! Checks on spawning and named poses.
 
 use jamgrip::wire::{
     cdr::Cdr,
@@ -6,17 +6,16 @@ use jamgrip::wire::{
         RosService,
         geometry_msgs::PoseStamped,
         simulation_interfaces::{
-            Bounds, DeleteEntityRequest, GetAvailableWorldsRequest, GetCurrentWorldRequest,
-            GetNamedPoseBoundsRequest, GetNamedPosesRequest, GetSpawnablesRequest,
-            GetSpawnablesResponse, Resource, Result as Told, SimulationState as S,
-            SpawnEntitiesRequest, SpawnEntitiesResponse, SpawnEntity, SpawnEntityRequest,
-            SpawnEntityResponse, SpawnResult, TagsFilter, srv,
+            Bounds, DeleteEntityRequest, GetEntityBoundsRequest, GetNamedPoseBoundsRequest,
+            GetNamedPosesRequest, GetSpawnablesRequest, GetSpawnablesResponse, Resource,
+            Result as Told, SimulationState as S, SpawnEntitiesRequest, SpawnEntitiesResponse,
+            SpawnEntity, SpawnEntityRequest, SpawnEntityResponse, SpawnResult, TagsFilter, srv,
         },
     },
 };
 
 use crate::{
-    client::{Client, ensure, must_be, must_be_ok, must_fail},
+    client::{Client, ensure, must_be, must_be_ok},
     entities::{all, near, pose_of},
     running::{go_to, reset, step},
 };
@@ -198,30 +197,57 @@ pub(crate) fn named_poses(client: &mut Client) -> Result<(), String> {
     must_be("bounds of no pose", &answer.result, Told::RESULT_NOT_FOUND)
 }
 
-pub(crate) fn current_world(client: &mut Client) -> Result<(), String> {
-    let request = GetCurrentWorldRequest::default();
-    let answer = client.ask::<srv::GetCurrentWorld>("get_current_world", &request)?;
-    must_be_ok("get_current_world", &answer.result)?;
-    ensure(!answer.world.name.is_empty(), || "the world has no name".to_owned())
+/// Corners of a regular tetrahedron [m], and its faces seen from outside.
+const TETRAHEDRON: ([[f64; 3]; 4], [[usize; 3]; 4]) = (
+    [[0.02, 0.02, 0.02], [0.02, -0.02, -0.02], [-0.02, 0.02, -0.02], [-0.02, -0.02, 0.02]],
+    [[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]],
+);
+
+/// The same as an STL file.
+fn tetrahedron() -> String {
+    let (corners, faces) = TETRAHEDRON;
+    let mut text = "solid conformance\n".to_owned();
+    for face in faces {
+        text += "facet normal 0 0 0\nouter loop\n";
+        for corner in face {
+            let [x, y, z] = corners[corner];
+            text += &format!("vertex {x} {y} {z}\n");
+        }
+        text += "endloop\nendfacet\n";
+    }
+    text + "endsolid conformance\n"
 }
 
-pub(crate) fn available_worlds(client: &mut Client) -> Result<(), String> {
-    let request = GetAvailableWorldsRequest::default();
-    let answer = client.ask::<srv::GetAvailableWorlds>("get_available_worlds", &request)?;
-    must_be_ok("get_available_worlds", &answer.result)?;
-    for world in answer.worlds.iter().take(3) {
-        let filter =
-            TagsFilter { tags: world.tags.clone(), filter_mode: TagsFilter::FILTER_MODE_ALL };
-        let request = GetAvailableWorldsRequest { filter, ..Default::default() };
-        let found = client.ask::<srv::GetAvailableWorlds>("get_available_worlds", &request)?.worlds;
-        ensure(found.contains(world), || format!("its own tags do not find `{}`", world.name))?;
+/// Only where the simulator can read a file from here; another one says that assets are missing.
+pub(crate) fn convex_hull(client: &mut Client) -> Result<(), String> {
+    let file = std::env::temp_dir().join(format!("conformance_{}.stl", std::process::id()));
+    std::fs::write(&file, tetrahedron()).map_err(|it| format!("{}: {it}", file.display()))?;
+    let mesh = format!("<mesh filename=\"file://{}\"/>", file.display());
+    let mut request = ball("conformance_mesh", 0.75);
+    request.entity_resource.resource_string = BALL.replace("<sphere radius=\"0.02\"/>", &mesh);
+    let spawned = spawn(client, &request);
+    drop(std::fs::remove_file(&file));
+    let spawned = spawned?;
+    if spawned.result.result == SpawnResult::MISSING_ASSETS {
+        return Ok(());
     }
-    let filter = TagsFilter { tags: vec!["no such tag".to_owned()], filter_mode: 0 };
-    let request = GetAvailableWorldsRequest { filter, ..Default::default() };
-    let found = client.ask::<srv::GetAvailableWorlds>("get_available_worlds", &request)?.worlds;
-    ensure(found.is_empty(), || format!("no tag finds {found:?}"))?;
-    let additional_sources = vec!["/no/such/folder".to_owned()];
-    let request = GetAvailableWorldsRequest { additional_sources, ..Default::default() };
-    let answer = client.ask::<srv::GetAvailableWorlds>("get_available_worlds", &request)?;
-    must_fail("worlds from nowhere", &answer.result)
+    must_be_ok("spawning a mesh", &spawned.result)?;
+    let entity = spawned.entity_name.clone();
+    let asked = GetEntityBoundsRequest { entity };
+    let answer = client.ask::<srv::GetEntityBounds>("get_entity_bounds", &asked)?;
+    must_be_ok("get_entity_bounds", &answer.result)?;
+    must_be_ok("delete_entity", &delete(client, &spawned.entity_name)?)?;
+    let Bounds { r#type: kind, points } = &answer.bounds;
+    ensure(*kind == Bounds::TYPE_CONVEX_HULL, || format!("bounds of a mesh are of type {kind}"))?;
+    ensure(points.len() == 4, || format!("a tetrahedron has corners {points:?}"))?;
+    let edge = 0.04 * 2.0_f64.sqrt();
+    for (i, a) in points.iter().enumerate() {
+        for b in &points[..i] {
+            let squares = [a.x - b.x, a.y - b.y, a.z - b.z].map(|it| it * it);
+            let length = squares.iter().sum::<f64>().sqrt();
+            // Formats of meshes keep seven digits.
+            ensure((length - edge).abs() < 1e-6, || format!("an edge of {edge} m is {length} m"))?;
+        }
+    }
+    Ok(())
 }

@@ -8,14 +8,14 @@ use crate::wire::{
         RosMessage,
         jamgrip_msgs::{StateDigest, WorldChange},
     },
-    topics::{NODE, Qos, Topic},
+    topics::{Qos, Topic},
 };
 
-/// The topic of the links; only recordings have it. A tick has another link for each time that
-/// the world was changed after it.
-pub fn topic() -> Topic {
+/// The topic of the links of a node's run; only recordings have it. A tick has another link for each
+/// time that the world was changed after it.
+pub fn topic(node: &str) -> Topic {
     Topic {
-        name: topic_name(),
+        name: topic_name(node),
         type_name: StateDigest::TYPE.name,
         message_type: StateDigest::TYPE,
         qos: Qos { is_reliable: true, depth: 10, is_latched: false },
@@ -24,20 +24,20 @@ pub fn topic() -> Topic {
 }
 
 /// Name of that topic.
-pub fn topic_name() -> String {
-    format!("{NODE}/state_digest")
+pub fn topic_name(node: &str) -> String {
+    format!("{node}/state_digest")
 }
 
 /// The topic of changes of the world between ticks; only recordings have it.
-pub fn changes_topic() -> Topic {
-    let name = changes_topic_name();
+pub fn changes_topic(node: &str) -> Topic {
+    let name = changes_topic_name(node);
     let message_type = WorldChange::TYPE;
-    Topic { name, type_name: message_type.name, message_type, ..topic() }
+    Topic { name, type_name: message_type.name, message_type, ..topic(node) }
 }
 
 /// Name of that topic.
-pub fn changes_topic_name() -> String {
-    format!("{NODE}/world_change")
+pub fn changes_topic_name(node: &str) -> String {
+    format!("{node}/world_change")
 }
 
 /// The chain up to a tick.

@@ -25,6 +25,8 @@ use crate::wire::{
 
 /// The fact that names the topics of commands, in the order of the list of topics.
 pub const INPUTS: &str = "inputs";
+/// The fact that names the node.
+pub const NODE_NAME: &str = "node";
 
 /// What a recording says about its run before anything happens in it.
 #[derive(Clone, Debug, Default)]
@@ -96,11 +98,6 @@ pub struct Place {
     offset: u64,
 }
 
-/// The topic of statistics, which always held some digests.
-fn statistics_topic() -> String {
-    format!("{NODE}/statistics")
-}
-
 impl Recording {
     /// Reads what comes before the first message.
     ///
@@ -137,6 +134,11 @@ impl Recording {
         self.facts.get("version").map(String::as_str).or_else(by_library).unwrap_or("unknown")
     }
 
+    /// Full name of the node that recorded it, below which most of its topics are.
+    pub fn node(&self) -> &str {
+        self.facts.get(NODE_NAME).map_or(NODE, String::as_str)
+    }
+
     /// The topics of commands, where the recording says which: a node may have other names than the
     /// scene says.
     pub fn inputs(&self) -> Option<Vec<String>> {
@@ -166,9 +168,10 @@ impl Recording {
         let mut clerk = Clerk {
             inputs,
             tick_ns,
-            links: chain::topic_name(),
-            changes: chain::changes_topic_name(),
-            statistics: statistics_topic(),
+            links: chain::topic_name(self.node()),
+            changes: chain::changes_topic_name(self.node()),
+            // They held some digests before every tick's was recorded.
+            statistics: format!("{}/statistics", self.node()),
             chain: self.scene_text.as_deref().map(Chain::new),
             sparse: Vec::new(),
             course: Course::default(),
@@ -236,6 +239,7 @@ enum Inputs {
 }
 
 impl Inputs {
+    /// True for the name of a topic of commands.
     fn contains(&self, topic: &str) -> bool {
         match self {
             Self::Named(names) => names.iter().any(|it| it == topic),

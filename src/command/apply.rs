@@ -67,6 +67,11 @@ impl Desk {
         *self = Self { counts, ..Self::new(scene) };
     }
 
+    /// Goes on counting from `counts`.
+    pub fn count_on(&mut self, counts: CommandCounts) {
+        self.counts = counts;
+    }
+
     /// Makes room for an object that comes last.
     pub fn insert(&mut self, object: &Object) {
         self.names.push(object.name.clone());

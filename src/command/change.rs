@@ -45,6 +45,26 @@ pub enum Change {
         /// Name of the object.
         object: String,
     },
+    /// Another scene takes the place of this one.
+    LoadScene(Box<SettledScene>),
+}
+
+/// A scene that can begin at once.
+#[derive(Clone, PartialEq)]
+pub struct SettledScene {
+    /// The scene; its ticks are as long as those of the one before.
+    pub scene: Scene,
+    /// Its settled bag, as a cache of start states keeps it.
+    pub start: Vec<u8>,
+    /// True lets simulated time go on; otherwise it is zero again.
+    pub keeps_time: bool,
+}
+
+impl fmt::Debug for SettledScene {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { scene, start, keeps_time } = self;
+        write!(f, "{scene:?}, start of {} bytes, keeps time: {keeps_time}", start.len())
+    }
 }
 
 impl fmt::Display for Change {
@@ -57,6 +77,7 @@ impl fmt::Display for Change {
             Self::Remove { object } => write!(f, "object `{object}` taken away"),
             Self::ZeroForceSensor => f.write_str("wrist sensor set to zero"),
             Self::Turn { knob, value } => write!(f, "{knob:?} set to {value}"),
+            Self::LoadScene(it) => write!(f, "scene `{}` loaded", it.scene.name),
         }
     }
 }
@@ -171,6 +192,9 @@ pub enum ChangeRefused {
     /// The run was taken up in its middle, and nobody told it how it began.
     #[error("this run was taken up in its middle and does not know its start: reset time only")]
     StartUnknown,
+    /// There is no scene.
+    #[error("no world is loaded: load one first")]
+    NoScene,
     /// This world does not change.
     #[error("this world cannot be changed like that")]
     Unchangeable,

@@ -2,15 +2,15 @@
 //!
 //! All numbers come back with their bits; nothing is checked that was checked when it was changed first.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::change::{Change, Knob, Scope};
+use super::change::{Change, Knob, Scope, SettledScene};
 use crate::{
-    base::{Real, Vec3, real::Twist},
+    base::{Pose, Real, Vec3, real::Twist},
     cosim::saved_state::{pose, pose_row},
-    scene::{Material, Object, Shape},
+    scene::{self, Controller, Material, Object, Scene, Shape},
 };
 
 /// Bytes that are no change that this version knows.
@@ -30,6 +30,7 @@ enum Saved {
     Remove { object: String },
     ZeroForceSensor,
     Turn { knob: Knob, value: Real },
+    LoadScene { text: String, objects: Vec<SavedObject>, start: Vec<u8>, keeps_time: bool },
 }
 
 #[derive(Serialize, Deserialize)]
@@ -70,6 +71,12 @@ impl Change {
             Self::Remove { object } => Saved::Remove { object: object.clone() },
             Self::ZeroForceSensor => Saved::ZeroForceSensor,
             Self::Turn { knob, value } => Saved::Turn { knob: *knob, value: *value },
+            Self::LoadScene(it) => Saved::LoadScene {
+                text: scene::to_yaml(&without_files(&it.scene)),
+                objects: it.scene.objects.iter().map(saved_object).collect(),
+                start: it.start.clone(),
+                keeps_time: it.keeps_time,
+            },
         };
         postcard::to_stdvec(&saved).expect("numbers and names always serialise")
     }
@@ -79,8 +86,8 @@ impl Change {
     /// # Errors
     /// If they are none.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, UnknownChange> {
-        let unknown = |_| UnknownChange { n_bytes: bytes.len() };
-        Ok(match postcard::from_bytes(bytes).map_err(unknown)? {
+        let unknown = || UnknownChange { n_bytes: bytes.len() };
+        Ok(match postcard::from_bytes(bytes).map_err(|_| unknown())? {
             Saved::Reset { time, state, spawned } => Self::Reset(Scope { time, state, spawned }),
             Saved::PlaceObject { object, pose: row, twist } => {
                 let [linear, angular] = twist.map(Vec3::from);
@@ -91,8 +98,35 @@ impl Change {
             Saved::Remove { object } => Self::Remove { object },
             Saved::ZeroForceSensor => Self::ZeroForceSensor,
             Saved::Turn { knob, value } => Self::Turn { knob, value },
+            Saved::LoadScene { text, objects, start, keeps_time } => {
+                let scene = scene::parse(&text, "a loaded scene", Path::new(""), &[]);
+                let mut scene = scene.map_err(|_| unknown())?;
+                scene.objects = objects.into_iter().map(read_object).collect();
+                Self::LoadScene(Box::new(SettledScene { scene, start, keeps_time }))
+            }
         })
     }
+}
+
+/// The scene with one ball, out of everything's way, for all its objects: those are saved as numbers,
+/// because their meshes are in files that may be gone.
+fn without_files(scene: &Scene) -> Scene {
+    let name = match (&scene.controller, scene.objects.first()) {
+        (Controller::Builtin(parameters), _) => parameters.object.clone(),
+        (_, Some(own)) => own.name.clone(),
+        _ => "object".to_owned(),
+    };
+    let flange = scene.flange.pose.translation.vector;
+    let ball = Object {
+        // The built-in controller goes by it.
+        name,
+        shape: Shape::Sphere { radius: 0.01 },
+        material: scene.grains.material,
+        friction: 0.0,
+        pose: Pose::translation(flange.x + 100.0, flange.y, scene.table.height + 1.0),
+        drive_timeout: 0.1,
+    };
+    Scene { objects: vec![ball], ..scene.clone() }
 }
 
 fn saved_object(object: &Object) -> SavedObject {
@@ -183,7 +217,7 @@ mod tests {
             drive_timeout: 0.1,
         };
         let mut changes: Vec<Change> =
-            shapes.into_iter().map(|it| Change::Insert(Box::new(object(it)))).collect();
+            shapes.iter().map(|it| Change::Insert(Box::new(object(it.clone())))).collect();
         let name = || "ball".to_owned();
         changes.push(Change::PlaceObject { object: name(), pose, twist });
         changes.push(Change::PlaceFlange { pose });
@@ -191,6 +225,15 @@ mod tests {
         changes.push(Change::ZeroForceSensor);
         changes.push(Change::Turn { knob: Knob::ObjectFriction, value: 0.1 + 0.2 });
         changes.push(Change::Reset(Scope { time: true, state: false, spawned: true }));
+        let text = "name: x\nobject: { shape: { sphere: { radius: 10 mm } }, position: [0 m, 0 m, 10 mm] }";
+        let mut scene = scene::parse(text, "x", Path::new(""), &["seed=7".to_owned()]).unwrap();
+        for objects in [vec![object(shapes[5].clone()), object(shapes[0].clone())], vec![]] {
+            scene.objects = objects;
+            scene.grains.friction = 0.1 + 0.2;
+            let (scene, start) = (scene.clone(), vec![0, 255, 7]);
+            let settled = SettledScene { scene, start, keeps_time: true };
+            changes.push(Change::LoadScene(Box::new(settled)));
+        }
         for change in changes {
             let bytes = change.to_bytes();
             assert_eq!(Change::from_bytes(&bytes), Ok(change.clone()));

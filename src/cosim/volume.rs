@@ -56,29 +56,33 @@ impl Volume {
             Self::Box { pose, half } => {
                 (Box::new(Cuboid::new(Vector::new(half.x, half.y, half.z))), (*pose).into())
             }
-            Self::Hull { points } => {
-                // What spans nothing is noticed here: the hull's algorithm is made for solids.
-                if !spans(points) {
-                    return Err(
-                        "these points lie on a line: give at least three that do not".into()
-                    );
-                }
-                let points: Vec<Vector> =
-                    points.iter().map(|p| Vector::new(p.x, p.y, p.z)).collect();
-                // Its inner checks panic on some points that are nearly one; whoever asks may be wrong
-                // without ending the run. Flat ones may pass as a hull without a volume.
-                let made = catch_unwind(|| ConvexPolyhedron::from_convex_hull(&points));
-                let hull = made
-                    .ok()
-                    .flatten()
-                    .filter(|hull| hull.mass_properties(1.0).mass() > 0.0)
-                    .ok_or(
-                        "these points span no convex hull: give at least four that are not flat",
-                    )?;
-                (Box::new(hull), Pose::identity().into())
-            }
+            Self::Hull { points } => (Box::new(hull(points)?), Pose::identity().into()),
         })
     }
+}
+
+/// The corners of the convex hull of some points.
+///
+/// # Errors
+/// If they span none.
+pub fn hull_corners(points: &[Vec3]) -> Result<Vec<Vec3>, String> {
+    let hull = hull(points)?;
+    Ok(hull.points().iter().map(|p| Vec3::new(p.x, p.y, p.z)).collect())
+}
+
+fn hull(points: &[Vec3]) -> Result<ConvexPolyhedron, String> {
+    // What spans nothing is noticed here: the hull's algorithm is made for solids.
+    if !spans(points) {
+        return Err("these points lie on a line: give at least three that do not".into());
+    }
+    let points: Vec<Vector> = points.iter().map(|p| Vector::new(p.x, p.y, p.z)).collect();
+    // Its inner checks panic on some points that are nearly one; whoever asks may be wrong
+    // without ending the run. Flat ones may pass as a hull without a volume.
+    let made = catch_unwind(|| ConvexPolyhedron::from_convex_hull(&points));
+    let hull = made.ok().flatten().filter(|hull| hull.mass_properties(1.0).mass() > 0.0);
+    hull.ok_or_else(|| {
+        "these points span no convex hull: give at least four that are not flat".into()
+    })
 }
 
 /// True if the points do not lie on a line.
@@ -114,6 +118,11 @@ mod tests {
         {
             assert!(cube.overlaps(&Volume::Hull { points }).is_err(), "a line spans nothing");
         }
+        let corners =
+            [0.0, 1.0].map(|x| [0.0, 1.0].map(|y| [0.0, 1.0].map(|z| Vec3::new(x, y, z))));
+        let inside = [Vec3::repeat(0.5), Vec3::new(0.2, 0.4, 0.9)];
+        let points: Vec<Vec3> = corners.into_iter().flatten().flatten().chain(inside).collect();
+        assert_eq!(hull_corners(&points).map(|it| it.len()), Ok(8), "only corners are left");
         let flat = Volume::Hull { points: vec![Vec3::zeros(), Vec3::x(), Vec3::y()] };
         assert!(cube.overlaps(&flat).is_err(), "a triangle has no volume");
     }

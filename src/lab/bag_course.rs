@@ -4,8 +4,9 @@ use std::{collections::BTreeMap, path::Path};
 
 use crate::{
     bag::{
-        NotABag,
+        NotABag, START,
         reader::{Item, Reader, Recorded},
+        recording::NODE_NAME,
         writer::CDR_HEADER,
     },
     experiments::findings::{Kind, Plot, Series},
@@ -25,6 +26,8 @@ use crate::{
 /// What a page shows.
 #[derive(Debug, Default)]
 pub(super) struct Course {
+    /// Name of the node that recorded it.
+    node: String,
     /// Curves by picture and label.
     curves: BTreeMap<(Picture, String), Vec<[f64; 2]>>,
     /// What happened: simulated time [s] and what.
@@ -77,13 +80,16 @@ impl Course {
     /// # Errors
     /// If there is none.
     pub(super) fn read(path: &Path) -> Result<Self, NotABag> {
-        let mut course = Self::default();
+        let mut course = Self { node: NODE.to_owned(), ..Self::default() };
         for file in crate::bag::files(path)? {
             let reader = Reader::open(&file)
                 .map_err(|fault| NotABag::Unreadable { path: file.clone(), fault })?;
             for item in reader {
                 match item {
                     Item::Message(message) => course.take(&message),
+                    Item::Metadata(mut it) if it.name == START => {
+                        course.node = it.metadata.remove(NODE_NAME).unwrap_or(course.node);
+                    }
                     Item::Damage(it) => course.damages.push(format!("{}: {it}", file.display())),
                     _ => {}
                 }
@@ -113,7 +119,7 @@ impl Course {
     fn take(&mut self, message: &Recorded) {
         self.n_messages += 1;
         let Some(cdr) = message.data.strip_prefix(&CDR_HEADER) else { return };
-        let Some(name) = message.channel.topic.strip_prefix(NODE) else { return };
+        let Some(name) = message.channel.topic.strip_prefix(self.node.as_str()) else { return };
         let time_s = std::time::Duration::from_nanos(message.log_time).as_secs_f64();
         match name {
             "/wrench" => self.force(Picture::Force, "objects on the gripper", time_s, cdr),

@@ -3,6 +3,7 @@
 
 use std::{sync::Arc, time::Duration};
 
+use super::loader::Loader;
 use crate::{
     command::Command,
     services::Bench,
@@ -23,12 +24,18 @@ pub struct Front {
     simulator: Simulator,
     bench: Box<dyn Bench>,
     announced: Arc<Announced>,
+    loader: Option<Loader>,
 }
 
 impl Front {
     /// A simulator that is asked at `bench`; answers stay behind what `announced` counts.
     pub fn new(simulator: Simulator, bench: Box<dyn Bench>, announced: Arc<Announced>) -> Self {
-        Self { simulator, bench, announced }
+        Self { simulator, bench, announced, loader: None }
+    }
+
+    /// The same, which can load other scenes.
+    pub fn with_loader(self, loader: Loader) -> Self {
+        Self { loader: Some(loader), ..self }
     }
 
     /// Answers what waits. `n_packets` is the number of the last packet given out.
@@ -38,8 +45,27 @@ impl Front {
                 self.bench.complain(fault);
             }
         }
-        self.send(n_packets);
-        self.simulator.take_changed()
+        self.load(world);
+        let changed = self.simulator.take_changed();
+        // What tells of changes is the next packet.
+        self.send(n_packets + u64::from(!changed.changes.is_empty()));
+        changed
+    }
+
+    /// Hands on what shall be loaded, and takes in what has been.
+    fn load(&mut self, world: &mut World<'_>) {
+        let wanted = self.simulator.take_wanted();
+        match (&mut self.loader, wanted) {
+            (Some(loader), Some(scene)) => loader.begin(scene),
+            (None, Some(_)) => {
+                let why = "this run cannot load other scenes".to_owned();
+                self.simulator.loaded(Err(why), world);
+            }
+            _ => {}
+        }
+        if let Some(settled) = self.loader.as_mut().and_then(Loader::poll) {
+            self.simulator.loaded(settled, world);
+        }
     }
 
     /// A tick has ended, and packet `n_packets` tells of it.

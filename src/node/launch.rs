@@ -8,6 +8,7 @@ use super::{
     doors::{Doors, Outside, Sizes},
     front::Front,
     judge::Judge,
+    loader::Loader,
     lockstep::Gate,
     orders::Orders,
     outlets::Closed,
@@ -128,7 +129,7 @@ pub fn launch_with(
     let encoder = Arc::new(Encoder::new(scene, &mesh.triangles, &mesh.positions));
     let sizes = Sizes { n_grains: scene.grains.count, n_vertices: mesh.n_vertices() };
     // Recording first: a folder that cannot be written is noticed before the bag is filled.
-    let (outlets, outside) = {
+    let (mut outlets, outside) = {
         let Options { scene_file, facts, .. } = options;
         Doors { scene, scene_file, encoder: &encoder, progress: &progress, substep_s, facts }
             .open(sizes)?
@@ -137,7 +138,10 @@ pub fn launch_with(
     let end_ns = end_ns(scene, options.duration);
     progress.running(end_ns);
     let clock = outside.clock.clone();
+    outlets.encoder = Some(Arc::clone(&encoder));
     let (orders, front) = command(outside);
+    let loader = || Loader::new(options.n_threads, options.cache.clone());
+    let front = front.map(|it| it.with_loader(loader()));
     // Only who commands from outside can be waited for; a script knows its ticks.
     let in_step = if front.is_some() { lockstep(scene) } else { Lockstep::OFF };
     let gate = Gate::new(in_step);
@@ -161,11 +165,14 @@ pub fn launch_with(
     };
     let start_time_s = since_start.wall_time_s();
     let report = super::run(&mut session, &mut crew);
-    Ok(finish(scene, crew, report, Beginning { sizes, substep_s, origin, start_time_s }))
+    let mesh = &session.coupled().model.membrane.mesh;
+    let sizes = Sizes { n_grains: session.scene().grains.count, n_vertices: mesh.n_vertices() };
+    let substep_s = session.substep_s();
+    Ok(finish(session.scene(), crew, report, Known { sizes, substep_s, origin, start_time_s }))
 }
 
-/// What is known before the first tick.
-struct Beginning {
+/// What is known besides what was seen of the run.
+struct Known {
     sizes: Sizes,
     substep_s: f64,
     origin: &'static str,
@@ -194,7 +201,7 @@ fn finish(
     scene: &Scene,
     crew: Crew,
     report: Report<<crate::session::Session as Plant>::Fault>,
-    beginning: Beginning,
+    known: Known,
 ) -> Finished {
     let Crew { orders, outlets, judge, progress, .. } = crew;
     let bag = outlets.bag.as_ref().map(|folder| folder.display().to_string());
@@ -218,12 +225,12 @@ fn finish(
         verdict: judge.verdict(),
         real_time_factor: report.real_time_factor,
         wall_time_s: report.wall_time_s,
-        start_time_s: beginning.start_time_s,
-        start_state: beginning.origin,
+        start_time_s: known.start_time_s,
+        start_state: known.origin,
         sim_time_s: Duration::from_nanos(last.time_ns).as_secs_f64(),
-        substep_s: beginning.substep_s,
-        n_grains: beginning.sizes.n_grains,
-        n_vertices: beginning.sizes.n_vertices,
+        substep_s: known.substep_s,
+        n_grains: known.sizes.n_grains,
+        n_vertices: known.sizes.n_vertices,
         state_digest: last.digest,
         bag,
         sinks: counters,

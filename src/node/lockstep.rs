@@ -75,6 +75,12 @@ impl Gate {
         }
     }
 
+    /// What came so far is not for the next tick.
+    pub fn forget(&mut self) {
+        self.pending.clear();
+        self.left = 0;
+    }
+
     /// The next tick begins, under these commands.
     pub fn pass(&mut self) -> Vec<Command> {
         if self.clock.is_some() {

@@ -5,6 +5,7 @@ mod doors; // recording, streams, ROS 2
 pub mod front; // the simulator at its bench
 pub mod judge; // what came of a run
 pub mod launch; // scene to a run
+pub mod loader; // scenes that are loaded while the run goes on
 pub mod lockstep; // ticks that wait for a controller
 pub mod orders; // who may command
 pub mod outlets; // where results go
@@ -91,7 +92,7 @@ pub struct Crew {
     pub shutdown: Shutdown,
     /// Length of a tick [ns].
     pub tick_ns: u64,
-    /// Simulated time at which the run ends [ns].
+    /// Time of the run at which it ends [ns].
     pub end_ns: Option<u64>,
     /// True keeps to real time.
     pub is_real_time: bool,
@@ -199,6 +200,11 @@ impl Crew {
             let mut world = World { subject: plant, seen: &seen.snapshot };
             front.attend(&mut world, self.n_packets)
         };
+        if let Some(outputs) = &changed.outputs {
+            self.schedule = Schedule::new(outputs, self.tick_ns);
+            let encoder = self.outlets.encoder.as_deref().map(|it| it.at_rates(outputs));
+            self.outlets.encoder = encoder.map(Arc::new);
+        }
         if changed.changes.is_empty() {
             return seen;
         }
@@ -206,10 +212,25 @@ impl Crew {
             self.orders.restart();
             self.judge = Judge::default();
         }
+        if changed.is_scene_loaded {
+            self.enter(plant, &seen.snapshot);
+        }
         let packet = Packet::new(plant.snapshot(Parts::ALL), None).with_changes(changed.changes);
         let packet = Arc::new(self.number(packet));
         self.outlets.publish(&plant.view(&packet.snapshot), &packet);
         packet
+    }
+
+    /// Another scene has taken the place of the one before.
+    fn enter<P: Plant>(&mut self, plant: &P, seen: &Snapshot) {
+        let before = self.outlets.encoder.as_deref();
+        let Some(encoder) = before.and_then(|it| plant.encoder(it)) else { return };
+        self.gate.forget();
+        self.orders.enter(encoder.scene(), seen);
+        self.about.seed = encoder.scene().seed;
+        self.about.substep_s = plant.substep_s();
+        self.progress.say(&format!("scene `{}` is loaded", encoder.scene().name));
+        self.outlets.encoder = Some(Arc::new(encoder));
     }
 
     /// Time stands still: waits a moment for someone to change that. Who waits for a first command
@@ -258,6 +279,7 @@ impl Crew {
 
     fn number(&mut self, packet: Packet) -> Packet {
         self.n_packets += 1;
+        let packet = packet.told_by(self.outlets.encoder.clone());
         packet.numbered(self.n_packets).with_checkpoints(mem::take(&mut self.checkpoints))
     }
 
@@ -286,7 +308,7 @@ impl Crew {
         if self.orders.is_done() {
             return Some(Ending::Finished);
         }
-        if self.end_ns.is_some_and(|end_ns| end_ns <= seen.time_ns) {
+        if self.end_ns.is_some_and(|end_ns| end_ns <= self.run_time_ns(seen)) {
             return Some(Ending::TimeUp);
         }
         let (faults, must_stop) = self.outlets.take_faults();

@@ -51,6 +51,19 @@ impl Orders {
         }
     }
 
+    /// Another scene has been loaded: what was commanded before is not for it. The built-in controller
+    /// goes by its numbers, if it has some.
+    pub fn enter(&mut self, scene: &Scene, seen: &Snapshot) {
+        for source in &mut self.outside {
+            drop(source.drain(seen));
+        }
+        if let (Some(builtin), Controller::Builtin(parameters)) =
+            (&mut self.builtin, &scene.controller)
+        {
+            *builtin = Builtin::new(parameters);
+        }
+    }
+
     /// What the built-in controller is doing.
     pub fn phase(&self) -> Option<Phase> {
         self.builtin.as_ref().map(|it| it.machine.phase())

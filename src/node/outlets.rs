@@ -6,6 +6,7 @@ use std::{path::PathBuf, sync::Arc, time::Duration};
 use crate::{
     sinks::{Packet, SinkCounters, fanout::Fanout},
     snapshot::view::View,
+    wire::to_ros::Encoder,
 };
 
 /// How long a sink may take to complete its work at the end.
@@ -23,6 +24,8 @@ pub struct Outlets {
     pub bag: Option<PathBuf>,
     /// True if the run shall end when the recording fails.
     pub stops_with_bag: bool,
+    /// Who makes messages, as the sinks were opened with it or as it became since.
+    pub encoder: Option<Arc<Encoder>>,
 }
 
 /// What became of the outputs.

@@ -12,6 +12,7 @@ use crate::{
     session::Session,
     simulator::Subject,
     snapshot::{Snapshot, checkpoint::Checkpoint, take, view::View},
+    wire::to_ros::Encoder,
 };
 
 /// Something that ticks and can be looked at.
@@ -33,6 +34,16 @@ pub trait Plant: Subject {
         None
     }
 
+    /// Who tells of it in the way of `before`, now that another scene was loaded.
+    fn encoder(&self, _before: &Encoder) -> Option<Encoder> {
+        None
+    }
+
+    /// Length of a substep [s].
+    fn substep_s(&self) -> f64 {
+        0.0
+    }
+
     /// A borrowed look at everything. `seen` is the snapshot of the same tick.
     fn view<'a>(&'a self, seen: &'a Snapshot) -> View<'a>;
 }
@@ -51,6 +62,15 @@ impl Plant for Session {
     fn checkpoint(&self) -> Option<Checkpoint> {
         let (tick, time_ns, digest) = (self.run_tick(), self.run_time_ns(), self.digest());
         self.save().map(|bytes| Checkpoint { tick, time_ns, digest, bytes })
+    }
+
+    fn encoder(&self, before: &Encoder) -> Option<Encoder> {
+        let mesh = &self.coupled().model.membrane.mesh;
+        Some(before.of_scene(self.scene(), &mesh.triangles, &mesh.positions))
+    }
+
+    fn substep_s(&self) -> f64 {
+        self.coupled().model.substep
     }
 
     fn view<'a>(&'a self, seen: &'a Snapshot) -> View<'a> {

@@ -30,6 +30,8 @@ struct Counter {
     n_ticks: u64,
     commands: Vec<(u64, Command)>,
     breaks_at: Option<u64>,
+    /// Simulated time is zero again after this tick.
+    restarts_at: Option<u64>,
 }
 
 #[derive(Debug, thiserror::Error)]
@@ -59,7 +61,10 @@ impl Plant for Counter {
     }
 
     fn snapshot(&self, _parts: Parts) -> Snapshot {
-        snapshot(self.n_ticks)
+        let mut seen = snapshot(self.n_ticks);
+        let zero = self.restarts_at.filter(|it| *it <= self.n_ticks).unwrap_or(0);
+        seen.time_ns -= zero * TICK_NS;
+        seen
     }
 
     fn view<'a>(&'a self, seen: &'a Snapshot) -> View<'a> {
@@ -198,6 +203,16 @@ fn a_run_waits_for_its_first_command_and_loses_no_tick() {
     let mut seen = ticks.lock().unwrap().clone();
     seen.dedup();
     assert_eq!(seen, (0..=100).collect::<Vec<_>>(), "the start while it waits, then every tick");
+}
+
+/// Oracle: counting. The time that a run was given is that of its ticks together.
+#[test]
+fn a_run_is_as_long_as_it_was_told_whatever_becomes_of_time() {
+    let mut crew = crew(late());
+    let mut plant = Counter { restarts_at: Some(60), ..Counter::default() };
+    let report = run(&mut plant, &mut crew);
+    assert_eq!(report.ending.unwrap(), Ending::TimeUp);
+    assert_eq!((plant.n_ticks, report.last.snapshot.time_ns), (100, 40 * TICK_NS));
 }
 
 #[test]

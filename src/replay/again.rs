@@ -185,11 +185,15 @@ impl Again {
         Ok(Some(session))
     }
 
-    /// Changes the world as it was changed in the recorded run.
+    /// Changes the world as it was changed in the recorded run; says how.
     ///
     /// # Errors
     /// If the change cannot be read, or not be made.
-    pub fn change(&self, session: &mut Session, recorded: &Alteration) -> Result<(), ReplayError> {
+    pub fn change(
+        &self,
+        session: &mut Session,
+        recorded: &Alteration,
+    ) -> Result<Change, ReplayError> {
         let refused = |fault: String| ReplayError::Change {
             tick: recorded.tick,
             what: recorded.what.clone(),
@@ -197,7 +201,8 @@ impl Again {
             fault,
         };
         let change = Change::from_bytes(&recorded.change).map_err(|it| refused(it.to_string()))?;
-        session.change(&change).map_err(|it| refused(it.to_string()))
+        session.change(&change).map_err(|it| refused(it.to_string()))?;
+        Ok(change)
     }
 
     /// The recorded commands.

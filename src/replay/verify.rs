@@ -6,6 +6,7 @@ use super::{
 };
 use crate::{
     bag::recording::Alteration,
+    command::change::Change,
     cosim::compile::Compiled,
     node::{
         cache::Cache,
@@ -139,7 +140,13 @@ pub fn verify(again: &Again, options: &Options<'_>) -> Result<Verdict, ReplayErr
             break;
         }
         for it in again.course.changes_after(tick) {
-            again.change(&mut session, it)?;
+            let change = again.change(&mut session, it)?;
+            if options.settles && matches!(change, Change::LoadScene(_)) {
+                let what = &it.what;
+                verdict.remarks.push(format!(
+                    "after tick {tick}: {what}: it began as recorded, only the first was filled anew"
+                ));
+            }
             verdict.compare_after(it, &session);
         }
         if !verdict.goes_on() || last <= tick {

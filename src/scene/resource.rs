@@ -1,16 +1,23 @@
-//! Objects from files and texts that others name: scene files, whose object is taken, and URDF.
+//! Objects and scenes from files and texts that others name: scene files, and URDF for objects.
 
 use std::{
     path::{Path, PathBuf},
     time::SystemTime,
 };
 
-use super::{Object, Scene, text, urdf};
+use super::{
+    Object, Scene,
+    fault::{Problem, SceneError},
+    text, urdf,
+};
 
 /// What objects may be written in, as the ends of their files' names.
 pub const FORMATS: [&str; 2] = ["urdf", "yaml"];
 
-/// Why there is no object.
+/// The key that names a file beside a scene.
+const MESH_FILE: &str = "object.shape.mesh.file";
+
+/// Why there is no object, or no scene.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ResourceFault {
     /// It is in none of the formats.
@@ -51,6 +58,58 @@ pub fn object(uri: &str, string: &str, folder: &Path) -> Result<Object, Resource
     } else {
         of_scene(string, "resource_string", folder)
     }
+}
+
+/// The scene in a file, or in a text if no file is named. With `ignores_assets` an object whose mesh
+/// cannot be had is left out.
+///
+/// # Errors
+/// If there is none that can be simulated.
+pub fn scene(
+    uri: &str,
+    string: &str,
+    folder: &Path,
+    ignores_assets: bool,
+) -> Result<Scene, ResourceFault> {
+    let unsupported = |what: &str| Err(ResourceFault::UnsupportedFormat(what.to_owned()));
+    let (text, source, inside) = if !uri.is_empty() || string.trim().is_empty() {
+        let (path, text) = open(uri, folder)?;
+        if !matches!(path.extension().and_then(|it| it.to_str()), Some("yaml" | "yml")) {
+            return unsupported(uri);
+        }
+        (text, uri, path.parent().unwrap_or(folder).to_owned())
+    } else if string.trim_start().starts_with('<') {
+        return unsupported("a text that begins with `<`");
+    } else {
+        (string.to_owned(), "resource_string", folder.to_owned())
+    };
+    match text::parse(&text, source, &inside, &[]) {
+        Ok(scene) => Ok(scene),
+        Err(error) => match (of_mesh(&error), without_object(&text, source, &inside)) {
+            (Some(_), Ok(scene)) if ignores_assets => Ok(scene),
+            (Some(file), Ok(_)) if file.exists() => {
+                Err(ResourceFault::Unsupported(error.to_string()))
+            }
+            (Some(_), Ok(_)) => Err(ResourceFault::MissingAssets(error.to_string())),
+            _ => Err(ResourceFault::Malformed(error.to_string())),
+        },
+    }
+}
+
+/// The mesh file that cannot be had, if one is at fault.
+fn of_mesh(error: &SceneError) -> Option<PathBuf> {
+    let SceneError::Faults(faults) = error else { return None };
+    faults.iter().find_map(|fault| match &fault.problem {
+        Problem::Unfit { value, .. } if fault.key == MESH_FILE => Some(PathBuf::from(value)),
+        _ => None,
+    })
+}
+
+/// A scene whose object cannot be had, without it.
+fn without_object(text: &str, source: &str, folder: &Path) -> Result<Scene, SceneError> {
+    let aside = ["object.shape.sphere.radius=10 mm", "object.position=[100 m, 0 m, 100 m]"];
+    let scene = text::parse(text, source, folder, &aside.map(str::to_owned))?;
+    Ok(Scene { objects: Vec::new(), ..scene })
 }
 
 /// A file's text.
@@ -137,6 +196,28 @@ mod tests {
         let yaml = "name: x\nobject: { name: cube, shape: { box: { size: [1 cm, 2 cm, 3 cm] } } }";
         let object = super::object("", yaml, Path::new("")).unwrap();
         assert_eq!(object.name, "cube");
+    }
+
+    /// Oracle: the contract of each kind of fault, and of leaving out what cannot be had.
+    #[test]
+    fn scenes_are_read_or_refused_by_kind() {
+        use ResourceFault as F;
+        let folder = tempfile::tempdir().unwrap();
+        let of = |uri: &str, text: &str, ignores| super::scene(uri, text, folder.path(), ignores);
+        let ball =
+            "name: x\nobject: { shape: { sphere: { radius: 10 mm } }, position: [0 m, 0 m, 1 cm] }";
+        std::fs::write(folder.path().join("ball.yaml"), ball).unwrap();
+        assert_eq!(of("ball.yaml", "", false).unwrap(), of("", ball, false).unwrap());
+        let mesh = "name: x\nobject: { shape: { mesh: { file: no.obj, unit: 1 mm } }, position: [0 m, 0 m, 1 cm] }";
+        assert!(matches!(of("", mesh, false), Err(F::MissingAssets(_))));
+        assert_eq!(of("", mesh, true).unwrap().objects, []);
+        std::fs::write(folder.path().join("no.obj"), "no mesh").unwrap();
+        assert!(matches!(of("", mesh, false), Err(F::Unsupported(_))));
+        assert!(matches!(of("", "", false), Err(F::NoResource(_))));
+        assert!(matches!(of("no.yaml", ball, false), Err(F::NoResource(_))));
+        assert!(matches!(of("no.obj", "", false), Err(F::UnsupportedFormat(_))));
+        assert!(matches!(of("", "<sdf/>", false), Err(F::UnsupportedFormat(_))));
+        assert!(matches!(of("", "name: 1", true), Err(F::Malformed(_))));
     }
 
     #[test]

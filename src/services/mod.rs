@@ -4,6 +4,10 @@
 //! out none of those that wait, costs the physics nothing, and is counted. Answers leave in order,
 //! each behind the messages of the tick that it speaks of.
 
+#[cfg(feature = "ros")]
+mod client; // who asks
+#[cfg(feature = "ros")]
+mod listed; // what tools find below the node
 pub mod queue;
 #[cfg(feature = "ros")]
 pub mod ros;

@@ -10,15 +10,18 @@ use std::{
 };
 
 use rustdds::{
-    DataReaderStatus, DataWriterStatus, DomainParticipant, GUID, QosPolicies,
-    RepresentationIdentifier, SequenceNumber, StatusEvented, TopicKind, WriteOptionsBuilder,
+    DataWriterStatus, DomainParticipant, GUID, QosPolicies, RTPSEntity, RepresentationIdentifier,
+    SequenceNumber, StatusEvented, TopicKind, WriteOptionsBuilder,
     bytes::Bytes,
     no_key::{self, DataWriter, SimpleDataReader},
     rpc::SampleIdentity,
 };
 use smol::{LocalExecutor, channel, future, stream::StreamExt};
 
-use super::{Asker, Bench, BenchCounters, Call, Channel, Offer, Outgoing, queue::Queue};
+pub use super::client::{RosClient, Way};
+use super::{
+    Asker, Bench, BenchCounters, Call, Channel, Offer, Outgoing, listed::Listed, queue::Queue,
+};
 use crate::{
     sinks::{
         announced::Announced,
@@ -42,7 +45,7 @@ const DEAF_MAX: usize = 1000;
 
 /// A body with its byte order.
 #[derive(Clone, Debug)]
-pub struct Raw(Cdr);
+pub struct Raw(pub(super) Cdr);
 
 /// Bytes in, bytes out.
 #[derive(Clone, Copy, Debug)]
@@ -96,8 +99,8 @@ impl no_key::SerializerAdapter<Raw> for RawCdr {
     }
 }
 
-type Reader = SimpleDataReader<Raw, RawCdr>;
-type Writer = DataWriter<Raw, RawCdr>;
+pub(super) type Reader = SimpleDataReader<Raw, RawCdr>;
+pub(super) type Writer = DataWriter<Raw, RawCdr>;
 
 /// The queue, and news of it.
 #[derive(Default)]
@@ -115,7 +118,7 @@ pub struct RosBench {
 }
 
 impl RosBench {
-    /// Opens all services and channels. Answers stay behind what `announced` counts.
+    /// Opens all services and channels, and lists them below the node. Answers stay behind what `announced` counts.
     ///
     /// # Errors
     /// When one cannot be opened.
@@ -142,12 +145,21 @@ impl RosBench {
             let name = format!("rt{}", channel.name);
             mouths_of_channels.push(writer(participant, &name, &channel.dds_name, qos)?);
         }
+        let listed = Listed::open(
+            node,
+            readers.iter().map(RTPSEntity::guid).collect(),
+            answers
+                .iter()
+                .map(|it| it.0.guid())
+                .chain(mouths_of_channels.iter().map(RTPSEntity::guid))
+                .collect(),
+        )?;
         let mut mouths = Mouths { answers, channels: mouths_of_channels, deaf: BTreeSet::new() };
         let (stop, stopped) = channel::bounded(1);
         let (outbox, waiting) = mpsc::sync_channel(OUTBOX);
         let (kept, announced) = (Arc::clone(&queue), Arc::clone(announced));
         let threads = vec![
-            thread("ros-questions", move || listen(readers, &kept, &stopped))?,
+            thread("ros-questions", move || listen(readers, listed, &kept, &stopped))?,
             thread("ros-answers", move || mouths.speak(&waiting, &announced))?,
         ];
         Ok(Self { waiting: queue, outbox: Some(outbox), stop, threads })
@@ -264,8 +276,14 @@ fn addressed(asker: &Asker, body: Cdr) -> (Cdr, rustdds::with_key::WriteOptions)
 }
 
 /// Listens to all services until `stopped` closes.
-fn listen(readers: Vec<Reader>, waiting: &Waiting, stopped: &channel::Receiver<()>) {
+fn listen(
+    readers: Vec<Reader>,
+    listed: Listed,
+    waiting: &Waiting,
+    stopped: &channel::Receiver<()>,
+) {
     let executor = LocalExecutor::new();
+    executor.spawn(listed.keep_told()).detach();
     for (offer, reader) in readers.into_iter().enumerate() {
         executor.spawn(attend(offer, reader, waiting)).detach();
     }
@@ -333,126 +351,14 @@ async fn tell_faults(queue: &Mutex<Queue>) {
     }
 }
 
-/// A client: for controllers, tools and tests. It has one question open at a time.
-pub struct RosClient {
-    asks: Writer,
-    answers: Reader,
-    way: Way,
-    n_asked: i64,
-    /// Servers that hear and that are heard.
-    n_matched: [i32; 2],
-}
+/// How services are offered and asked.
+pub(super) const SERVICE: Qos = Qos { is_reliable: true, depth: 100, is_latched: false };
 
-/// How a client names its requests.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Way {
-    /// Beside the body: rmw_fastrtps, rmw_connextdds.
-    Enhanced,
-    /// In sixteen bytes before the body: rmw_cyclonedds.
-    Cyclone,
-}
-
-impl RosClient {
-    /// A client of `offer`.
-    ///
-    /// # Errors
-    /// When it cannot be opened.
-    pub fn open(node: &RosNode, offer: &Offer, way: Way) -> Result<Self, RosError> {
-        let participant = &node.participant();
-        let of = offer.service_type;
-        let (ask, answer) = (format!("rq{}Request", offer.name), format!("rr{}Reply", offer.name));
-        Ok(Self {
-            answers: reader(participant, &answer, of.response_dds_name)?,
-            asks: writer(participant, &ask, of.request_dds_name, SERVICE)?,
-            way,
-            n_asked: 0,
-            n_matched: [0; 2],
-        })
-    }
-
-    /// True once a server has been found that hears and is heard.
-    pub fn is_matched(&mut self) -> bool {
-        while let Some(status) = self.asks.try_recv_status() {
-            if let DataWriterStatus::PublicationMatched { current, .. } = status {
-                self.n_matched[0] = current.count();
-            }
-        }
-        while let Some(status) = self.answers.try_recv_status() {
-            if let DataReaderStatus::SubscriptionMatched { current, .. } = status {
-                self.n_matched[1] = current.count();
-            }
-        }
-        self.n_matched.iter().all(|it| 0 < *it)
-    }
-
-    /// Asks. Answers to questions before are not waited for any more.
-    pub fn ask(&mut self, body: &Cdr) {
-        self.n_asked += 1;
-
-        let guid = self.asks_guid();
-        let identity = SampleIdentity {
-            writer_guid: guid,
-            sequence_number: SequenceNumber::from(self.n_asked),
-        };
-        let (bytes, options) = match self.way {
-            Way::Enhanced => {
-                let options = WriteOptionsBuilder::new().related_sample_identity(identity);
-                (body.bytes.clone(), options)
-            }
-            Way::Cyclone => {
-                ([&self.header()[..], &body.bytes].concat(), WriteOptionsBuilder::new())
-            }
-        };
-        let body = Raw(Cdr { bytes, is_big_endian: false });
-        if let Err(error) = self.asks.write_with_options(body, options.build()) {
-            log::warn!("a request was not taken: {error}");
-        }
-    }
-
-    /// The answer to the last question, once it is there.
-    pub fn answer(&mut self) -> Option<Cdr> {
-        self.answers.drain_read_notifications();
-        loop {
-            let sample = self.answers.try_take_one().ok()??;
-            let related = sample.related_sample_identity();
-            let body = sample.into_value().0;
-            match self.way {
-                Way::Enhanced => {
-                    let is_mine = related.is_some_and(|it| {
-                        i64::from(it.sequence_number) == self.n_asked
-                            && it.writer_guid == self.asks_guid()
-                    });
-                    if is_mine {
-                        return Some(body);
-                    }
-                }
-                Way::Cyclone => {
-                    if let Some(rest) = body.bytes.strip_prefix(&self.header()[..]) {
-                        return Some(Cdr { bytes: rest.to_vec(), ..body });
-                    }
-                }
-            }
-        }
-    }
-
-    fn asks_guid(&self) -> GUID {
-        use rustdds::RTPSEntity;
-        self.asks.guid()
-    }
-
-    fn header(&self) -> [u8; 16] {
-        let mut header = [0; 16];
-        header[..8].copy_from_slice(&self.asks_guid().to_bytes()[8..]);
-        let [a, b, c, d, e, f, g, h] = self.n_asked.to_le_bytes();
-        // The high half of the number comes first.
-        header[8..].copy_from_slice(&[e, f, g, h, a, b, c, d]);
-        header
-    }
-}
-
-const SERVICE: Qos = Qos { is_reliable: true, depth: 100, is_latched: false };
-
-fn reader(participant: &DomainParticipant, name: &str, kind: &str) -> Result<Reader, RosError> {
+pub(super) fn reader(
+    participant: &DomainParticipant,
+    name: &str,
+    kind: &str,
+) -> Result<Reader, RosError> {
     let qos: QosPolicies = policies(SERVICE);
     let refused = |it: rustdds::dds::result::CreateError| refused(name, kind, &it);
     let topic = participant
@@ -462,7 +368,7 @@ fn reader(participant: &DomainParticipant, name: &str, kind: &str) -> Result<Rea
     subscriber.create_simple_datareader_no_key(&topic, Some(qos)).map_err(refused)
 }
 
-fn writer(
+pub(super) fn writer(
     participant: &DomainParticipant,
     name: &str,
     kind: &str,

@@ -15,9 +15,9 @@ use crate::{
             srv::{
                 DeleteEntity, GetAvailableWorlds, GetCurrentWorld, GetEntities, GetEntitiesStates,
                 GetEntityBounds, GetEntityInfo, GetEntityState, GetNamedPoseBounds, GetNamedPoses,
-                GetSimulationState, GetSimulatorFeatures, GetSpawnables, ResetSimulation,
-                SetEntityInfo, SetEntityState, SetSimulationState, SpawnEntities, SpawnEntity,
-                StepSimulation,
+                GetSimulationState, GetSimulatorFeatures, GetSpawnables, LoadWorld,
+                ResetSimulation, SetEntityInfo, SetEntityState, SetSimulationState, SpawnEntities,
+                SpawnEntity, StepSimulation, UnloadWorld,
             },
         },
         std_srvs::srv::{SetBool, Trigger},
@@ -46,6 +46,8 @@ pub enum Ask {
     GetSpawnables,
     GetNamedPoses,
     GetNamedPoseBounds,
+    LoadWorld,
+    UnloadWorld,
     GetCurrentWorld,
     GetAvailableWorlds,
     GripCommand,
@@ -83,7 +85,7 @@ pub enum Asked {
 }
 
 /// Name below the node, type.
-const ASKS: [(Ask, &str, ServiceType); 28] = [
+const ASKS: [(Ask, &str, ServiceType); 30] = [
     (Ask::GetSimulatorFeatures, "get_simulator_features", GetSimulatorFeatures::TYPE),
     (Ask::GetSimulationState, "get_simulation_state", GetSimulationState::TYPE),
     (Ask::SetSimulationState, "set_simulation_state", SetSimulationState::TYPE),
@@ -102,6 +104,8 @@ const ASKS: [(Ask, &str, ServiceType); 28] = [
     (Ask::GetSpawnables, "get_spawnables", GetSpawnables::TYPE),
     (Ask::GetNamedPoses, "get_named_poses", GetNamedPoses::TYPE),
     (Ask::GetNamedPoseBounds, "get_named_pose_bounds", GetNamedPoseBounds::TYPE),
+    (Ask::LoadWorld, "load_world", LoadWorld::TYPE),
+    (Ask::UnloadWorld, "unload_world", UnloadWorld::TYPE),
     (Ask::GetCurrentWorld, "get_current_world", GetCurrentWorld::TYPE),
     (Ask::GetAvailableWorlds, "get_available_worlds", GetAvailableWorlds::TYPE),
     (Ask::GripCommand, "grip_cmd", SetBool::TYPE),
@@ -157,7 +161,7 @@ pub fn asked(node: &str, prefix: Option<&str>) -> (Vec<Offer>, Vec<Asked>) {
     (offers, asked)
 }
 
-/// Feedback and status of all actions, in this order, below each place.
+/// Feedback and status of all actions, in this order, below each place; last, changed parameters.
 pub fn channels(node: &str, prefix: Option<&str>) -> Vec<Channel> {
     let mut channels = Vec::new();
     for place in std::iter::once(node).chain(prefix) {
@@ -175,7 +179,17 @@ pub fn channels(node: &str, prefix: Option<&str>) -> Vec<Channel> {
             });
         }
     }
+    channels.push(Channel {
+        name: "/parameter_events".to_owned(),
+        dds_name: "rcl_interfaces::msg::dds_::ParameterEvent_".to_owned(),
+        is_latched: false,
+    });
     channels
+}
+
+/// Index of the channel of changed parameters.
+pub(super) fn parameter_events(n_channels: usize) -> Option<usize> {
+    n_channels.checked_sub(1)
 }
 
 /// Indices of an action's channels: feedback and status, below each of `n_places` places.

@@ -5,7 +5,7 @@ use crate::{
     base::{Pose, Vec3},
     cosim::{compile::body, rapier_world::centre_pose, volume},
     physics::{boundary::shape::Aabb, model::BodySurface},
-    scene::{Object, Scene},
+    scene::{Object, Scene, Shape},
     wire::messages::{
         geometry_msgs::Vector3,
         simulation_interfaces::{
@@ -16,6 +16,8 @@ use crate::{
 
 /// Points that a convex hull may have.
 const POINTS_MAX: usize = 1000;
+/// Corners of an object's hull that are told; with more of them its box must do.
+const CORNERS_MAX: usize = 4000;
 
 /// A volume in the world.
 pub(super) struct Volume(volume::Volume);
@@ -71,6 +73,25 @@ pub(super) fn extent(scene: &Scene, object: &Object) -> Aabb {
     }
 }
 
+/// Corners of the convex hull of an object that no box describes, about its centre of mass along its
+/// own axes; none for other shapes.
+pub(super) fn corners(scene: &Scene, object: &Object) -> Vec<Vec3> {
+    let points = match &object.shape {
+        Shape::Mesh { vertices, .. } => vertices,
+        Shape::ConvexHull { points } => points,
+        Shape::Sphere { .. }
+        | Shape::Box { .. }
+        | Shape::Cylinder { .. }
+        | Shape::Capsule { .. } => {
+            return Vec::new();
+        }
+    };
+    let Ok((_, bulk)) = body(scene, object) else { return Vec::new() };
+    let corners = volume::hull_corners(points).unwrap_or_default();
+    let corners = if corners.len() <= CORNERS_MAX { corners } else { Vec::new() };
+    corners.into_iter().map(|it| it - bulk.centre_of_mass).collect()
+}
+
 /// Pose of an object's centre of mass where its scene puts it.
 pub(super) fn centre(scene: &Scene, object: &Object) -> Pose {
     body(scene, object).map_or(object.pose, |(_, bulk)| centre_pose(object, &bulk))
@@ -84,9 +105,16 @@ pub(super) fn around(points: &[Vec3], frame: &Pose) -> Aabb {
     if points.is_empty() { Aabb { min: Vec3::zeros(), max: Vec3::zeros() } } else { all }
 }
 
+fn told_hull(corners: &[Vec3]) -> Bounds {
+    Bounds { r#type: Bounds::TYPE_CONVEX_HULL, points: corners.iter().map(vector).collect() }
+}
+
+fn vector(v: &Vec3) -> Vector3 {
+    Vector3 { x: v.x, y: v.y, z: v.z }
+}
+
 /// As the standard wants boxes: the upper corner, then the lower one.
 pub(super) fn told(extent: &Aabb) -> Bounds {
-    let vector = |v: &Vec3| Vector3 { x: v.x, y: v.y, z: v.z };
     Bounds { r#type: Bounds::TYPE_BOX, points: vec![vector(&extent.max), vector(&extent.min)] }
 }
 
@@ -103,7 +131,13 @@ impl Simulator {
         world: &World<'_>,
     ) -> GetEntityBoundsResponse {
         match self.find_entity(&request.entity, world) {
-            Ok(entity) => GetEntityBoundsResponse { result: ok(), bounds: told(&entity.extent) },
+            Ok(entity) => {
+                let bounds = match self.register.corners(&entity.name) {
+                    [] => told(&entity.extent),
+                    corners => told_hull(corners),
+                };
+                GetEntityBoundsResponse { result: ok(), bounds }
+            }
             Err(why) => GetEntityBoundsResponse {
                 result: failed(Told::RESULT_NOT_FOUND, why),
                 ..Default::default()

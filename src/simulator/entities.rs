@@ -77,6 +77,9 @@ pub(super) fn read_set_entity_state(
 impl Simulator {
     /// Everything, in a fixed order. The bag's extent is looked up only if it is asked for.
     pub(super) fn entities(&self, world: &World<'_>, with_extents: bool) -> Vec<Entity> {
+        if !self.has_world() {
+            return Vec::new();
+        }
         let seen = world.seen;
         let nothing = Aabb { min: Vec3::zeros(), max: Vec3::zeros() };
         let objects = seen.objects.iter().map(|object| {
@@ -341,7 +344,8 @@ fn vector(v: &Vec3) -> g::Vector3 {
     g::Vector3 { x: v.x, y: v.y, z: v.z }
 }
 
-fn stamp(time_ns: u64) -> Time {
+/// Simulated time as ROS 2 tells it.
+pub(super) fn stamp(time_ns: u64) -> Time {
     Time {
         sec: i32::try_from(time_ns / 1_000_000_000).unwrap_or(i32::MAX),
         nanosec: u32::try_from(time_ns % 1_000_000_000).unwrap_or(0),

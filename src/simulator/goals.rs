@@ -6,6 +6,7 @@ use serde::Serialize;
 use super::{
     Simulator, Unreadable,
     asks::{Action, channels_of},
+    entities::stamp,
     failed, ok,
 };
 use crate::{
@@ -263,12 +264,5 @@ fn unknown_goal(action: Action) -> Cdr {
             status: GoalStatus::STATUS_UNKNOWN,
             result: SimulateStepsResult { result: failed(Told::RESULT_NOT_FOUND, "no such goal") },
         }),
-    }
-}
-
-fn stamp(time_ns: u64) -> Time {
-    Time {
-        sec: i32::try_from(time_ns / 1_000_000_000).unwrap_or(i32::MAX),
-        nanosec: u32::try_from(time_ns % 1_000_000_000).unwrap_or(0),
     }
 }

@@ -57,6 +57,9 @@ struct Progress {
 
 impl Simulator {
     pub(super) fn grip_command(&mut self, request: &SetBoolRequest) -> SetBoolResponse {
+        if !self.has_world() {
+            return SetBoolResponse { success: false, message: ChangeRefused::NoScene.to_string() };
+        }
         let gauge_pa = if request.data { self.scene.chamber.gauge_min } else { 0.0 };
         self.end_grip(GoalStatus::STATUS_ABORTED, None);
         self.commands.push(Command::Vacuum { gauge_pa });
@@ -108,7 +111,7 @@ impl Simulator {
         seen: &Snapshot,
     ) -> bool {
         let is_sensible = (0.0..=1.0).contains(&position) && max_effort.is_finite();
-        if !is_sensible {
+        if !is_sensible || !self.has_world() {
             return false;
         }
         self.end_grip(GoalStatus::STATUS_ABORTED, None);
@@ -147,6 +150,11 @@ impl Simulator {
             self.commands.push(Command::Vacuum { gauge_pa: progress.gauge });
             self.end_grip(GoalStatus::STATUS_CANCELED, Some(&progress));
         }
+    }
+
+    /// The world that a goal is about goes.
+    pub(super) fn give_up_grip(&mut self) {
+        self.end_grip(GoalStatus::STATUS_ABORTED, None);
     }
 
     fn progress(&self, seen: &Snapshot) -> Progress {

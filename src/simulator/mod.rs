@@ -16,10 +16,11 @@ mod filters; // which of it is meant
 mod goals; // actions
 mod gripper; // as drivers of vacuum grippers know theirs
 mod parameters; // as ROS 2 tools know them
-mod places; // places with names, and other scenes
+mod places; // places with names
 mod running; // states, steps, resets
 mod spawning; // objects in and out
 mod tags; // what is said of entities
+mod worlds; // other scenes
 
 use std::{
     cell::RefCell,
@@ -29,7 +30,7 @@ use std::{
 pub use asks::{Ask, Asked, asked};
 use serde::{Serialize, de::DeserializeOwned};
 
-use self::{goals::Goals, gripper::Grip, running::Running, tags::Register};
+use self::{goals::Goals, gripper::Grip, running::Running, tags::Register, worlds::Loading};
 use crate::{
     base::real::Twist,
     command::{
@@ -37,12 +38,12 @@ use crate::{
         change::{Change, ChangeRefused},
     },
     physics::boundary::shape::Aabb,
-    scene::{Scene, resource::Shelf},
+    scene::{Outputs, Scene, resource::Shelf},
     services::{Asker, Call, Outgoing},
     snapshot::Snapshot,
     wire::{
         cdr::Cdr,
-        messages::simulation_interfaces::{Result as Told, Spawnable, WorldResource},
+        messages::simulation_interfaces::{Resource, Result as Told, Spawnable, WorldResource},
     },
 };
 
@@ -86,13 +87,17 @@ pub struct Changed {
     pub is_time_reset: bool,
     /// The state is that of the start again.
     pub is_state_reset: bool,
+    /// It is another scene.
+    pub is_scene_loaded: bool,
+    /// What leaves the process, if other rates were asked for.
+    pub outputs: Option<Outputs>,
 }
 
 /// The simulator.
 pub struct Simulator {
     scene: Scene,
-    /// Its file, if it came from one, and the folder that others are looked for in.
-    file: Option<PathBuf>,
+    /// Where it is from, and the folder that others are looked for in.
+    resource: Resource,
     folder: PathBuf,
     version: Version,
     asked: Vec<Asked>,
@@ -103,6 +108,9 @@ pub struct Simulator {
     /// Lists that were made, and of what.
     spawnables: Option<(Shelf, Vec<Spawnable>)>,
     worlds: Option<(Shelf, Vec<WorldResource>)>,
+    /// A scene that someone waits for, and the same until it is handed on.
+    loading: Option<Loading>,
+    wanted: Option<Scene>,
     is_monotonic: bool,
     /// Velocities at the ends of the last two ticks, with their times [ns].
     twists: [(u64, Vec<(String, Twist)>); 2],
@@ -122,7 +130,7 @@ impl Simulator {
     pub fn new(scene: &Scene, asked: Vec<Asked>, is_stopped: bool) -> Self {
         Self {
             scene: scene.clone(),
-            file: None,
+            resource: Resource::default(),
             folder: PathBuf::new(),
             version: Version::default(),
             asked,
@@ -132,6 +140,8 @@ impl Simulator {
             grip: None,
             spawnables: None,
             worlds: None,
+            loading: None,
+            wanted: None,
             is_monotonic: scene.outputs.ros.monotonic_clock,
             twists: Default::default(),
             out: Vec::new(),
@@ -150,7 +160,8 @@ impl Simulator {
     pub fn beside(self, file: &Path) -> Self {
         let file = std::path::absolute(file).unwrap_or_else(|_| file.to_owned());
         let folder = file.parent().map_or_else(PathBuf::new, Path::to_owned);
-        Self { file: Some(file), folder, ..self }
+        let uri = format!("file://{}", file.display());
+        Self { resource: Resource { uri, resource_string: String::new() }, folder, ..self }
     }
 
     /// Answers a question, now or later.
@@ -205,7 +216,9 @@ impl Simulator {
             Ask::GetSpawnables => self.get_spawnables(&body.read()?),
             Ask::GetNamedPoses => reply(body, |it| self.get_named_poses(&it))?,
             Ask::GetNamedPoseBounds => reply(body, |it| self.get_named_pose_bounds(&it))?,
-            Ask::GetCurrentWorld => Cdr::of(&self.get_current_world(world)),
+            Ask::LoadWorld => return self.load_world(body, asker),
+            Ask::UnloadWorld => Cdr::of(&self.unload_world()),
+            Ask::GetCurrentWorld => Cdr::of(&self.get_current_world()),
             Ask::GetAvailableWorlds => reply(body, |it| self.get_available_worlds(&it))?,
             Ask::GripCommand => reply(body, |it| self.grip_command(&it))?,
             Ask::DescribeParameters => reply(body, |it| self.describe_parameters(&it))?,
@@ -283,13 +296,31 @@ impl Simulator {
         self.out.push(Outgoing::Answer(asker, Cdr::of(answer)));
     }
 
+    /// True if there is a scene that can be asked about and changed.
+    fn has_world(&self) -> bool {
+        self.running.has_world()
+    }
+
     fn change(&mut self, change: &Change, world: &mut World<'_>) -> Result<(), ChangeRefused> {
+        if !self.has_world() {
+            return Err(ChangeRefused::NoScene);
+        }
+        self.apply(change, world)
+    }
+
+    fn apply(&mut self, change: &Change, world: &mut World<'_>) -> Result<(), ChangeRefused> {
         let changed = world.subject.change(change);
         if changed.is_ok() {
             self.changed.changes.push(change.clone());
             if let Change::Reset(scope) = change {
                 self.changed.is_time_reset |= scope.time;
                 self.changed.is_state_reset |= scope.state;
+                self.twists = Default::default();
+            }
+            if let Change::LoadScene(settled) = change {
+                self.changed.is_time_reset |= !settled.keeps_time;
+                self.changed.is_state_reset = true;
+                self.changed.is_scene_loaded = true;
                 self.twists = Default::default();
             }
         }

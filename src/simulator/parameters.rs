@@ -1,17 +1,20 @@
 //! Parameters, as ROS 2 tools list, describe, read and set them.
 //!
-//! Those of the materials and the pump may be changed while the simulation runs; they act from the
-//! next tick on and survive resets. The others are told only.
+//! Those of the materials and the pump and the rates of topics may be changed while the simulation
+//! runs; they act from the next tick on and survive resets. The others are told only. What was changed
+//! is told on `/parameter_events`.
 
-use super::{Simulator, World};
+use super::{Simulator, World, asks::parameter_events, entities::stamp};
 use crate::{
     command::change::{Change, Knob},
-    scene::Scene,
+    scene::{Outputs, Scene},
+    services::Outgoing,
+    wire::cdr::Cdr,
     wire::messages::rcl_interfaces::{
         DescribeParametersRequest, DescribeParametersResponse, FloatingPointRange,
         GetParameterTypesRequest, GetParameterTypesResponse, GetParametersRequest,
         GetParametersResponse, ListParametersRequest, ListParametersResponse, ListParametersResult,
-        Parameter, ParameterDescriptor, ParameterType, ParameterValue,
+        Parameter, ParameterDescriptor, ParameterEvent, ParameterType, ParameterValue,
         SetParametersAtomicallyRequest, SetParametersAtomicallyResponse, SetParametersRequest,
         SetParametersResponse, SetParametersResult,
     },
@@ -19,16 +22,28 @@ use crate::{
 
 /// What a parameter is.
 enum Kind {
-    /// A number that may be changed.
+    /// A number of the world that may be changed.
     Knob(Knob),
+    /// A rate of topics, which may be changed [Hz].
+    Rate(fn(&mut Outputs) -> &mut f64),
     /// Something that is told.
     Told(fn(&Scene) -> ParameterValue),
+}
+
+/// Slowest rate of a topic [Hz].
+const RATE_MIN: f64 = 1e-3;
+
+/// A change that has been checked.
+#[derive(Clone, Copy)]
+enum Setting {
+    Knob(Knob),
+    Rate(fn(&mut Outputs) -> &mut f64),
 }
 
 /// Name, what it is, description with unit.
 type Row = (&'static str, Kind, &'static str);
 
-const PARAMETERS: [Row; 14] = [
+const PARAMETERS: [Row; 16] = [
     ("chamber.lag", Kind::Knob(Knob::ChamberLag), "time constant of pump and line [s]"),
     ("chamber.rate_max", Kind::Knob(Knob::ChamberRateMax), "largest rate of the pressure [Pa/s]"),
     (
@@ -47,21 +62,15 @@ const PARAMETERS: [Row; 14] = [
         Kind::Knob(Knob::ObjectFriction),
         "friction of all objects on the membrane [-]",
     ),
+    ("outputs.contacts_rate", Kind::Rate(|it| &mut it.contacts_rate), "rate of contacts [Hz]"),
+    ("outputs.grains_rate", Kind::Rate(|it| &mut it.grains_rate), "rate of grains [Hz]"),
+    ("outputs.membrane_rate", Kind::Rate(|it| &mut it.membrane_rate), "rate of the membrane [Hz]"),
+    ("outputs.pressure_rate", Kind::Rate(|it| &mut it.pressure_rate), "rate of the pressure [Hz]"),
+    ("outputs.state_rate", Kind::Rate(|it| &mut it.state_rate), "rate of poses and wrenches [Hz]"),
     (
-        "outputs.contacts_rate",
-        Kind::Told(|it| double(it.outputs.contacts_rate)),
-        "rate of contacts [Hz]",
-    ),
-    ("outputs.grains_rate", Kind::Told(|it| double(it.outputs.grains_rate)), "rate of grains [Hz]"),
-    (
-        "outputs.membrane_rate",
-        Kind::Told(|it| double(it.outputs.membrane_rate)),
-        "rate of the membrane [Hz]",
-    ),
-    (
-        "outputs.state_rate",
-        Kind::Told(|it| double(it.outputs.state_rate)),
-        "rate of poses and wrenches [Hz]",
+        "outputs.statistics_rate",
+        Kind::Rate(|it| &mut it.statistics_rate),
+        "rate of statistics [Hz]",
     ),
     ("scene", Kind::Told(|it| text(&it.name)), "name of the scene"),
     ("seed", Kind::Told(|it| whole(it.seed)), "seed of all random numbers"),
@@ -102,7 +111,17 @@ impl Simulator {
     fn value(&self, row: &Row) -> ParameterValue {
         match &row.1 {
             Kind::Knob(knob) => double(knob.get(&self.scene)),
+            Kind::Rate(rate) => double(*rate(&mut self.scene.outputs.clone())),
             Kind::Told(tell) => tell(&self.scene),
+        }
+    }
+
+    /// Smallest and largest value of a parameter that may be changed.
+    fn range(&self, kind: &Kind) -> Option<[f64; 2]> {
+        match kind {
+            Kind::Knob(knob) => Some(knob.range()),
+            Kind::Rate(_) => Some([RATE_MIN, 1.0 / tick_s(&self.scene)]),
+            Kind::Told(_) => None,
         }
     }
 
@@ -127,19 +146,17 @@ impl Simulator {
             let Some(row) = find(name) else {
                 return ParameterDescriptor { name: name.clone(), ..Default::default() };
             };
-            let range = match &row.1 {
-                Kind::Knob(knob) => {
-                    let [from_value, to_value] = knob.range();
-                    vec![FloatingPointRange { from_value, to_value, step: 0.0 }]
-                }
-                Kind::Told(_) => Vec::new(),
-            };
+            let range = self.range(&row.1).map(|[from_value, to_value]| FloatingPointRange {
+                from_value,
+                to_value,
+                step: 0.0,
+            });
             ParameterDescriptor {
                 name: name.clone(),
                 r#type: self.value(row).r#type,
                 description: row.2.to_owned(),
                 read_only: matches!(row.1, Kind::Told(_)),
-                floating_point_range: range,
+                floating_point_range: range.into_iter().collect(),
                 ..Default::default()
             }
         };
@@ -176,14 +193,17 @@ impl Simulator {
         request: &SetParametersRequest,
         world: &mut World<'_>,
     ) -> SetParametersResponse {
-        let mut set = |it: &Parameter| match self
-            .check(it)
-            .and_then(|(knob, value)| self.turn(knob, value, world))
-        {
-            Ok(()) => SetParametersResult { successful: true, reason: String::new() },
-            Err(reason) => SetParametersResult { successful: false, reason },
-        };
-        SetParametersResponse { results: request.parameters.iter().map(&mut set).collect() }
+        let mut results = Vec::with_capacity(request.parameters.len());
+        let mut changed = Vec::new();
+        for asked in &request.parameters {
+            let set = self.check(asked).and_then(|it| self.set(it, asked, world));
+            if set.is_ok() {
+                changed.push(asked.clone());
+            }
+            results.push(result_of(set));
+        }
+        self.tell_parameters(changed, world);
+        SetParametersResponse { results }
     }
 
     pub(super) fn set_parameters_atomically(
@@ -191,40 +211,84 @@ impl Simulator {
         request: &SetParametersAtomicallyRequest,
         world: &mut World<'_>,
     ) -> SetParametersAtomicallyResponse {
-        let checked: Result<Vec<(Knob, f64)>, String> =
-            request.parameters.iter().map(|it| self.check(it)).collect();
+        let asked = &request.parameters;
+        let checked: Result<Vec<Setting>, String> = asked.iter().map(|it| self.check(it)).collect();
         // What has been checked can fail only if the world does not change at all.
         let set = checked.and_then(|all| {
-            all.into_iter().try_for_each(|(knob, value)| self.turn(knob, value, world))
+            all.into_iter().zip(asked).try_for_each(|(it, asked)| self.set(it, asked, world))
         });
-        let result = match set {
-            Ok(()) => SetParametersResult { successful: true, reason: String::new() },
-            Err(reason) => SetParametersResult { successful: false, reason },
-        };
-        SetParametersAtomicallyResponse { result }
+        if set.is_ok() {
+            self.tell_parameters(asked.clone(), world);
+        }
+        SetParametersAtomicallyResponse { result: result_of(set) }
     }
 
-    fn check(&self, asked: &Parameter) -> Result<(Knob, f64), String> {
+    fn check(&self, asked: &Parameter) -> Result<Setting, String> {
         let name = &asked.name;
         let row = find(name).ok_or_else(|| format!("there is no parameter `{name}`"))?;
-        let Kind::Knob(knob) = &row.1 else {
-            return Err(format!("`{name}` is read-only: change it in the scene, and start anew"));
+        let setting = match row.1 {
+            Kind::Knob(knob) => Setting::Knob(knob),
+            Kind::Rate(rate) => Setting::Rate(rate),
+            Kind::Told(_) => {
+                return Err(format!(
+                    "`{name}` is read-only: change it in the scene, and start anew"
+                ));
+            }
         };
         let value = match asked.value.r#type {
             ParameterType::PARAMETER_DOUBLE => asked.value.double_value,
             kind => return Err(format!("`{name}` is a double (3), not of type {kind}")),
         };
-        let [min, max] = knob.range();
-        if !(min..=max).contains(&value) {
-            return Err(format!("`{name}` is {value}: {} lies from {min} to {max}", row.2));
+        match self.range(&row.1) {
+            Some([min, max]) if !(min..=max).contains(&value) => {
+                Err(format!("`{name}` is {value}: {} lies from {min} to {max}", row.2))
+            }
+            _ => Ok(setting),
         }
-        Ok((*knob, value))
     }
 
-    fn turn(&mut self, knob: Knob, value: f64, world: &mut World<'_>) -> Result<(), String> {
-        let change = Change::Turn { knob, value };
-        self.change(&change, world).map_err(|refusal| refusal.to_string())?;
-        knob.set(&mut self.scene, value);
+    /// Sets what has been checked.
+    fn set(
+        &mut self,
+        setting: Setting,
+        asked: &Parameter,
+        world: &mut World<'_>,
+    ) -> Result<(), String> {
+        let value = asked.value.double_value;
+        match setting {
+            Setting::Knob(knob) => {
+                let change = Change::Turn { knob, value };
+                self.change(&change, world).map_err(|refusal| refusal.to_string())?;
+                knob.set(&mut self.scene, value);
+            }
+            Setting::Rate(rate) => {
+                *rate(&mut self.scene.outputs) = value;
+                self.changed.outputs = Some(self.scene.outputs.clone());
+            }
+        }
         Ok(())
+    }
+
+    /// Tells on `/parameter_events` what has been changed.
+    fn tell_parameters(&mut self, changed_parameters: Vec<Parameter>, world: &World<'_>) {
+        if changed_parameters.is_empty() {
+            return;
+        }
+        let event = ParameterEvent {
+            stamp: stamp(world.seen.time_ns),
+            node: self.scene.outputs.ros.node.clone(),
+            changed_parameters,
+            ..ParameterEvent::default()
+        };
+        if let Some(channel) = parameter_events(self.goals.n_channels) {
+            self.out.push(Outgoing::Message(channel, Cdr::of(&event)));
+        }
+    }
+}
+
+fn result_of(set: Result<(), String>) -> SetParametersResult {
+    match set {
+        Ok(()) => SetParametersResult { successful: true, reason: String::new() },
+        Err(reason) => SetParametersResult { successful: false, reason },
     }
 }

@@ -1,17 +1,12 @@
-//! Places with names, and the scenes one could be in: what is known before anything runs.
+//! Places with names: what is known of a scene before anything runs.
 
-use super::{Simulator, Version, World, bounds, entities::told_pose, failed, ok};
+use super::{Simulator, bounds, entities::told_pose, failed, ok};
 use crate::{
     base::{Pose, Vec3},
     physics::boundary::shape::Aabb,
-    scene::{
-        self, Scene,
-        resource::{self, Shelf},
-    },
     wire::messages::simulation_interfaces::{
-        Bounds, GetAvailableWorldsRequest, GetAvailableWorldsResponse, GetCurrentWorldResponse,
-        GetNamedPoseBoundsRequest, GetNamedPoseBoundsResponse, GetNamedPosesRequest,
-        GetNamedPosesResponse, NamedPose, Resource, Result as Told, TagsFilter, WorldResource,
+        Bounds, GetNamedPoseBoundsRequest, GetNamedPoseBoundsResponse, GetNamedPosesRequest,
+        GetNamedPosesResponse, NamedPose, Result as Told, TagsFilter,
     },
 };
 
@@ -28,6 +23,9 @@ struct Place {
 
 impl Simulator {
     fn places(&self) -> Vec<Place> {
+        if !self.has_world() {
+            return Vec::new();
+        }
         let place = |name: String, what: &str, tag: &str, pose: &Pose, bounds| Place {
             pose: NamedPose {
                 name,
@@ -77,70 +75,13 @@ impl Simulator {
             },
         }
     }
-
-    pub(super) fn get_current_world(&self, _world: &World<'_>) -> GetCurrentWorldResponse {
-        let uri = self.file.as_ref().map(|it| format!("file://{}", it.display()));
-        let world = world_of(&self.scene, uri.unwrap_or_default());
-        GetCurrentWorldResponse { result: ok(), world }
-    }
-
-    pub(super) fn get_available_worlds(
-        &mut self,
-        request: &GetAvailableWorldsRequest,
-    ) -> GetAvailableWorldsResponse {
-        let mut folders = vec![self.folder.clone()];
-        for source in &request.additional_sources {
-            match resource::path(source, &self.folder).filter(|it| it.is_dir()) {
-                Some(folder) => folders.push(folder),
-                None if request.continue_on_error => {}
-                None => {
-                    let why = format!("source `{source}` is no folder");
-                    let result = failed(Told::RESULT_NOT_FOUND, why);
-                    return GetAvailableWorldsResponse { result, ..Default::default() };
-                }
-            }
-        }
-        // Reading them all takes a while: a list is made again only if a folder has changed.
-        let shelf = Shelf::of(&folders);
-        if self.worlds.as_ref().is_none_or(|it| it.0 != shelf) {
-            let files = folders.iter().flat_map(|folder| resource::files(folder, &["yaml"]));
-            let worlds = files.filter_map(|file| {
-                let scene = scene::load(&file, &[]).ok()?;
-                Some(world_of(&scene, format!("file://{}", file.display())))
-            });
-            self.worlds = Some((shelf, worlds.collect()));
-        }
-        let worlds = self.worlds.iter().flat_map(|it| &it.1);
-        let worlds = worlds.filter(|it| has_tags(&it.tags, &request.filter)).cloned().collect();
-        GetAvailableWorldsResponse { result: ok(), worlds }
-    }
 }
 
-fn world_of(scene: &Scene, uri: String) -> WorldResource {
-    let objects = scene.objects.iter().map(|it| it.name.clone());
-    WorldResource {
-        name: scene.name.clone(),
-        world_resource: Resource { uri, resource_string: String::new() },
-        description: format!("{} grains in the gripper", scene.grains.count),
-        tags: std::iter::once("gripper".to_owned()).chain(objects).collect(),
-    }
-}
-
-fn has_tags(tags: &[String], filter: &TagsFilter) -> bool {
+pub(super) fn has_tags(tags: &[String], filter: &TagsFilter) -> bool {
     let has = |tag: &String| tags.contains(tag);
     filter.tags.is_empty()
         || match filter.filter_mode {
             TagsFilter::FILTER_MODE_ALL => filter.tags.iter().all(has),
             _ => filter.tags.iter().any(has),
         }
-}
-
-impl Version {
-    /// The version that a distribution of ROS 2 carries.
-    pub fn of_distribution(name: &str) -> Self {
-        match name {
-            "humble" | "iron" | "jazzy" | "kilted" => Self::One,
-            _ => Self::Two,
-        }
-    }
 }

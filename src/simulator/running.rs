@@ -2,7 +2,7 @@
 
 use super::{Simulator, Unreadable, World, failed, goals::GoalId, ok};
 use crate::{
-    command::change::{Change, Scope},
+    command::change::{Change, ChangeRefused, Scope},
     scene::resource::FORMATS,
     services::Asker,
     wire::{
@@ -17,13 +17,16 @@ use crate::{
 };
 
 /// What is advertised: everything here has passed the black-box test.
-const FEATURES: [u8; 28] = [
+const FEATURES: [u8; 32] = [
     F::SPAWNING,
     F::DELETING,
     F::NAMED_POSES,
     F::POSE_BOUNDS,
     F::SPAWNING_RESOURCE_STRING,
     F::SPAWNABLES,
+    F::WORLD_LOADING,
+    F::WORLD_RESOURCE_STRING,
+    F::WORLD_UNLOADING,
     F::WORLD_TAGS,
     F::WORLD_INFO_GETTING,
     F::AVAILABLE_WORLDS,
@@ -32,6 +35,7 @@ const FEATURES: [u8; 28] = [
     F::ENTITY_TAGS,
     F::ENTITY_BOUNDS,
     F::ENTITY_BOUNDS_BOX,
+    F::ENTITY_BOUNDS_CONVEX,
     F::ENTITY_CATEGORIES,
     F::ENTITY_STATE_GETTING,
     F::ENTITY_STATE_SETTING,
@@ -107,6 +111,36 @@ impl Running {
         }
     }
 
+    pub(super) fn has_world(&self) -> bool {
+        ![SimulationState::STATE_NO_WORLD, SimulationState::STATE_LOADING_WORLD]
+            .contains(&self.state)
+    }
+
+    /// The state before.
+    pub(super) fn begin_loading(&mut self) -> u8 {
+        self.is_first = false;
+        std::mem::replace(&mut self.state, SimulationState::STATE_LOADING_WORLD)
+    }
+
+    /// A world is there. Who has been told to quit meanwhile quits.
+    pub(super) fn end_loading(&mut self) {
+        if !self.is_quitting() {
+            self.state = SimulationState::STATE_STOPPED;
+        }
+    }
+
+    /// The world that was there before is there still.
+    pub(super) fn give_up_loading(&mut self, before: u8) {
+        if !self.is_quitting() {
+            self.state = before;
+        }
+    }
+
+    pub(super) fn unload(&mut self) {
+        self.is_first = false;
+        self.state = SimulationState::STATE_NO_WORLD;
+    }
+
     /// True if steps may begin.
     fn is_ready_to_step(&self) -> Result<(), String> {
         if self.stepping.is_some() {
@@ -152,6 +186,12 @@ impl Simulator {
         let now = self.running.state;
         if target == now && !(target == S::STATE_STOPPED && self.running.stepping.is_some()) {
             return failed(R::ALREADY_IN_TARGET_STATE, "the simulation is in this state already");
+        }
+        let is_world_state =
+            [S::STATE_PLAYING, S::STATE_PAUSED, S::STATE_STOPPED].contains(&target);
+        if is_world_state && !self.has_world() {
+            let why = "no world is loaded: load one first";
+            return failed(R::STATE_TRANSITION_ERROR, why);
         }
         match target {
             S::STATE_PLAYING | S::STATE_PAUSED if self.running.stepping.is_some() => {
@@ -220,6 +260,7 @@ impl Simulator {
                 }
                 ok()
             }
+            Err(error @ ChangeRefused::NoScene) => failed(Told::RESULT_INCORRECT_STATE, error),
             Err(error) => failed(Told::RESULT_OPERATION_FAILED, error),
         };
         ResetSimulationResponse { result }
@@ -278,7 +319,7 @@ impl Simulator {
         }
     }
 
-    fn end_steps(&mut self, why: &str) {
+    pub(super) fn end_steps(&mut self, why: &str) {
         let Some(stepping) = self.running.stepping.take() else { return };
         let why = format!("{why} after {} steps, {} were left", stepping.done, stepping.left);
         let result = failed(Told::RESULT_OPERATION_FAILED, why);

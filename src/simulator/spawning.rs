@@ -76,6 +76,9 @@ impl Simulator {
     }
 
     fn try_spawn(&mut self, request: &SpawnEntity, world: &mut World<'_>) -> Result<String, Told> {
+        if !self.has_world() {
+            return Err(failed(Told::RESULT_INCORRECT_STATE, ChangeRefused::NoScene));
+        }
         if OBJECTS_MAX <= world.seen.objects.len() {
             let why = format!("there are {OBJECTS_MAX} objects already");
             return Err(failed(Told::RESULT_OPERATION_FAILED, why));
@@ -86,8 +89,7 @@ impl Simulator {
         object.name = self.name(request, &object.name, world)?;
         self.place(&mut object, request, world)?;
         let name = object.name.clone();
-        let extent = bounds::extent(&self.scene, &object);
-        self.change(&Change::Insert(Box::new(object)), world).map_err(|refusal| {
+        self.change(&Change::Insert(Box::new(object.clone())), world).map_err(|refusal| {
             let code = match refusal {
                 ChangeRefused::NameTaken { .. } => SpawnResult::NAME_NOT_UNIQUE,
                 ChangeRefused::Overlap { .. } => SpawnResult::INVALID_POSE,
@@ -101,7 +103,7 @@ impl Simulator {
             description: "a spawned object".to_owned(),
             tags: vec!["object".to_owned(), "spawned".to_owned()],
         };
-        self.register.spawned(&name, info, extent);
+        self.register.spawned(&self.scene, &object, info);
         Ok(name)
     }
 
@@ -171,6 +173,7 @@ impl Simulator {
                 Err(refusal @ ChangeRefused::UnknownObject { .. }) => {
                     failed(Told::RESULT_NOT_FOUND, refusal)
                 }
+                Err(refusal @ ChangeRefused::NoScene) => failed(Told::RESULT_NOT_FOUND, refusal),
                 Err(refusal) => failed(Told::RESULT_OPERATION_FAILED, refusal),
             }
         };

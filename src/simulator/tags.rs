@@ -3,12 +3,13 @@
 use std::collections::BTreeMap;
 
 use super::{
-    bounds::extent,
+    bounds,
     entities::{BAG, FLANGE, TABLE},
 };
 use crate::{
+    base::Vec3,
     physics::boundary::shape::Aabb,
-    scene::Scene,
+    scene::{Object, Scene},
     wire::messages::simulation_interfaces::{EntityCategory, EntityInfo},
 };
 
@@ -17,6 +18,7 @@ use crate::{
 pub(super) struct Register {
     infos: BTreeMap<String, EntityInfo>,
     extents: BTreeMap<String, Aabb>,
+    corners: BTreeMap<String, Vec<Vec3>>,
 }
 
 impl Register {
@@ -29,9 +31,15 @@ impl Register {
         for object in &scene.objects {
             let what = "an object of the scene";
             register.add(&object.name, C::CATEGORY_DYNAMIC_OBJECT, what, "object");
-            register.extents.insert(object.name.clone(), extent(scene, object));
+            register.measure(scene, object);
         }
         register
+    }
+
+    /// Notes how far an object reaches.
+    fn measure(&mut self, scene: &Scene, object: &Object) {
+        self.extents.insert(object.name.clone(), bounds::extent(scene, object));
+        self.corners.insert(object.name.clone(), bounds::corners(scene, object));
     }
 
     fn add(&mut self, name: &str, category: u8, description: &str, tag: &str) {
@@ -48,6 +56,11 @@ impl Register {
         self.extents.get(name).copied()
     }
 
+    /// Corners of an object's convex hull, if a box does not do.
+    pub(super) fn corners(&self, name: &str) -> &[Vec3] {
+        self.corners.get(name).map_or(&[], Vec::as_slice)
+    }
+
     /// What is said of `name`.
     pub(super) fn get(&self, name: &str) -> EntityInfo {
         self.infos.get(name).cloned().unwrap_or_default()
@@ -59,9 +72,9 @@ impl Register {
     }
 
     /// An object was added.
-    pub(super) fn spawned(&mut self, name: &str, info: EntityInfo, extent: Aabb) {
-        self.infos.insert(name.to_owned(), info);
-        self.extents.insert(name.to_owned(), extent);
+    pub(super) fn spawned(&mut self, scene: &Scene, object: &Object, info: EntityInfo) {
+        self.infos.insert(object.name.clone(), info);
+        self.measure(scene, object);
     }
 
     /// Objects that were added are gone.
@@ -71,5 +84,6 @@ impl Register {
         };
         self.infos.retain(|name, _| is_own(name));
         self.extents.retain(|name, _| is_own(name));
+        self.corners.retain(|name, _| is_own(name));
     }
 }

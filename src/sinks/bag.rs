@@ -160,8 +160,9 @@ impl Bag {
             return Err(BagError::FolderInUse { folder: folder.to_owned() });
         }
         let mut topics = encoder.topics().to_vec();
-        topics.push(chain::topic());
-        topics.push(chain::changes_topic());
+        let node = &encoder.scene().outputs.ros.node;
+        topics.push(chain::topic(node));
+        topics.push(chain::changes_topic(node));
         let mut bag = Self {
             folder: folder.to_owned(),
             file: None,

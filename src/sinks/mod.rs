@@ -13,7 +13,10 @@ pub mod ros;
 #[cfg(feature = "shm")]
 pub mod shm;
 
-use std::{sync::OnceLock, time::Duration};
+use std::{
+    sync::{Arc, OnceLock},
+    time::Duration,
+};
 
 pub use crate::snapshot::run::{RunStatistics, SinkCounters};
 use crate::{
@@ -34,6 +37,8 @@ pub struct Packet {
     pub changes: Vec<Change>,
     /// Number of the packet in its run; 0 if nobody counts.
     pub number: u64,
+    /// Who makes its messages, if not the one that a sink was opened with; the topics are the same.
+    encoder: Option<Arc<Encoder>>,
     /// The messages, once someone has asked for them.
     messages: OnceLock<Vec<Message>>,
 }
@@ -47,6 +52,7 @@ impl Packet {
             checkpoints: Vec::new(),
             changes: Vec::new(),
             number: 0,
+            encoder: None,
             messages: OnceLock::new(),
         }
     }
@@ -71,9 +77,24 @@ impl Packet {
         Self { number, ..self }
     }
 
-    /// The messages; `encoder` makes them if nobody has yet.
+    /// The same packet, whose messages are made by `encoder`.
+    pub fn told_by(self, encoder: Option<Arc<Encoder>>) -> Self {
+        Self { encoder, ..self }
+    }
+
+    /// The messages; its own encoder or else `encoder` makes them if nobody has yet. After another
+    /// scene was loaded they begin with what never changes in it.
     pub fn messages(&self, encoder: &Encoder) -> &[Message] {
-        self.messages.get_or_init(|| encoder.encode(&self.snapshot, self.run.as_ref()))
+        self.messages.get_or_init(|| {
+            let encoder = self.encoder.as_deref().unwrap_or(encoder);
+            let is_new = self.changes.iter().any(|it| matches!(it, Change::LoadScene(_)));
+            let mut messages = match is_new {
+                true => encoder.latched(self.snapshot.time_ns),
+                false => Vec::new(),
+            };
+            messages.extend(encoder.encode(&self.snapshot, self.run.as_ref()));
+            messages
+        })
     }
 }
 

@@ -183,6 +183,11 @@ impl RosNode {
         ros2_client::rosout!((*node), ros2_client::ros2::LogLevel::Warn, "{text}");
     }
 
+    /// What ros2-client knows of the graph.
+    pub(crate) fn context(&self) -> Context {
+        self.context.clone()
+    }
+
     /// The participant itself, for services.
     pub fn participant(&self) -> rustdds::DomainParticipant {
         self.context.domain_participant()

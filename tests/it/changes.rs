@@ -4,7 +4,7 @@ use jamgrip::{
     base::{Pose, Real, Vec3, real::Twist},
     command::{
         Command,
-        change::{Change, ChangeRefused, Scope},
+        change::{Change, ChangeRefused, Scope, SettledScene},
     },
     cosim::FLANGE,
     scene::{Object, Shape},
@@ -140,4 +140,40 @@ fn the_gripper_is_carried_as_one() {
     }
     let now = session.coupled().state.walls[FLANGE].pose;
     assert!((now.translation.vector - pose.translation.vector).norm() < 1e-12);
+}
+
+/// Oracle: the same scene as the first of a run, bit by bit; after a reset too. Ticks of the run go on.
+#[test]
+fn a_loaded_scene_runs_as_if_it_had_been_the_first() {
+    let other = ["object.shape.sphere.radius=20 mm", "object.position=[0 mm, 0 mm, 20 mm]"];
+    let mut first = coarse::session(1, &other);
+    let start = first.digest();
+    let expected = run(&mut first, 30);
+
+    let mut session = coarse::session(1, &[]);
+    run(&mut session, 10);
+    let (scene, start_state) = (coarse::scene(&other), coarse::start_state().to_vec());
+    let settled = SettledScene { scene, start: start_state, keeps_time: false };
+    let load = Change::LoadScene(Box::new(settled.clone()));
+    // As a recording keeps it.
+    session.change(&Change::from_bytes(&load.to_bytes()).unwrap()).unwrap();
+    assert_eq!((session.digest(), session.time_ns(), session.run_tick().0), (start, 0, 10));
+    assert_eq!(run(&mut session, 30), expected);
+    assert_eq!(session.desk().counts().n_applied + session.desk().counts().n_limited, 80);
+    assert!(session.save().is_none(), "a checkpoint would be taken for the first scene's");
+    session.change(&Change::Reset(Scope::ALL)).unwrap();
+    assert_eq!(run(&mut session, 30), expected);
+
+    let keeps = SettledScene { keeps_time: true, ..settled.clone() };
+    session.change(&Change::LoadScene(Box::new(keeps))).unwrap();
+    assert_eq!(session.time_ns(), 30_000_000, "time goes on");
+    run(&mut session, 1);
+    let now = session.digest();
+    let damaged = SettledScene { start: vec![1, 2, 3], ..settled.clone() };
+    let scene = coarse::scene(&["time.tick=2 ms", "outputs.state_rate=100 Hz"]);
+    for wrong in [damaged, SettledScene { scene, ..settled }] {
+        let refused = session.change(&Change::LoadScene(Box::new(wrong)));
+        assert!(matches!(refused, Err(ChangeRefused::Unusable(_))), "{refused:?}");
+        assert_eq!(session.digest(), now, "nothing is changed");
+    }
 }

@@ -31,6 +31,19 @@ flange:
 chamber: { lag: 20 ms }
 ";
 
+/// Another gripper: fewer grains on another mesh, and a ball.
+pub(crate) const OTHER_TEXT: &str = "
+name: other
+seed: 2
+membrane: { frequency: 6 }
+grains: { count: 200, radius_min: 4 mm, radius_max: 4.4 mm }
+object:
+  name: ball
+  shape: { sphere: { radius: 15 mm } }
+  position: [0 mm, 0 mm, 15 mm]
+flange: { position: [0 mm, 0 mm, 101 mm] }
+";
+
 /// The scene, with overrides as on the command line.
 pub(crate) fn scene(overrides: &[&str]) -> Scene {
     let overrides: Vec<String> = overrides.iter().map(|it| (*it).to_owned()).collect();

@@ -36,12 +36,18 @@ mod rig; // a bare model by hand
 mod ros_layouts; // layouts for viewers name topics that there are
 #[cfg(feature = "ros")]
 mod ros_loop; // what goes out reaches others, what others say comes in
+#[cfg(all(feature = "ros", feature = "bag"))]
+mod ros_floods; // ten thousand commands a second
 #[cfg(feature = "ros")]
 mod ros_gripper; // what drivers of grippers offer, and ticks that wait for a controller
 #[cfg(feature = "ros")]
 mod ros_program; // the whole program, and clients of its services
 #[cfg(feature = "ros")]
+mod ros_qos; // who hears what
+#[cfg(feature = "ros")]
 mod ros_simulator; // what ROS 2 users ask of a simulator
+#[cfg(feature = "ros")]
+mod ros_worlds; // another scene while the program runs
 mod scenes; // scenes that run, scenes that are refused
 mod sheet; // a grain on the membrane
 mod spheres; // grains on the spheres of the classic membrane

@@ -34,13 +34,14 @@ impl Running {
     pub(crate) fn start_with(folder: &Path, changes: &[&str], more: &[&str]) -> Self {
         let scene = folder.join("coarse.yaml");
         std::fs::write(&scene, coarse::TEXT).unwrap();
+        let cache = ["--cache", concat!(env!("CARGO_TARGET_TMPDIR"), "/starts")];
         let child = Command::new(env!("CARGO_BIN_EXE_jamgrip"))
             .arg("run")
             .arg(&scene)
             .args(["--set", "controller=topics", "--no-stream", "--threads", "1"])
             .args(if more.contains(&"--bag") { None } else { Some("--no-bag") })
             .args(changes.iter().flat_map(|it| ["--set", it]))
-            .args(["--cache", concat!(env!("CARGO_TARGET_TMPDIR"), "/starts")])
+            .args(if more.contains(&"--cache") { &[][..] } else { &cache[..] })
             .args(more)
             .env("ROS_DOMAIN_ID", reach().domain_id.to_string())
             .stdout(Stdio::null())
@@ -78,7 +79,12 @@ impl Client {
 
     /// The same for a service known by its type's description.
     pub(crate) fn typed(node: &RosNode, name: &str, service_type: ServiceType) -> Self {
-        let offer = Offer { name: format!("/jamgrip/{name}"), service_type };
+        Self::at(node, &format!("/jamgrip/{name}"), service_type)
+    }
+
+    /// The same by its full name.
+    pub(crate) fn at(node: &RosNode, name: &str, service_type: ServiceType) -> Self {
+        let offer = Offer { name: name.to_owned(), service_type };
         let mut client = RosClient::open(node, &offer, Way::Enhanced).unwrap();
         wait_until(name, || client.is_matched());
         Self(client)

@@ -14,11 +14,12 @@ use jamgrip::{
     wire::{
         cdr::Cdr,
         messages::{
-            RosService,
+            RosMessage, RosService,
+            geometry_msgs::WrenchStamped,
             rcl_interfaces::{
                 DescribeParametersRequest, DescribeParametersResponse, GetParametersRequest,
                 GetParametersResponse, ListParametersRequest, ListParametersResponse, Parameter,
-                ParameterType, ParameterValue, SetParametersAtomicallyRequest,
+                ParameterEvent, ParameterType, ParameterValue, SetParametersAtomicallyRequest,
                 SetParametersAtomicallyResponse, SetParametersRequest, SetParametersResponse,
                 srv as rcl,
             },
@@ -29,13 +30,14 @@ use jamgrip::{
                 StepSimulationResponse, srv,
             },
         },
+        topics::{Qos, Topic},
     },
 };
 use proptest::prelude::{ProptestConfig, any, prop, prop_assert, proptest};
 
 use crate::{
     by_tick::{Synthetic, example},
-    peers,
+    coarse, peers,
     private_network::{cyclone_config, inside, inside_with_peers, reach},
     ros_program::{Client, Running, wait_until},
 };
@@ -44,6 +46,8 @@ fn conformance(changes: &[&str], arguments: &[&str]) {
     let folder = tempfile::tempdir().unwrap();
     let bag = folder.path().join("bag");
     let bag = bag.to_str().unwrap();
+    // Another bag, another object, in the same folder.
+    std::fs::write(folder.path().join("other.yaml"), coarse::OTHER_TEXT).unwrap();
     let node = Running::start_with(folder.path(), changes, &["--bag", bag]);
     let output = Command::new(example("conformance"))
         .args(["--patience", "60"])
@@ -124,8 +128,10 @@ fn garbage_and_floods_do_not_reach_the_physics() {
         let quiet = episode(&mut reset, &mut step, &mut look);
 
         let (offers, _) = asked("/jamgrip", None);
+        // A request to unload the world has no field: whatever its bytes, it is one.
         let mut floods: Vec<RosClient> = offers
             .iter()
+            .filter(|offer| !offer.name.ends_with("/unload_world"))
             .map(|offer| RosClient::open(&node, offer, Way::Enhanced).unwrap())
             .collect();
         for flood in &mut floods {
@@ -206,7 +212,15 @@ fn an_independent_dds_calls_services_and_an_action() {
         let said = String::from_utf8_lossy(&output.stdout);
         assert!(output.status.success(), "{said}{}", String::from_utf8_lossy(&output.stderr));
         let seen: serde_json::Value = serde_json::from_str(&said).unwrap();
+        // The ports of topics, /rosout, /parameter_events and ros_discovery_info, and of services.
+        let topics = jamgrip::wire::topics::topics(&coarse::scene(&[]));
+        let n_inputs = topics.iter().filter(|it| it.is_input).count();
+        let n_offers = asked("/jamgrip", None).0.len();
+        let n_channels = asks::channels("/jamgrip", None).len();
+        let n_outputs = topics.len() - n_inputs + 3;
+        let listed = [n_inputs + n_offers, n_outputs + n_offers + n_channels];
         let expected = serde_json::json!({
+            "listed": listed,
             "paused": 1, "stepped": 1, "accepted": true, "status": 4, "ended": 1,
             "gripped": true, "types": [3, 0, 2], "n_ticks": 12, "feedback": [[1, 4], [5, 0]],
         });
@@ -239,6 +253,13 @@ fn parameters_are_listed_described_read_and_set() {
         assert_eq!(told.descriptors[0].floating_point_range.len(), 1);
         assert!(told.descriptors[1].read_only);
 
+        let kind = ParameterEvent::TYPE;
+        let qos = Qos { is_reliable: true, depth: 100, is_latched: false };
+        let (name, is_input) = ("/parameter_events".to_owned(), true);
+        let topic = Topic { name, type_name: kind.name, message_type: kind, qos, is_input };
+        let events = node.subscription::<ParameterEvent>(&topic).unwrap();
+        // The node's own writer there, which it never uses, and ours.
+        wait_until("writers", || node.n_writers("/parameter_events") == 2);
         let mut set = Client::of::<rcl::SetParameters>(&node, "set_parameters");
         let parameters = vec![
             double("chamber.lag", 0.5),
@@ -250,6 +271,18 @@ fn parameters_are_listed_described_read_and_set() {
         let answer: SetParametersResponse = set.ask(&SetParametersRequest { parameters });
         let taken: Vec<bool> = answer.results.iter().map(|it| it.successful).collect();
         assert_eq!(taken, [true, false, false, false, false], "{:?}", answer.results);
+        let mut event = None;
+        wait_until("an event", || {
+            event = events.take().unwrap().map(|it| it.0);
+            event.is_some()
+        });
+        let event = event.unwrap();
+        assert_eq!(event.node, "/jamgrip");
+        assert_eq!(
+            event.changed_parameters,
+            [double("chamber.lag", 0.5)],
+            "what was taken, no more"
+        );
         let mut atomically =
             Client::of::<rcl::SetParametersAtomically>(&node, "set_parameters_atomically");
         let parameters = vec![double("chamber.lag", 0.7), double("seed", 1.0)];
@@ -260,6 +293,54 @@ fn parameters_are_listed_described_read_and_set() {
         let values: GetParametersResponse = get.ask(&GetParametersRequest { names });
         assert!((values.values[0].double_value - 0.5).abs() < 1e-12, "{:?}", values.values[0]);
         assert_eq!((values.values[1].integer_value, values.values[2].r#type), (1, 0));
+        assert_eq!(events.take().unwrap(), None, "all or nothing is told");
+    });
+}
+
+/// Oracle: counting. A rate in simulated time, before and after it was changed.
+#[test]
+fn rates_of_topics_are_parameters() {
+    inside("ros_simulator::rates_of_topics_are_parameters", || {
+        let folder = tempfile::tempdir().unwrap();
+        let _program = Running::start(folder.path(), &["outputs.state_rate=1 kHz"]);
+        let node = RosNode::join_as("operator", &reach()).unwrap();
+        let kind = WrenchStamped::TYPE;
+        let qos = Qos { is_reliable: true, depth: 1000, is_latched: false };
+        let (name, is_input) = ("/jamgrip/wrench".to_owned(), true);
+        let topic = Topic { name, type_name: kind.name, message_type: kind, qos, is_input };
+        let wrench = node.subscription::<WrenchStamped>(&topic).unwrap();
+        let mut play = Client::of::<srv::SetSimulationState>(&node, "set_simulation_state");
+        let mut step = Client::of::<srv::StepSimulation>(&node, "step_simulation");
+        let mut set = Client::of::<rcl::SetParameters>(&node, "set_parameters");
+        let state = SimulationState { state: SimulationState::STATE_PAUSED };
+        let _: SetSimulationStateResponse = play.ask(&SetSimulationStateRequest { state });
+        wait_until("a writer", || node.n_writers("/jamgrip/wrench") == 1);
+        let mut last = 0;
+        // Stamps after `from_ns` of the wrenches in the next 100 ticks [ms].
+        let mut stamps = || {
+            let answer: StepSimulationResponse = step.ask(&StepSimulationRequest { steps: 100 });
+            assert_eq!(answer.result.result, Told::RESULT_OK);
+            last += 100;
+            let mut found = Vec::new();
+            wait_until("the last wrench", || {
+                while let Some((it, _)) = wrench.take().unwrap() {
+                    found.push(it.header.stamp.nanosec / 1_000_000);
+                }
+                found.last() == Some(&last)
+            });
+            found
+        };
+        let all = stamps();
+        assert!((1..=100).all(|it| all.contains(&it)), "every tick: {all:?}");
+        let parameters = vec![
+            double("outputs.state_rate", 50.0),
+            double("outputs.grains_rate", 0.0),
+            double("outputs.membrane_rate", 1001.0),
+        ];
+        let answer: SetParametersResponse = set.ask(&SetParametersRequest { parameters });
+        let taken: Vec<bool> = answer.results.iter().map(|it| it.successful).collect();
+        assert_eq!(taken, [true, false, false], "{:?}", answer.results);
+        assert_eq!(stamps(), [120, 140, 160, 180, 200], "50 Hz");
     });
 }
 
@@ -270,7 +351,10 @@ fn names_on_the_command_line_are_those_in_the_graph() {
         let folder = tempfile::tempdir().unwrap();
         let line = ["--ros-args", "-r", "__ns:=/left", "-r", "__node:=grip", "-r", "~/wrench:=/ft"];
         let more = ["-r", "~/get_entities:=~/things", "-p", "outputs.ros.interfaces_prefix:=/sim"];
-        let _program = Running::start_with(folder.path(), &[], &[&line[..], &more[..]].concat());
+        let bag = folder.path().join("bag");
+        let recorded = ["--bag", bag.to_str().unwrap()];
+        let line = [&recorded[..], &line[..], &more[..]].concat();
+        let program = Running::start_with(folder.path(), &[], &line);
         let node = RosNode::join_as("operator", &reach()).unwrap();
         wait_until("the names", || {
             ["/ft", "/left/grip/pressure", "/clock"].iter().all(|it| node.n_writers(it) == 1)
@@ -282,5 +366,19 @@ fn names_on_the_command_line_are_those_in_the_graph() {
             let mut client = RosClient::open(&node, &offer, Way::Enhanced).unwrap();
             wait_until(name, || client.is_matched());
         }
+        let set = srv::SetSimulationState::TYPE;
+        let mut set = Client::at(&node, "/left/grip/set_simulation_state", set);
+        let state = SimulationState { state: SimulationState::STATE_PAUSED };
+        let _: SetSimulationStateResponse = set.ask(&SetSimulationStateRequest { state });
+        let mut step = Client::at(&node, "/sim/step_simulation", srv::StepSimulation::TYPE);
+        let _: StepSimulationResponse = step.ask(&StepSimulationRequest { steps: 3 });
+        program.end();
+        // The recording's own topics are below the node as well, and are found there.
+        let recording = jamgrip::bag::recording::Recording::open(&bag).unwrap();
+        assert_eq!(recording.node(), "/left/grip");
+        let course = recording.course_of_all(1_000_000).unwrap();
+        assert_eq!((course.last_tick(), course.broken_at), (3, None));
+        let metadata = std::fs::read_to_string(bag.join("metadata.yaml")).unwrap();
+        assert!(metadata.contains("/left/grip/world_change") && !metadata.contains("/jamgrip/"));
     });
 }

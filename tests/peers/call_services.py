@@ -160,6 +160,7 @@ print(
             "types": list(kinds.types),
             "n_ticks": len([it for it in after if it > before]),
             "feedback": told_steps,
+            "listed": node.nodes()["/jamgrip"],
         }
     ),
     flush=True,

@@ -18,7 +18,7 @@ use super::{
 };
 use crate::{
     base::Vec3,
-    scene::{Controller, Scene},
+    scene::{Controller, Outputs, Scene},
     snapshot::{
         Snapshot,
         due::{is_due, is_first_of},
@@ -42,6 +42,8 @@ const DIAGNOSTICS_RATE: f64 = 1.0;
 #[derive(Clone, Debug)]
 pub struct Encoder {
     scene: Scene,
+    /// Objects that have topics, in the order of these.
+    objects: Vec<String>,
     triangles: Vec<[u32; 3]>,
     vertices: Vec<Vec3>,
     topics: Vec<Topic>,
@@ -53,14 +55,32 @@ impl Encoder {
     /// shape at rest in the flange's axes.
     pub fn new(scene: &Scene, triangles: &[[u32; 3]], vertices: &[Vec3]) -> Self {
         let topics = topics(scene);
-        let objects = scene.objects.iter().map(|it| it.name.clone()).collect();
+        let objects: Vec<String> = scene.objects.iter().map(|it| it.name.clone()).collect();
         Self {
             scene: scene.clone(),
             triangles: triangles.to_vec(),
             vertices: vertices.to_vec(),
-            commands: CommandCodec::new(topics.clone(), objects),
+            commands: CommandCodec::new(topics.clone(), objects.clone()),
             topics,
+            objects,
         }
+    }
+
+    /// For another scene in the same run: topics, and objects that have some, stay.
+    pub fn of_scene(&self, scene: &Scene, triangles: &[[u32; 3]], vertices: &[Vec3]) -> Self {
+        let (triangles, vertices) = (triangles.to_vec(), vertices.to_vec());
+        Self { scene: scene.clone(), triangles, vertices, ..self.clone() }
+    }
+
+    /// The same at other rates.
+    pub fn at_rates(&self, outputs: &Outputs) -> Self {
+        let scene = Scene { outputs: outputs.clone(), ..self.scene.clone() };
+        Self { scene, ..self.clone() }
+    }
+
+    /// The scene that is told of.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
     }
 
     /// The list of topics that the messages' indices mean.
@@ -129,7 +149,7 @@ impl Encoder {
         out.common(Common::FlangeWrench, &parts::wrench(&snapshot.mount_wrench, time_ns, FLANGE));
         for object in &snapshot.objects {
             // Objects that came later have no topics of their own.
-            let found = self.scene.objects.iter().position(|it| it.name == object.name);
+            let found = self.objects.iter().position(|it| *it == object.name);
             let Some(index) = found else { continue };
             let wrench = parts::wrench(&object.contact_wrench, time_ns, WORLD);
             out.of_object(index, OfObject::ContactWrench, &wrench);

@@ -1,0 +1,128 @@
+//! Ten thousand commands a second.
+
+use std::{
+    io::Write,
+    sync::mpsc,
+    time::{Duration, Instant},
+};
+
+use jamgrip::{
+    bag::recording::Recording,
+    sinks::ros::{Body, RosNode},
+    wire::{
+        messages::{
+            RosMessage,
+            geometry_msgs::PoseStamped,
+            jamgrip_msgs::ObjectCommand,
+            simulation_interfaces::{
+                ResetSimulationRequest, ResetSimulationResponse, Result as Told,
+                SetSimulationStateRequest, SetSimulationStateResponse, SimulationState,
+                StepSimulationRequest, StepSimulationResponse, srv,
+            },
+            std_msgs::Float64,
+        },
+        topics::{Common, common, topics},
+    },
+};
+
+use crate::{
+    coarse,
+    private_network::{inside, reach},
+    ros_program::{Client, Running, wait_until},
+};
+
+/// Commands that are asked for [Hz].
+const RATE: f64 = 10_000.0;
+/// Ticks of an episode.
+const TICKS: u64 = 500;
+
+#[expect(clippy::disallowed_methods, reason = "how fast commands come is measured")]
+fn now() -> Instant {
+    Instant::now()
+}
+
+/// Senseless commands on three topics, one after the other, at `RATE` until `stopped`: how many, and in
+/// what time [s].
+fn flood(node: &RosNode, stopped: &mpsc::Receiver<()>) -> (u32, f64) {
+    let all = topics(&coarse::scene(&[]));
+    let mut pose = PoseStamped::default();
+    pose.pose.position.x = f64::NAN;
+    let unknown = ObjectCommand { object: "nobody".to_owned(), ..Default::default() };
+    let commands = [
+        (Common::VacuumCommand, Float64 { data: f64::NAN }.to_cdr()),
+        (Common::FlangePoseCommand, pose.to_cdr()),
+        (Common::ObjectCommand, unknown.to_cdr()),
+    ];
+    let mouths = commands.map(|(topic, cdr)| {
+        let topic = &all[common(topic)];
+        let mouth = node.publisher(topic).unwrap();
+        wait_until("a reader", || 0 < node.n_readers(&topic.name));
+        (mouth, cdr)
+    });
+    let (start, mut n) = (now(), 0_u32);
+    while stopped.try_recv().is_err() {
+        let due = RATE * start.elapsed().as_secs_f64();
+        while f64::from(n) < due {
+            let (mouth, cdr) = &mouths[n as usize % mouths.len()];
+            // A full history refuses some; what was sent counts.
+            n += u32::from(mouth.publish(Body::new(cdr.clone())).is_ok());
+        }
+        std::thread::sleep(Duration::from_micros(200));
+    }
+    (n, start.elapsed().as_secs_f64())
+}
+
+/// Oracle: the digests of the same ticks without the flood, tick by tick; counting.
+#[test]
+fn ten_thousand_commands_a_second_change_no_bit() {
+    inside("ros_floods::ten_thousand_commands_a_second_change_no_bit", || {
+        let folder = tempfile::tempdir().unwrap();
+        let bag = folder.path().join("bag");
+        let program = Running::start_with(folder.path(), &[], &["--bag", bag.to_str().unwrap()]);
+        let node = RosNode::join_as("operator", &reach()).unwrap();
+        let mut set = Client::of::<srv::SetSimulationState>(&node, "set_simulation_state");
+        let mut reset = Client::of::<srv::ResetSimulation>(&node, "reset_simulation");
+        let mut step = Client::of::<srv::StepSimulation>(&node, "step_simulation");
+        let state = SimulationState { state: SimulationState::STATE_PAUSED };
+        let answer: SetSimulationStateResponse = set.ask(&SetSimulationStateRequest { state });
+        assert_eq!(answer.result.result, Told::RESULT_OK);
+        let mut episode = || {
+            let since = now();
+            let answer: StepSimulationResponse = step.ask(&StepSimulationRequest { steps: TICKS });
+            assert_eq!(answer.result.result, Told::RESULT_OK, "{}", answer.result.error_message);
+            since.elapsed().as_secs_f64()
+        };
+        let quiet_s = episode();
+        let scope = ResetSimulationRequest::SCOPE_ALL;
+        let _: ResetSimulationResponse = reset.ask(&ResetSimulationRequest { scope });
+        let (stop, stopped) = mpsc::channel();
+        let flooder = std::thread::spawn(move || {
+            let other = RosNode::join_as("flooder", &reach()).unwrap();
+            flood(&other, &stopped)
+        });
+        wait_until("the flood", || 0 < node.n_writers("/jamgrip/object_cmd"));
+        let loud_s = episode();
+        stop.send(()).unwrap();
+        let (n_sent, flood_s) = flooder.join().unwrap();
+        program.end();
+
+        let course = Recording::open(&bag).unwrap().course_of_all(1_000_000).unwrap();
+        let digests: Vec<u64> = course.digests.iter().map(|it| it.1).collect();
+        let last = usize::try_from(TICKS).unwrap();
+        assert_eq!((digests.len(), course.gap_after), (2 * last + 1, None));
+        let n_taken = course.commands.len();
+        let rate = f64::from(n_sent) / flood_s;
+        writeln!(
+            std::io::stderr().lock(),
+            "{n_sent} commands in {flood_s:.2} s, {rate:.0} Hz; {n_taken} were taken in; {TICKS} ticks \
+             took {quiet_s:.2} s without and {loud_s:.2} s with them"
+        )
+        .unwrap();
+        // The reset makes the state of the start; the ticks behind it are numbered anew in time.
+        assert_eq!(digests[1..=last], digests[last + 1..], "the same bits");
+        // Most of them got through: this was a flood for the physics, not for a full socket.
+        assert!(1000 < n_taken, "only {n_taken} of {n_sent}");
+        // A machine that is busy with other tests may not send faster.
+        assert!(0.3 * RATE < rate, "{rate} Hz are no flood");
+    });
+}
