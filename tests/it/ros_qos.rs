@@ -70,17 +70,21 @@ fn reader(
 fn each_topic_reaches_each_kind_of_subscriber_that_may_hear_it() {
     inside("ros_qos::each_topic_reaches_each_kind_of_subscriber_that_may_hear_it", || {
         let here = RosNode::join(&reach()).unwrap();
-        let there = RosNode::join_as("listener", &reach()).unwrap();
+        // Each kind is a participant of its own, because what reaches one reader of a participant may
+        // be given to its neighbours.
+        let kinds = [(true, true), (true, false), (false, true), (false, false)];
+        let there = kinds.map(|(is_reliable, is_latched)| {
+            let name = format!("reliable_{is_reliable}_latched_{is_latched}");
+            (RosNode::join_as(&name, &reach()).unwrap(), is_reliable, is_latched)
+        });
         let encoder = synthetic::encoder();
         let mut sink = RosSink::new(&here, &encoder).unwrap();
-        let participant = there.participant();
         // Sent before anyone is there, and never again.
         let once = [Common::TfStatic, Common::MembraneMesh].map(common);
         let mut ears = Vec::new();
         for (i, topic) in encoder.topics().iter().enumerate().filter(|(_, it)| !it.is_input) {
-            for (is_reliable, is_latched) in
-                [(true, true), (true, false), (false, true), (false, false)]
-            {
+            for &(ref node, is_reliable, is_latched) in &there {
+                let participant = node.participant();
                 let qos = Qos { is_reliable, depth: 10, is_latched };
                 ears.push(Ear {
                     what: format!("{}, reliable {is_reliable}, latched {is_latched}", topic.name),
