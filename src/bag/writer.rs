@@ -70,18 +70,26 @@ impl OpenFile {
             let name = format!("{SCENE_FILE}{name}");
             writer.attach(&attachment(&name, "application/octet-stream", 0, contents))?;
         }
-        let mut channels = Vec::with_capacity(topics.len());
-        for topic in topics {
-            let kind = topic.message_type;
-            let schema = writer.add_schema(kind.name, "ros2msg", kind.definition.as_bytes())?;
-            let metadata = BTreeMap::from([
-                ("offered_qos_profiles".to_owned(), qos_profiles(topic.qos)),
-                ("topic_type_hash".to_owned(), kind.type_hash.to_owned()),
-            ]);
-            channels.push(writer.add_channel(schema, &topic.name, "cdr", &metadata)?);
-        }
-        writer.flush()?;
-        Ok(Self { writer, gauge, channels, bytes: Vec::new() })
+        let (channels, bytes) = (Vec::with_capacity(topics.len()), Vec::new());
+        let mut file = Self { writer, gauge, channels, bytes };
+        topics.iter().try_for_each(|topic| file.open_topic(topic))?;
+        file.flush()?;
+        Ok(file)
+    }
+
+    /// Opens a channel for a topic, behind all others.
+    ///
+    /// # Errors
+    /// As the disk says.
+    pub fn open_topic(&mut self, topic: &Topic) -> Result<(), WriteError> {
+        let kind = topic.message_type;
+        let schema = self.writer.add_schema(kind.name, "ros2msg", kind.definition.as_bytes())?;
+        let metadata = BTreeMap::from([
+            ("offered_qos_profiles".to_owned(), qos_profiles(topic.qos)),
+            ("topic_type_hash".to_owned(), kind.type_hash.to_owned()),
+        ]);
+        self.channels.push(self.writer.add_channel(schema, &topic.name, "cdr", &metadata)?);
+        Ok(())
     }
 
     /// Writes a message; `n_before` is its number on its topic.

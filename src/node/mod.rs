@@ -34,6 +34,7 @@ use self::{
     shutdown::Shutdown,
 };
 use crate::{
+    command::change::Change,
     simulator::World,
     sinks::{Packet, RunStatistics},
     snapshot::{Snapshot, checkpoint::Checkpoint},
@@ -215,10 +216,29 @@ impl Crew {
         if changed.is_scene_loaded {
             self.enter(plant, &seen.snapshot);
         }
+        self.welcome(&changed.changes);
         let packet = Packet::new(plant.snapshot(Parts::ALL), None).with_changes(changed.changes);
         let packet = Arc::new(self.number(packet));
         self.outlets.publish(&plant.view(&packet.snapshot), &packet);
         packet
+    }
+
+    /// Objects that have come get topics of their own.
+    fn welcome(&mut self, changes: &[Change]) {
+        let of_change = |it: &Change| -> Vec<String> {
+            match it {
+                Change::Insert(object) => vec![object.name.clone()],
+                Change::LoadScene(it) => {
+                    it.scene.objects.iter().map(|it| it.name.clone()).collect()
+                }
+                _ => Vec::new(),
+            }
+        };
+        let guests: Vec<String> = changes.iter().flat_map(of_change).collect();
+        if let Some(before) = self.outlets.encoder.as_deref().filter(|_| !guests.is_empty()) {
+            let encoder = before.with_guests(guests.iter().map(String::as_str));
+            self.outlets.encoder = Some(Arc::new(encoder));
+        }
     }
 
     /// Another scene has taken the place of the one before.

@@ -1,7 +1,7 @@
 //! Objects in and out: from files and texts, alone or many at once.
 //!
 //! A spawned object's frame is that of its centre of mass, like every object's, along the axes of
-//! its file. It has no topics of its own; its pose is in `/tf` and in its state.
+//! its file. It is published like the scene's own, and commanded on `~/object_cmd`.
 
 use super::{
     Simulator, Version, World, bounds,

@@ -119,8 +119,10 @@ pub struct Bag {
     encoder: Arc<Encoder>,
     subject: Subject,
     folder: PathBuf,
-    /// The encoder's topics, then those of the digests and of changes.
+    /// The encoder's topics, then those of the digests and of changes, then those that came later.
     topics: Vec<Topic>,
+    /// Place of the digests' topic; that of changes is behind it.
+    links: usize,
     file: Option<OpenFile>,
     /// What each file holds, the open one last.
     files: Vec<Contents>,
@@ -160,6 +162,7 @@ impl Bag {
             return Err(BagError::FolderInUse { folder: folder.to_owned() });
         }
         let mut topics = encoder.topics().to_vec();
+        let links = topics.len();
         let node = &encoder.scene().outputs.ros.node;
         topics.push(chain::topic(node));
         topics.push(chain::changes_topic(node));
@@ -176,6 +179,7 @@ impl Bag {
             flushed_at: now(),
             reporter: BagReporter::default(),
             topics,
+            links,
             encoder,
             subject,
         };
@@ -242,8 +246,10 @@ impl Bag {
             self.chain.command(&self.topics[message.topic].name, &message.cdr);
             self.put(&message)?;
         }
+        self.open_topics(packet)?;
         for message in packet.messages(&encoder) {
-            self.put(&Message { time_ns, ..message.clone() })?;
+            let topic = self.place(message.topic);
+            self.put(&Message { topic, time_ns, cdr: message.cdr.clone() })?;
         }
         self.link(snapshot.run_tick.0, time_ns, snapshot.digest, !packet.changes.is_empty())?;
         self.digest = snapshot.digest;
@@ -252,6 +258,24 @@ impl Bag {
         }
         if FLUSH_PERIOD <= self.flushed_at.elapsed() {
             self.flush()?;
+        }
+        Ok(())
+    }
+
+    /// Place among the recording's topics of one of the encoder's.
+    fn place(&self, topic: usize) -> usize {
+        if topic < self.links { topic } else { topic + 2 }
+    }
+
+    /// Topics that have come since the last packet.
+    fn open_topics(&mut self, packet: &Packet) -> Result<(), WriteError> {
+        for topic in packet.topics_beyond(self.topics.len() - 2) {
+            if let Some(file) = &mut self.file {
+                file.open_topic(topic)?;
+            }
+            self.files.iter_mut().for_each(|it| it.counts.push(0));
+            self.n_sent.push(0);
+            self.topics.push(topic.clone());
         }
         Ok(())
     }
@@ -268,13 +292,13 @@ impl Bag {
             return Ok(());
         }
         let cdr = self.chain.link(tick, digest).to_cdr();
-        self.put(&Message { topic: self.topics.len() - 2, time_ns, cdr })
+        self.put(&Message { topic: self.links, time_ns, cdr })
     }
 
     /// Records what was done to the world after a tick.
     fn alter(&mut self, change: &Change, tick: u64, time_ns: u64) -> Result<(), WriteError> {
         let message = WorldChange { tick, what: change.to_string(), change: change.to_bytes() };
-        let (topic, cdr) = (self.topics.len() - 1, message.to_cdr());
+        let (topic, cdr) = (self.links + 1, message.to_cdr());
         self.chain.command(&self.topics[topic].name, &cdr);
         self.put(&Message { topic, time_ns, cdr })
     }

@@ -22,7 +22,10 @@ pub use crate::snapshot::run::{RunStatistics, SinkCounters};
 use crate::{
     command::change::Change,
     snapshot::{Snapshot, checkpoint::Checkpoint},
-    wire::{to_ros::Encoder, topics::Message},
+    wire::{
+        to_ros::Encoder,
+        topics::{Message, Topic},
+    },
 };
 
 /// What a sink is given: a snapshot and its messages.
@@ -37,7 +40,8 @@ pub struct Packet {
     pub changes: Vec<Change>,
     /// Number of the packet in its run; 0 if nobody counts.
     pub number: u64,
-    /// Who makes its messages, if not the one that a sink was opened with; the topics are the same.
+    /// Who makes its messages, if not the one that a sink was opened with; its topics are the same, and
+    /// perhaps more behind them.
     encoder: Option<Arc<Encoder>>,
     /// The messages, once someone has asked for them.
     messages: OnceLock<Vec<Message>>,
@@ -80,6 +84,11 @@ impl Packet {
     /// The same packet, whose messages are made by `encoder`.
     pub fn told_by(self, encoder: Option<Arc<Encoder>>) -> Self {
         Self { encoder, ..self }
+    }
+
+    /// Topics behind the first `n_known`, which have come later.
+    pub fn topics_beyond(&self, n_known: usize) -> &[Topic] {
+        self.encoder.as_ref().and_then(|it| it.topics().get(n_known..)).unwrap_or_default()
     }
 
     /// The messages; its own encoder or else `encoder` makes them if nobody has yet. After another

@@ -110,7 +110,7 @@ pub struct RosSink {
     announced: Arc<Announced>,
     /// The last clock message, repeated while time stands still.
     clock: Option<Message>,
-    _node: Arc<RosNode>,
+    node: Arc<RosNode>,
 }
 
 impl RosNode {
@@ -262,7 +262,7 @@ impl RosSink {
             encoder: Arc::clone(encoder),
             announced: Arc::default(),
             clock: None,
-            _node: Arc::clone(node),
+            node: Arc::clone(node),
         };
         sink.send(&encoder.latched(0))?;
         Ok(sink)
@@ -298,6 +298,12 @@ impl Sink for RosSink {
     }
 
     fn write(&mut self, packet: &Packet) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
+        for topic in packet.topics_beyond(self.publishers.len()) {
+            // One that cannot be opened is left out; the others go on.
+            let opened = self.node.publisher(topic);
+            let opened = opened.inspect_err(|fault| log::warn!("{fault}"));
+            self.publishers.push(opened.ok().map(|it| (topic.name.clone(), it)));
+        }
         let messages = packet.messages(&self.encoder);
         let sent = self.send(messages);
         if self.clock.is_none() {

@@ -198,6 +198,20 @@ pub fn topics(scene: &Scene) -> Vec<Topic> {
     common.chain(of_objects).collect()
 }
 
+/// What is published of an object that is not the scene's own, in the order of `OfObject`. It is
+/// commanded on `~/object_cmd`.
+pub fn topics_of_guest(ros: &Ros, object: &str) -> Vec<Topic> {
+    let outputs = OF_OBJECT.iter().filter(|it| !it.4);
+    let topic = |&(_, name, message_type, qos, is_input): &Row<OfObject>| Topic {
+        name: full_name(ros, &format!("~/object/{object}/{name}")),
+        type_name: message_type.name,
+        message_type,
+        qos,
+        is_input,
+    };
+    outputs.map(topic).collect()
+}
+
 /// A name as others see it: `~` is the node, and names that are to be replaced are.
 pub fn full_name(ros: &Ros, name: &str) -> String {
     let namespace = ros.node.rsplit_once('/').map_or("", |(namespace, _)| namespace);

@@ -14,7 +14,7 @@ mod run; // clock, statistics, diagnostics
 use super::{
     from_ros::CommandCodec,
     messages::{RosMessage, std_msgs::Bool},
-    topics::{Common, Message, OfObject, Topic, common, of_object, topics},
+    topics::{Common, Message, OfObject, Topic, common, of_object, topics, topics_of_guest},
 };
 use crate::{
     base::Vec3,
@@ -42,8 +42,8 @@ const DIAGNOSTICS_RATE: f64 = 1.0;
 #[derive(Clone, Debug)]
 pub struct Encoder {
     scene: Scene,
-    /// Objects that have topics, in the order of these.
-    objects: Vec<String>,
+    /// Objects that have topics, and the first one of each.
+    objects: Vec<(String, usize)>,
     triangles: Vec<[u32; 3]>,
     vertices: Vec<Vec3>,
     topics: Vec<Topic>,
@@ -62,8 +62,24 @@ impl Encoder {
             vertices: vertices.to_vec(),
             commands: CommandCodec::new(topics.clone(), objects.clone()),
             topics,
-            objects,
+            objects: objects
+                .into_iter()
+                .enumerate()
+                .map(|(i, name)| (name, of_object(i, OfObject::ContactWrench)))
+                .collect(),
         }
+    }
+
+    /// The same with topics for objects that came later, behind all others. Topics never go.
+    pub fn with_guests<'a>(&self, names: impl Iterator<Item = &'a str>) -> Self {
+        let mut all = self.clone();
+        for name in names {
+            if !all.objects.iter().any(|it| it.0 == name) {
+                all.objects.push((name.to_owned(), all.topics.len()));
+                all.topics.extend(topics_of_guest(&all.scene.outputs.ros, name));
+            }
+        }
+        all
     }
 
     /// For another scene in the same run: topics, and objects that have some, stay.
@@ -148,14 +164,13 @@ impl Encoder {
         out.common(Common::FlangeTwist, &parts::twist(&flange.twist, time_ns, WORLD));
         out.common(Common::FlangeWrench, &parts::wrench(&snapshot.mount_wrench, time_ns, FLANGE));
         for object in &snapshot.objects {
-            // Objects that came later have no topics of their own.
-            let found = self.objects.iter().position(|it| *it == object.name);
-            let Some(index) = found else { continue };
+            let found = self.objects.iter().find(|it| it.0 == object.name);
+            let Some(&(_, first)) = found else { continue };
             let wrench = parts::wrench(&object.contact_wrench, time_ns, WORLD);
-            out.of_object(index, OfObject::ContactWrench, &wrench);
-            out.of_object(index, OfObject::Pose, &parts::pose(&object.body.pose, time_ns, WORLD));
+            out.of_object(first, OfObject::ContactWrench, &wrench);
+            out.of_object(first, OfObject::Pose, &parts::pose(&object.body.pose, time_ns, WORLD));
             let twist = parts::twist(&object.body.twist, time_ns, WORLD);
-            out.of_object(index, OfObject::Twist, &twist);
+            out.of_object(first, OfObject::Twist, &twist);
         }
         out.common(Common::JointStates, &bodies::joint_states(snapshot, &self.scene.chamber));
         out.common(Common::Tf, &bodies::frames(snapshot));
@@ -206,8 +221,8 @@ impl Outbox {
         self.push(common(topic), message.to_cdr_sized(n_bytes));
     }
 
-    fn of_object<T: RosMessage>(&mut self, object: usize, topic: OfObject, message: &T) {
-        self.push(of_object(object, topic), message.to_cdr());
+    fn of_object<T: RosMessage>(&mut self, first: usize, topic: OfObject, message: &T) {
+        self.push(first + topic as usize, message.to_cdr());
     }
 
     fn push(&mut self, topic: usize, cdr: Vec<u8>) {
