@@ -21,6 +21,7 @@ use jamgrip::{
     replay::{
         again::Again,
         branch::{self, Branch},
+        part::{Difference, Kind},
         play::{self, Cue, Played},
         verify::{self, Verdict},
     },
@@ -79,7 +80,7 @@ fn verify(args: &Replay) -> Result<ExitCode, Box<dyn Error>> {
     let verdict = verify::verify(
         &again,
         &verify::Options {
-            n_threads: args.n_threads(),
+            hands: args.hands(),
             settles: args.settle,
             from_ns: nanoseconds(args.start.unwrap_or(0.0)),
             to_ns: args.end.map(nanoseconds),
@@ -106,17 +107,21 @@ fn tell(out: &mut impl Write, verdict: &Verdict) -> io::Result<()> {
         writeln!(out, "{remark}")?;
     }
     let Verdict { n_ticks, n_compared, start_tick, real_time_factor, .. } = verdict;
+    let ((n_jobs, n_threads), n_checkpoints) = (verdict.shared_out, verdict.n_checkpoints);
     writeln!(
         out,
-        "{n_ticks} ticks simulated from tick {start_tick} on at {real_time_factor:.3} x real time, \
-         {n_compared} digests compared"
+        "{n_ticks} ticks simulated from tick {start_tick} on at {real_time_factor:.3} x real time \
+         ({n_jobs} parts at a time, {n_threads} threads each); \
+         {n_compared} digests and {n_checkpoints} checkpoints compared"
     )?;
     match &verdict.first_difference {
-        Some(it) => writeln!(
+        Some(Difference { tick, kind: Kind::Digest { recorded, simulated } }) => writeln!(
             out,
-            "tick {} differs: {:016x} is recorded, {:016x} was simulated",
-            it.tick, it.recorded, it.simulated
+            "tick {tick} differs: {recorded:016x} is recorded, {simulated:016x} was simulated"
         ),
+        Some(Difference { tick, kind: Kind::Checkpoint(part) }) => {
+            writeln!(out, "checkpoint at tick {tick} differs, although the digests do not: {part}")
+        }
         None if verdict.is_interrupted => writeln!(out, "interrupted; all equal so far"),
         None if *n_compared == 0 => writeln!(out, "nothing to compare"),
         None => writeln!(out, "all equal"),

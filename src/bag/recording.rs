@@ -188,7 +188,13 @@ impl Recording {
 impl Course {
     /// The last checkpoint at or before a tick.
     pub fn checkpoint_before(&self, tick: u64) -> Option<&Place> {
-        self.checkpoints.iter().rev().find(|place| place.tick <= tick)
+        let n = self.checkpoints.partition_point(|place| place.tick <= tick);
+        self.checkpoints[..n].last()
+    }
+
+    /// The checkpoint after a tick.
+    pub fn checkpoint_at(&self, tick: u64) -> Option<&Place> {
+        self.checkpoint_before(tick).filter(|place| place.tick == tick)
     }
 
     /// The digest of the state after a tick.
