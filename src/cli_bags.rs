@@ -9,7 +9,9 @@ use crate::cli::{bag_folder, time, time_or_zero};
 
 pub(crate) const REPLAY_HELP: &str = "\
 Without --verify or --from the recording is published on ROS 2 topics with its original timing; --cues \
-takes pause, resume, toggle, next, seek TIME, rate FACTOR and quit, one a line.\n\n\
+takes pause, resume, toggle, next, seek TIME, rate FACTOR and quit, one a line. The services of rosbag2's \
+player are below /jamgrip_player: pause, resume, toggle_paused, is_paused, set_rate, get_rate, seek, \
+play_next, burst, stop.\n\n\
 --verify simulates again from the scene, the start and the commands in the recording and compares the \
 digest of every tick. With --json it ends with one line: ticks (simulated), first_difference (the first \
 tick whose digest differs, or null), real_time_factor, compared (digests), checkpoints (compared), remarks. \
@@ -60,6 +62,9 @@ pub(crate) struct Replay {
     /// Plays so many times as fast as recorded
     #[arg(long, value_name = "FACTOR", default_value = "1", value_parser = factor)]
     pub(crate) rate: f64,
+    /// Stands still at first, until a cue or a service lets it go on
+    #[arg(long, conflicts_with_all = ["verify", "from"])]
+    pub(crate) start_paused: bool,
     /// Plays over and over
     #[arg(long = "loop", conflicts_with_all = ["verify", "from"])]
     pub(crate) is_loop: bool,

@@ -22,7 +22,7 @@ use jamgrip::{
         again::Again,
         branch::{self, Branch},
         part::{Difference, Kind},
-        play::{self, Cue, Played},
+        play::{self, Asked, Cue, Played},
         verify::{self, Verdict},
     },
     scene::Scene,
@@ -160,6 +160,7 @@ fn play(args: &Replay) -> Result<ExitCode, Box<dyn Error>> {
         rate: args.rate,
         start_ns: nanoseconds(args.start.unwrap_or(0.0)),
         end_ns: args.end.map(nanoseconds),
+        is_paused: args.start_paused,
         is_loop: args.is_loop,
         topics: args.topics.clone(),
         exclude: args.exclude.clone(),
@@ -168,10 +169,12 @@ fn play(args: &Replay) -> Result<ExitCode, Box<dyn Error>> {
     };
     let (teller, cues) = mpsc::channel();
     if args.cues {
+        let teller = teller.clone();
         std::thread::Builder::new().name("cues".to_owned()).spawn(move || listen(&teller))?;
     }
-    let (played, fault) =
-        on_stage(&options, |stage| play::play(&files, &options, stage, &cues, &shutdown))?;
+    let perform =
+        |stage: &mut dyn play::Stage| play::play(&files, &options, stage, &cues, &shutdown);
+    let (played, fault) = on_stage(&options, teller, perform)?;
     let mut stderr = io::stderr().lock();
     for topic in &played.refused {
         writeln!(
@@ -203,6 +206,7 @@ type Performance = (Played, Option<String>);
 #[cfg(feature = "ros")]
 fn on_stage(
     options: &play::Options,
+    teller: mpsc::Sender<Asked>,
     perform: impl FnOnce(&mut dyn play::Stage) -> io::Result<Played>,
 ) -> Result<Performance, Box<dyn Error>> {
     use jamgrip::{replay::stage::RosStage, scene::Ros, sinks::reach::Reach};
@@ -210,6 +214,7 @@ fn on_stage(
     let anywhere = Ros { enabled: true, ..Ros::OFF };
     let reach = Reach::choose(&anywhere, |name| std::env::var(name).ok())?;
     let mut stage = RosStage::join(&reach, options.clock_rate.is_some())?;
+    let _prompter = stage.prompted(teller)?;
     let played = perform(&mut stage)?;
     Ok((played, stage.faults.1))
 }
@@ -217,17 +222,18 @@ fn on_stage(
 #[cfg(not(feature = "ros"))]
 fn on_stage(
     _: &play::Options,
+    _: mpsc::Sender<Asked>,
     _: impl FnOnce(&mut dyn play::Stage) -> io::Result<Played>,
 ) -> Result<Performance, Box<dyn Error>> {
     Err("this jamgrip was built without ROS 2 (feature `ros`): there is nowhere to play to".into())
 }
 
 /// Reads cues until standard input ends or nobody listens.
-fn listen(teller: &mpsc::Sender<Cue>) {
+fn listen(teller: &mpsc::Sender<Asked>) {
     for line in io::stdin().lock().lines().map_while(Result::ok) {
         match Cue::parse(&line) {
             Ok(cue) => {
-                if teller.send(cue).is_err() {
+                if teller.send(cue.into()).is_err() {
                     return;
                 }
             }

@@ -7,6 +7,8 @@ pub mod history; // which releases changed results
 pub mod part; // from one checkpoint to the next
 pub mod play; // publishes again with the original timing
 #[cfg(feature = "ros")]
+pub mod prompter; // services that give cues
+#[cfg(feature = "ros")]
 pub mod stage; // where played messages go
 pub mod verify; // is every tick as it was?
 

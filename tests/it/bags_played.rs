@@ -9,7 +9,7 @@ use std::{
 use jamgrip::{
     bag::reader::{Channel, Recorded},
     node::shutdown::Shutdown,
-    replay::play::{Cue, Options, Played, Stage, play},
+    replay::play::{Asked, Cue, Options, Played, Stage, play},
     sinks::{
         Sink,
         bag::{Bag, Format, Subject},
@@ -39,7 +39,7 @@ struct Memory {
     published: Vec<(String, u64, Instant)>,
     clock: Vec<u64>,
     cues: Vec<(usize, Cue)>,
-    teller: Option<Sender<Cue>>,
+    teller: Option<Sender<Asked>>,
 }
 
 #[expect(clippy::disallowed_methods, reason = "when a message is published is what is tested")]
@@ -56,7 +56,7 @@ impl Stage for Memory {
         self.published.push((message.channel.topic.clone(), message.log_time, now()));
         let n = self.published.len();
         for (_, cue) in self.cues.iter().filter(|(after, _)| *after == n) {
-            self.teller.as_ref().unwrap().send(*cue).unwrap();
+            self.teller.as_ref().unwrap().send((*cue).into()).unwrap();
         }
     }
 
@@ -71,6 +71,7 @@ fn options() -> Options {
         start_ns: 0,
         end_ns: None,
         is_loop: false,
+        is_paused: false,
         topics: Vec::new(),
         exclude: Vec::new(),
         delay: Duration::ZERO,
@@ -116,7 +117,7 @@ fn parts_filters_and_an_own_clock() {
     let folder = tempfile::tempdir().unwrap();
     let files = record(folder.path());
     let part = Options {
-        rate: 8.0,
+        rate: 1.0,
         start_ns: 200_000_000,
         end_ns: Some(295_000_000),
         topics: vec!["/jamgrip/*".to_owned(), "/tf_static".to_owned(), "/clock".to_owned()],
@@ -159,6 +160,68 @@ fn it_is_wound_stepped_looped_and_ended_by_cues() {
     // Oracle: counting by hand. Each cue is heard before the next message.
     let expected: Vec<u64> = (1..=10).chain([5, 6, 7]).chain([399, 400]).map(ms).collect();
     assert_eq!(of(&stage, "/clock"), expected);
+}
+
+/// Oracle: the recording read from its beginning, which a copy without an index forces.
+#[test]
+fn an_index_changes_nothing_but_the_time_it_takes() {
+    let folder = tempfile::tempdir().unwrap();
+    let files = record(folder.path());
+    let indexed: Vec<bool> =
+        files.iter().map(|it| jamgrip::bag::index::Index::read(it).is_some()).collect();
+    assert_eq!(indexed, [true; 3]);
+    let copies: Vec<PathBuf> = files
+        .iter()
+        .map(|file| {
+            let copy = file.with_extension("copy");
+            let bytes = std::fs::read(file).unwrap();
+            // Footer and magic are the last 37 bytes.
+            std::fs::write(&copy, &bytes[..bytes.len() - 37]).unwrap();
+            assert!(jamgrip::bag::index::Index::read(&copy).is_none());
+            copy
+        })
+        .collect();
+    for start_ms in [0, 1, 149, 150, 151, 290, 399, 400] {
+        let part = Options { rate: 100.0, start_ns: start_ms * 1_000_000, ..options() };
+        let what = |files: &[PathBuf]| -> Vec<(String, u64)> {
+            let (_, stage) = run(files, &part, Vec::new());
+            stage.published.into_iter().map(|(topic, time, _)| (topic, time)).collect()
+        };
+        let expected = what(&copies);
+        assert!(!expected.is_empty());
+        assert!(what(&files) == expected, "from {start_ms} ms on");
+    }
+}
+
+/// Oracle: counting by hand.
+#[test]
+fn who_asks_is_told_when_it_is_done() {
+    let folder = tempfile::tempdir().unwrap();
+    let files = record(folder.path());
+    let only_clock = Options { topics: vec!["/clock".to_owned()], is_paused: true, ..options() };
+    let (teller, listener) = mpsc::channel();
+    let ask = |cue| {
+        let (reply, answer) = mpsc::channel();
+        teller.send(Asked { cue, reply: Some(reply) }).unwrap();
+        answer
+    };
+    let (look, five) = (ask(Cue::Look), ask(Cue::Burst(5)));
+    let nowhere = ask(Cue::SeekTo(401_000_000));
+    let (rate, there) = (ask(Cue::Rate(3.0)), ask(Cue::SeekTo(399_000_000)));
+    let (rest, end) = (ask(Cue::Burst(0)), ask(Cue::Resume));
+    let mut stage = Memory::default();
+    play(&files, &only_clock, &mut stage, &listener, &Shutdown::default()).unwrap();
+    let look = look.recv().unwrap();
+    assert_eq!((look.is_done, look.is_paused, look.rate), (true, true, 4.0));
+    // Going elsewhere ends what was to be played at once.
+    let five = five.recv().unwrap();
+    assert_eq!((five.is_done, five.n_played), (false, 0));
+    assert!(!nowhere.recv().unwrap().is_done, "the recording ends at 400 ms");
+    assert!(there.recv().unwrap().is_done && rate.recv().unwrap().is_done);
+    let rest = rest.recv().unwrap();
+    assert_eq!((rest.is_done, rest.n_played), (true, 2), "399 ms and 400 ms");
+    assert!(end.recv().unwrap().is_done);
+    assert_eq!(of(&stage, "/clock"), [399_000_000, 400_000_000]);
 }
 
 #[test]
@@ -226,5 +289,102 @@ fn a_played_recording_reaches_a_subscriber() {
         let n = forces.len();
         assert!(10 <= n && forces == expected[40 - n..], "{forces:?}");
         assert!(!times.is_empty() && times.windows(2).all(|it| it[0] < it[1]), "{times:?}");
+    });
+}
+
+/// Oracle: the meaning of the services in rosbag2_interfaces, and counting by hand.
+#[cfg(feature = "ros")]
+#[test]
+fn services_pause_wind_and_step_it() {
+    use jamgrip::{
+        replay::{
+            prompter,
+            stage::{NODE_NAME, RosStage},
+        },
+        services::ros::{RosClient, Way},
+        sinks::ros::RosNode,
+        wire::{
+            cdr::Cdr,
+            messages::{
+                builtin_interfaces::Time,
+                rosbag2_interfaces::{
+                    BurstRequest, BurstResponse, GetRateRequest, GetRateResponse, IsPausedRequest,
+                    IsPausedResponse, PauseRequest, PlayNextRequest, PlayNextResponse, SeekRequest,
+                    SeekResponse, SetRateRequest, SetRateResponse, StopRequest,
+                    TogglePausedRequest,
+                },
+            },
+        },
+    };
+
+    use crate::private_network::{inside, reach};
+
+    inside("bags_played::services_pause_wind_and_step_it", || {
+        let folder = tempfile::tempdir().unwrap();
+        let files = record(folder.path());
+        let there = RosNode::join_as("someone", &reach()).unwrap();
+        let mut clients: Vec<RosClient> = prompter::offers(NODE_NAME)
+            .iter()
+            .enumerate()
+            .map(|(i, offer)| {
+                let way = if i.is_multiple_of(2) { Way::Enhanced } else { Way::Cyclone };
+                RosClient::open(&there, offer, way).unwrap()
+            })
+            .collect();
+        let mut ask = |name: &str, body: Cdr| -> Cdr {
+            let i = prompter::SERVICES.iter().position(|it| it.0 == name).unwrap();
+            let begin = now();
+            let client = &mut clients[i];
+            while !client.is_matched() {
+                assert!(now() - begin < Duration::from_secs(30), "{name} is not found");
+                std::thread::sleep(Duration::from_millis(5));
+            }
+            client.ask(&body);
+            loop {
+                if let Some(answer) = client.answer() {
+                    return answer;
+                }
+                assert!(now() - begin < Duration::from_secs(30), "{name} is not answered");
+                std::thread::sleep(Duration::from_millis(1));
+            }
+        };
+        let player = std::thread::spawn(move || {
+            let stage = RosStage::join(&reach(), false).unwrap();
+            let (teller, listener) = mpsc::channel();
+            let _prompter = stage.prompted(teller).unwrap();
+            let only_clock =
+                Options { topics: vec!["/clock".to_owned()], is_paused: true, ..options() };
+            let mut memory = Memory::default();
+            play(&files, &only_clock, &mut memory, &listener, &Shutdown::default()).unwrap();
+            memory
+        });
+        let is_paused = |ask: &mut dyn FnMut(&str, Cdr) -> Cdr| {
+            ask("is_paused", Cdr::of(&IsPausedRequest::default())).read::<IsPausedResponse>()
+        };
+        assert!(is_paused(&mut ask).unwrap().paused);
+        let next = ask("play_next", Cdr::of(&PlayNextRequest::default()));
+        assert!(next.read::<PlayNextResponse>().unwrap().success);
+        let burst = ask("burst", Cdr::of(&BurstRequest { num_messages: 9 }));
+        assert_eq!(burst.read::<BurstResponse>().unwrap().actually_burst, 9);
+        let seek = |sec, ms: u32| SeekRequest { time: Time { sec, nanosec: ms * 1_000_000 } };
+        assert!(!ask("seek", Cdr::of(&seek(9, 0))).read::<SeekResponse>().unwrap().success);
+        assert!(ask("seek", Cdr::of(&seek(0, 300))).read::<SeekResponse>().unwrap().success);
+        let set = |rate| Cdr::of(&SetRateRequest { rate });
+        assert!(!ask("set_rate", set(-1.0)).read::<SetRateResponse>().unwrap().success);
+        assert!(ask("set_rate", set(1e-3)).read::<SetRateResponse>().unwrap().success);
+        let rate = ask("get_rate", Cdr::of(&GetRateRequest::default()));
+        assert_eq!(rate.read::<GetRateResponse>().unwrap().rate.to_bits(), 1e-3_f64.to_bits());
+        // A thousand times as slowly it does not come far before it is paused again.
+        ask("toggle_paused", Cdr::of(&TogglePausedRequest::default()));
+        assert!(!is_paused(&mut ask).unwrap().paused);
+        let burst = ask("burst", Cdr::of(&BurstRequest { num_messages: 2 }));
+        assert_eq!(burst.read::<BurstResponse>().unwrap().actually_burst, 0, "only when paused");
+        ask("pause", Cdr::of(&PauseRequest::default()));
+        assert!(is_paused(&mut ask).unwrap().paused);
+        ask("stop", Cdr::of(&StopRequest::default()));
+        let ticks: Vec<u64> = of(&player.join().unwrap(), "/clock");
+        let expected: Vec<u64> = (1..=10).map(|tick| tick * 1_000_000).collect();
+        assert_eq!(ticks[..10], expected);
+        assert!(ticks[10..].iter().all(|it| (300_000_000..400_000_000).contains(it)), "{ticks:?}");
     });
 }

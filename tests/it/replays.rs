@@ -219,7 +219,7 @@ fn a_checkpoint_that_is_not_the_state_before_it_is_found() {
         &copy,
         &mut |attachments| {
             let named = |name: &str| attachments.iter().position(|it| it.name == name).unwrap();
-            let (at_100, at_200) = (named("checkpoint/100"), named("checkpoint/200"));
+            let (at_100, at_200) = (named("checkpoint/000000100"), named("checkpoint/000000200"));
             attachments[at_200].data = attachments[at_100].data.clone();
         },
         &mut |_| {},
