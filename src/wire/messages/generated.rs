@@ -1540,7 +1540,7 @@ string[] prefixes
         const TYPE: MessageType = MessageType {
             name: "rcl_interfaces/msg/Parameter",
             dds_name: "rcl_interfaces::msg::dds_::Parameter_",
-            type_hash: "RIHS01_78d768833adeeca1dc00e34c467996997d31509e9874edeaa3464e1c265b723e",
+            type_hash: "RIHS01_ddfe6442cffc462317adb5c92536a7b6dd55858c5c3e1e328165a6b73c2831af",
             definition: r##"string name
 rcl_interfaces/ParameterValue value
 ================================================================================
@@ -1626,7 +1626,7 @@ uint64 step
         const TYPE: MessageType = MessageType {
             name: "rcl_interfaces/msg/ParameterEvent",
             dds_name: "rcl_interfaces::msg::dds_::ParameterEvent_",
-            type_hash: "RIHS01_d9e1477e648fb0e03948d60a7a5238227a772a874531ca0dc6d2b669e42ae6c8",
+            type_hash: "RIHS01_043e627780fcad87a22d225bc2a037361dba713fca6a6b9f4b869a5aa0393204",
             definition: r##"builtin_interfaces/Time stamp
 string node
 rcl_interfaces/Parameter[] new_parameters
@@ -1733,7 +1733,7 @@ uint8 PARAMETER_STRING_ARRAY=9
         const TYPE: MessageType = MessageType {
             name: "rcl_interfaces/msg/ParameterValue",
             dds_name: "rcl_interfaces::msg::dds_::ParameterValue_",
-            type_hash: "RIHS01_cb2f37479f0576e981db6a7fa8d624e2f9dd00d98aa18bc68b1b4823949a8b79",
+            type_hash: "RIHS01_115fc089a387e23c7ecd3525c9189c379109119d6ab82e8dfbde0fdf6a7f9b68",
             definition: r##"uint8 type
 bool bool_value
 int64 integer_value
