@@ -167,7 +167,7 @@ mod tests {
             schema: None,
         };
         let channels = (1..=2).map(|id| (id, Arc::new(channel(id)))).collect();
-        let attachments = vec![400..450];
+        let attachments = Vec::from([Range { start: 400, end: 450 }]);
         Index { chunks, attachments, channels, schemas: BTreeMap::new() }
     }
 
@@ -178,12 +178,19 @@ mod tests {
         let more = [(300, (30, 39), &[1][..]), (450, (40, 49), &[1])];
         let chunks = chunks.into_iter().chain(more);
         let index = index(chunks.map(|(at, times, ids)| chunk(at, times, ids)).collect());
-        let before = |time_ns, kept: &str| index.before(time_ns, &|it| kept.contains(&it.topic));
-        assert_eq!(before(45, ""), [0..450]);
-        assert_eq!(before(30, ""), [0..300, 400..450]);
-        assert_eq!(before(39, ""), [0..300, 400..450], "a chunk is wanted up to its last message");
-        assert_eq!(before(45, "/2"), [0..200, 300..450], "the last on /2 is in the third chunk");
-        assert_eq!(before(45, "/1 /2"), [0..200, 400..450]);
-        assert_eq!(before(0, ""), [400..450]);
+        let before = |time_ns, kept: &str| -> Vec<(u64, u64)> {
+            let gaps = index.before(time_ns, &|it| kept.contains(&it.topic));
+            gaps.into_iter().map(|it| (it.start, it.end)).collect()
+        };
+        assert_eq!(before(45, ""), [(0, 450)]);
+        assert_eq!(before(30, ""), [(0, 300), (400, 450)]);
+        assert_eq!(before(39, ""), [(0, 300), (400, 450)], "wanted up to the last message");
+        assert_eq!(
+            before(45, "/2"),
+            [(0, 200), (300, 450)],
+            "the last on /2 is in the third chunk"
+        );
+        assert_eq!(before(45, "/1 /2"), [(0, 200), (400, 450)]);
+        assert_eq!(before(0, ""), [(400, 450)]);
     }
 }

@@ -292,27 +292,77 @@ fn a_played_recording_reaches_a_subscriber() {
     });
 }
 
+/// Someone who asks a player's services, in both ways in turn.
+#[cfg(feature = "ros")]
+struct Someone {
+    clients: Vec<jamgrip::services::ros::RosClient>,
+}
+
+#[cfg(feature = "ros")]
+impl Someone {
+    fn join() -> Self {
+        use jamgrip::{
+            replay::{prompter, stage},
+            services::ros::{RosClient, Way},
+            sinks::ros::RosNode,
+        };
+
+        let node = RosNode::join_as("someone", &crate::private_network::reach()).unwrap();
+        let offers = prompter::offers(stage::NODE_NAME);
+        let clients = offers.iter().enumerate().map(|(i, offer)| {
+            let way = if i.is_multiple_of(2) { Way::Enhanced } else { Way::Cyclone };
+            RosClient::open(&node, offer, way).unwrap()
+        });
+        Self { clients: clients.collect() }
+    }
+
+    /// Asks and waits for the answer.
+    fn ask<A>(&mut self, name: &str, question: &impl serde::Serialize) -> A
+    where
+        A: serde::de::DeserializeOwned,
+    {
+        use jamgrip::{replay::prompter, wire::cdr::Cdr};
+
+        let i = prompter::SERVICES.iter().position(|it| it.0 == name).unwrap();
+        let client = &mut self.clients[i];
+        let begin = now();
+        let nap = || {
+            assert!(now() - begin < Duration::from_secs(30), "{name} is not answered");
+            std::thread::sleep(Duration::from_millis(1));
+        };
+        while !client.is_matched() {
+            nap();
+        }
+        client.ask(&Cdr::of(question));
+        loop {
+            if let Some(answer) = client.answer() {
+                return answer.read().unwrap();
+            }
+            nap();
+        }
+    }
+
+    fn sees_it_paused(&mut self) -> bool {
+        use jamgrip::wire::messages::rosbag2_interfaces::{IsPausedRequest, IsPausedResponse};
+
+        let answer: IsPausedResponse = self.ask("is_paused", &IsPausedRequest::default());
+        answer.paused
+    }
+}
+
 /// Oracle: the meaning of the services in rosbag2_interfaces, and counting by hand.
 #[cfg(feature = "ros")]
 #[test]
 fn services_pause_wind_and_step_it() {
     use jamgrip::{
-        replay::{
-            prompter,
-            stage::{NODE_NAME, RosStage},
-        },
-        services::ros::{RosClient, Way},
-        sinks::ros::RosNode,
-        wire::{
-            cdr::Cdr,
-            messages::{
-                builtin_interfaces::Time,
-                rosbag2_interfaces::{
-                    BurstRequest, BurstResponse, GetRateRequest, GetRateResponse, IsPausedRequest,
-                    IsPausedResponse, PauseRequest, PlayNextRequest, PlayNextResponse, SeekRequest,
-                    SeekResponse, SetRateRequest, SetRateResponse, StopRequest,
-                    TogglePausedRequest,
-                },
+        replay::stage::RosStage,
+        wire::messages::{
+            builtin_interfaces::Time,
+            rosbag2_interfaces::{
+                BurstRequest, BurstResponse, GetRateRequest, GetRateResponse, PauseRequest,
+                PauseResponse, PlayNextRequest, PlayNextResponse, SeekRequest, SeekResponse,
+                SetRateRequest, SetRateResponse, StopRequest, StopResponse, TogglePausedRequest,
+                TogglePausedResponse,
             },
         },
     };
@@ -322,32 +372,7 @@ fn services_pause_wind_and_step_it() {
     inside("bags_played::services_pause_wind_and_step_it", || {
         let folder = tempfile::tempdir().unwrap();
         let files = record(folder.path());
-        let there = RosNode::join_as("someone", &reach()).unwrap();
-        let mut clients: Vec<RosClient> = prompter::offers(NODE_NAME)
-            .iter()
-            .enumerate()
-            .map(|(i, offer)| {
-                let way = if i.is_multiple_of(2) { Way::Enhanced } else { Way::Cyclone };
-                RosClient::open(&there, offer, way).unwrap()
-            })
-            .collect();
-        let mut ask = |name: &str, body: Cdr| -> Cdr {
-            let i = prompter::SERVICES.iter().position(|it| it.0 == name).unwrap();
-            let begin = now();
-            let client = &mut clients[i];
-            while !client.is_matched() {
-                assert!(now() - begin < Duration::from_secs(30), "{name} is not found");
-                std::thread::sleep(Duration::from_millis(5));
-            }
-            client.ask(&body);
-            loop {
-                if let Some(answer) = client.answer() {
-                    return answer;
-                }
-                assert!(now() - begin < Duration::from_secs(30), "{name} is not answered");
-                std::thread::sleep(Duration::from_millis(1));
-            }
-        };
+        let mut someone = Someone::join();
         let player = std::thread::spawn(move || {
             let stage = RosStage::join(&reach(), false).unwrap();
             let (teller, listener) = mpsc::channel();
@@ -358,30 +383,31 @@ fn services_pause_wind_and_step_it() {
             play(&files, &only_clock, &mut memory, &listener, &Shutdown::default()).unwrap();
             memory
         });
-        let is_paused = |ask: &mut dyn FnMut(&str, Cdr) -> Cdr| {
-            ask("is_paused", Cdr::of(&IsPausedRequest::default())).read::<IsPausedResponse>()
-        };
-        assert!(is_paused(&mut ask).unwrap().paused);
-        let next = ask("play_next", Cdr::of(&PlayNextRequest::default()));
-        assert!(next.read::<PlayNextResponse>().unwrap().success);
-        let burst = ask("burst", Cdr::of(&BurstRequest { num_messages: 9 }));
-        assert_eq!(burst.read::<BurstResponse>().unwrap().actually_burst, 9);
-        let seek = |sec, ms: u32| SeekRequest { time: Time { sec, nanosec: ms * 1_000_000 } };
-        assert!(!ask("seek", Cdr::of(&seek(9, 0))).read::<SeekResponse>().unwrap().success);
-        assert!(ask("seek", Cdr::of(&seek(0, 300))).read::<SeekResponse>().unwrap().success);
-        let set = |rate| Cdr::of(&SetRateRequest { rate });
-        assert!(!ask("set_rate", set(-1.0)).read::<SetRateResponse>().unwrap().success);
-        assert!(ask("set_rate", set(1e-3)).read::<SetRateResponse>().unwrap().success);
-        let rate = ask("get_rate", Cdr::of(&GetRateRequest::default()));
-        assert_eq!(rate.read::<GetRateResponse>().unwrap().rate.to_bits(), 1e-3_f64.to_bits());
+        assert!(someone.sees_it_paused());
+        let next: PlayNextResponse = someone.ask("play_next", &PlayNextRequest::default());
+        assert!(next.success);
+        let burst: BurstResponse = someone.ask("burst", &BurstRequest { num_messages: 9 });
+        assert_eq!(burst.actually_burst, 9);
+        for (sec, ms, expected) in [(9, 0, false), (0, 300, true)] {
+            let time = Time { sec, nanosec: ms * 1_000_000 };
+            let sought: SeekResponse = someone.ask("seek", &SeekRequest { time });
+            assert_eq!(sought.success, expected);
+        }
+        for (rate, expected) in [(-1.0, false), (1e-3, true)] {
+            let set: SetRateResponse = someone.ask("set_rate", &SetRateRequest { rate });
+            assert_eq!(set.success, expected);
+        }
+        let rate: GetRateResponse = someone.ask("get_rate", &GetRateRequest::default());
+        assert_eq!(rate.rate.to_bits(), 1e-3_f64.to_bits());
         // A thousand times as slowly it does not come far before it is paused again.
-        ask("toggle_paused", Cdr::of(&TogglePausedRequest::default()));
-        assert!(!is_paused(&mut ask).unwrap().paused);
-        let burst = ask("burst", Cdr::of(&BurstRequest { num_messages: 2 }));
-        assert_eq!(burst.read::<BurstResponse>().unwrap().actually_burst, 0, "only when paused");
-        ask("pause", Cdr::of(&PauseRequest::default()));
-        assert!(is_paused(&mut ask).unwrap().paused);
-        ask("stop", Cdr::of(&StopRequest::default()));
+        let toggle = TogglePausedRequest::default();
+        let TogglePausedResponse { .. } = someone.ask("toggle_paused", &toggle);
+        assert!(!someone.sees_it_paused());
+        let burst: BurstResponse = someone.ask("burst", &BurstRequest { num_messages: 2 });
+        assert_eq!(burst.actually_burst, 0, "only when paused");
+        let PauseResponse { .. } = someone.ask("pause", &PauseRequest::default());
+        assert!(someone.sees_it_paused());
+        let StopResponse { .. } = someone.ask("stop", &StopRequest::default());
         let ticks: Vec<u64> = of(&player.join().unwrap(), "/clock");
         let expected: Vec<u64> = (1..=10).map(|tick| tick * 1_000_000).collect();
         assert_eq!(ticks[..10], expected);
