@@ -295,6 +295,8 @@ fn a_played_recording_reaches_a_subscriber() {
 /// Someone who asks a player's services, in both ways in turn.
 #[cfg(feature = "ros")]
 struct Someone {
+    /// Its clients are found as long as it is there.
+    _node: std::sync::Arc<jamgrip::sinks::ros::RosNode>,
     clients: Vec<jamgrip::services::ros::RosClient>,
 }
 
@@ -313,7 +315,8 @@ impl Someone {
             let way = if i.is_multiple_of(2) { Way::Enhanced } else { Way::Cyclone };
             RosClient::open(&node, offer, way).unwrap()
         });
-        Self { clients: clients.collect() }
+        let clients = clients.collect();
+        Self { _node: node, clients }
     }
 
     /// Asks and waits for the answer.
