@@ -21,8 +21,9 @@ use jamgrip::{
     replay::{
         again::Again,
         branch::{self, Branch},
+        cue::{Asked, Cue},
         part::{Difference, Kind},
-        play::{self, Asked, Cue, Played},
+        play::{self, Played},
         verify::{self, Verdict},
     },
     scene::Scene,

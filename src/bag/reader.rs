@@ -302,10 +302,8 @@ impl<R: Read> Reader<R> {
     }
 
     fn record(&mut self, offset: u64, opcode: u8, body: &[u8]) {
-        // The crate takes the checksum of an attachment from its end without looking.
-        let is_short = opcode == op::ATTACHMENT && body.len() < 4;
-        let record =
-            if is_short { Err(McapError::UnexpectedEof) } else { parse_record(opcode, body) };
+        let body = if opcode == op::ATTACHMENT { attachment(body) } else { Some(body) };
+        let record = body.map_or(Err(McapError::UnexpectedEof), |it| parse_record(opcode, it));
         match record {
             Ok(record) => {
                 if let Some(item) = self.take_in(record.into_owned()) {
@@ -420,6 +418,18 @@ impl<R: Read> Reader<R> {
             self.waiting.push_back(Item::Damage(damage));
         }
     }
+}
+
+/// An attachment without what may stand behind its checksum, which the crate takes from the end.
+fn attachment(body: &[u8]) -> Option<&[u8]> {
+    let mut end: usize = 16; // both times
+    for width in [4, 4, 8] {
+        let mut length = [0; 8];
+        length[..width].copy_from_slice(body.get(end..end.checked_add(width)?)?);
+        let length = usize::try_from(u64::from_le_bytes(length)).ok()?;
+        end = (end + width).checked_add(length)?;
+    }
+    body.get(..end.checked_add(4)?)
 }
 
 fn unreadable(offset: u64, error: &io::Error) -> Damage {

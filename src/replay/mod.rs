@@ -3,6 +3,7 @@
 pub mod again; // a run from what is in a recording
 pub mod branch; // a new run from a recorded moment
 pub mod crew; // parts of it side by side
+pub mod cue; // what is wanted of one that plays
 pub mod history; // which releases changed results
 pub mod part; // from one checkpoint to the next
 pub mod play; // publishes again with the original timing

@@ -13,7 +13,7 @@ use std::{
     time::Duration,
 };
 
-use super::play::{Answer, Asked, Cue};
+use super::cue::{Answer, Asked, Cue};
 use crate::{
     services::{Asker, Bench, Call, Offer, Outgoing, ros::RosBench},
     sinks::{

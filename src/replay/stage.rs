@@ -7,7 +7,8 @@ use std::{
 };
 
 use super::{
-    play::{Asked, CLOCK, Stage},
+    cue::Asked,
+    play::{CLOCK, Stage},
     prompter::Prompter,
 };
 use crate::{

@@ -9,7 +9,10 @@ use std::{
 use jamgrip::{
     bag::reader::{Channel, Recorded},
     node::shutdown::Shutdown,
-    replay::play::{Asked, Cue, Options, Played, Stage, play},
+    replay::{
+        cue::{Asked, Cue},
+        play::{Options, Played, Stage, play},
+    },
     sinks::{
         Sink,
         bag::{Bag, Format, Subject},
