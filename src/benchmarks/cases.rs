@@ -27,6 +27,8 @@ pub struct Case {
 pub(super) enum Kind {
     /// A box of grains.
     Grains(Boxed),
+    /// The beam under vacuum.
+    Beam,
     /// An experiment at some moment.
     Experiment(Spot),
     /// The whole session that picks and lifts.
@@ -188,6 +190,13 @@ pub static CASES: &[Case] = &[
     ),
     triaxial("triaxial_case1", "1716 grains, 1131 vertices, shearing", "case1_triangles_A"),
     triaxial("triaxial_case2", "4645 grains, 2214 vertices, shearing", "case2_triangles_A"),
+    Case {
+        name: "beam",
+        about: "18 500 grains in a closed bar of 1792 vertices, under vacuum",
+        work: Work { n_warm: 20, n_steps: 100 },
+        limits: Limits::CLOSED,
+        kind: Kind::Beam,
+    },
     Case {
         name: "pick_and_lift",
         about: "the default scene from the first tick to the last, without ROS and recordings",

@@ -6,6 +6,7 @@
 //! the digest of that state stands beside the speed. Before a case is reported its contacts, overlaps and
 //! speeds are looked at: an empty, exploded or frozen system would look fast.
 
+mod beam; // grains in a closed bar
 mod cases; // what is measured
 pub mod figures; // what is told of a case
 #[cfg(all(feature = "ros", feature = "shm"))]
@@ -19,6 +20,7 @@ mod process; // what the system tells
 pub mod sheet; // figures kept over time
 mod soundness; // is it worth measuring?
 
+pub use beam::BeamError;
 pub use cases::{CASES, Case};
 pub use figures::Figures;
 #[cfg(all(feature = "ros", feature = "shm"))]
@@ -104,6 +106,9 @@ pub enum BenchError {
     /// The session cannot be started.
     #[error(transparent)]
     Session(#[from] node::start::StartError),
+    /// The beam cannot be made.
+    #[error("beam: {0}")]
+    Beam(#[from] BeamError),
     /// The grains find no place to grow from.
     #[error("packing: {0}")]
     NoRoom(#[from] crate::physics::packing::scatter::NoRoom),
@@ -164,7 +169,7 @@ pub fn run(case: &Case, options: &Options) -> Result<Figures, BenchError> {
         cases::Kind::Lift => lift::run(case, options),
         #[cfg(all(feature = "ros", feature = "shm"))]
         cases::Kind::Latency => latency::run(case, options),
-        cases::Kind::Grains(..) | cases::Kind::Experiment(..) => {
+        cases::Kind::Grains(..) | cases::Kind::Beam | cases::Kind::Experiment(..) => {
             let mut course = laps::Course::new(case, options)?;
             let mut peers = course.peers()?;
             while !course.is_over() {

@@ -1,6 +1,6 @@
 //! States to start from: made once, then kept in the cache of start states.
 
-use super::{BenchError, Case, Options, cases::Kind, packing::Boxed};
+use super::{BenchError, Case, Options, beam, cases::Kind, packing::Boxed};
 use crate::{
     base::{Real, digest::Digest, parallel},
     cosim::saved_state,
@@ -89,6 +89,7 @@ pub(super) fn subject(
         Kind::Grains(boxed) => {
             Ok(Subject { system: boxed.system(maker.boxed(boxed)?), after: |_| {} })
         }
+        Kind::Beam => Ok(Subject { system: beam::system(maker.beam()?)?, after: |_| {} }),
         Kind::Experiment(spot) => maker.experiment(spot),
         _ => Err(maker.no_moment()),
     }
@@ -120,6 +121,16 @@ impl Maker<'_> {
         }
         let state = parallel::lead(self.pool, || boxed.of_tile(&tile));
         self.store(&boxed.key(), &saved_state::write(&state));
+        Ok(state)
+    }
+
+    fn beam(&self) -> Result<State, BenchError> {
+        if let Some(state) = self.load_state(beam::KEY) {
+            return Ok(state);
+        }
+        self.tell();
+        let state = parallel::lead(self.pool, beam::grow)?;
+        self.store(beam::KEY, &saved_state::write(&state));
         Ok(state)
     }
 

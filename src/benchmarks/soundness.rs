@@ -77,6 +77,13 @@ impl Limits {
     /// By Hertz overlaps grow as (p/E)^(2/3): those of the softest grains are seven times as deep as those
     /// of 100 MPa.
     pub(super) const GRIPPING_SOFT: Self = Self { overlap_ratio: 0.6, ..Self::GRIPPING };
+    /// At rest under vacuum in a closed membrane, whose triangles each have a grain or so.
+    pub(super) const CLOSED: Self = Self {
+        contacts_per_grain: 2.0,
+        overlap_ratio: 0.1,
+        speed: [0.0, 5e-3],
+        others: [0, 2000, 0],
+    };
     /// Under 100 kPa between two plates.
     pub(super) const CONFINED: Self = Self {
         contacts_per_grain: 1.5,

@@ -185,7 +185,8 @@ impl Coupled {
                 return scaled(&sums.on_objects[i], share);
             }
             let (momentum_now, spin_now) = self.world.momentum(i);
-            let weight = self.model.gravity * self.world.mass(i);
+            let gravity = self.model.gravity * self.model.density_scaling;
+            let weight = gravity * self.world.mass(i);
             Wrench {
                 force: (momentum_now - momentum) / self.plan.tick - weight,
                 torque: (spin_now - spin) / self.plan.tick,

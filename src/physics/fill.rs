@@ -158,7 +158,8 @@ struct Recipe {
 impl Recipe {
     fn new(scene: &Scene, models: [&Model; 2]) -> Self {
         let [soft, goal] = models;
-        let density = scene.grains.material.density;
+        let density = scene.grains.material.density * goal.density_scaling;
+        let slower = goal.density_scaling.sqrt();
         let stretch = scene.membrane.fill_stretch;
         let final_radii = final_radii(scene);
         let first = first_scale(scene, &final_radii);
@@ -166,7 +167,7 @@ impl Recipe {
         let relaxation = (mass / (GROWTH_PRESSURE * 2.0 * goal.radius_mean)).sqrt();
         let rate = GROWTH_PER_RELAXATION / relaxation;
         let growth = first.recip().ln() / rate;
-        let of_soft = |time: Real| count(time / soft.substep);
+        let of_soft = |time: Real| count(slower * time / soft.substep);
         let is_softer = soft.grain_law.modulus < goal.grain_law.modulus;
         Self {
             first,
@@ -174,11 +175,11 @@ impl Recipe {
             rest_lengths: [stretch, 1.0 - scene.membrane.rest_length_shrink],
             held_shape: held_shape(&goal.membrane.mesh, stretch),
             n_substeps: [
-                of_soft(growth),
+                count(growth / soft.substep),
                 of_soft(FALL_TIME),
                 of_soft(SHRINK_TIME),
-                if is_softer { count(HARDEN_TIME / goal.substep) } else { 0 },
-                count(REST_TIME_MAX / goal.substep),
+                if is_softer { count(slower * HARDEN_TIME / goal.substep) } else { 0 },
+                count(slower * REST_TIME_MAX / goal.substep),
             ],
             final_radii,
         }
@@ -402,7 +403,6 @@ fn scatter(scene: &Scene, recipe: &Recipe) -> State {
         local.push(place);
     }
     let n = local.len();
-    let density = scene.grains.material.density;
     let radii: Vec<Real> = final_radii.iter().map(|r| scale * r).collect();
     let in_world = |p: &Vec3| pose.rotation * p + pose.translation.vector;
     let membrane = MembraneState {
@@ -414,7 +414,7 @@ fn scatter(scene: &Scene, recipe: &Recipe) -> State {
             positions: local.iter().map(in_world).collect(),
             velocities: vec![Vec3::zeros(); n],
             spins: vec![Vec3::zeros(); n],
-            masses: radii.iter().map(|&r| sphere_volume(r) * density).collect(),
+            masses: radii.iter().map(|&r| sphere_volume(r) * recipe.density).collect(),
             radii,
         },
         membrane,

@@ -15,6 +15,7 @@ use crate::base::{
 pub fn advance(model: &Model, controls: &Controls, scratch: &mut Scratch, state: &mut State) {
     let to = carried_to(controls);
     let carried = Carried {
+        gain: model.gravity * model.substep + carried_along(model, controls, state),
         step: to - state.carrier_position(),
         since_build: to - scratch.neighbours.carrier_position,
     };
@@ -32,11 +33,23 @@ fn carried_to(controls: &Controls) -> Vec3 {
     controls.walls.get(CARRIER).map_or_else(Vec3::zeros, |it| it.pose.translation.vector)
 }
 
-/// How far the carrier goes.
+/// What grains and free vertices gain with the carrier in this substep [m/s], so that heavier ones
+/// follow it as the real ones do; see `cosim::compile::heavier`.
+fn carried_along(model: &Model, controls: &Controls, state: &State) -> Vec3 {
+    let gained = match (controls.walls.get(CARRIER), state.walls.get(CARRIER)) {
+        (Some(to), Some(from)) => to.twist.linear - from.twist.linear,
+        _ => Vec3::zeros(),
+    };
+    gained * (1.0 - model.density_scaling.recip())
+}
+
+/// What the carrier and gravity do to all.
 struct Carried {
-    /// In this substep [m].
+    /// Velocity that grains and free vertices gain [m/s].
+    gain: Vec3,
+    /// How far the carrier goes in this substep [m].
     step: Vec3,
-    /// Since the lists were built [m].
+    /// How far it has come since the lists were built [m].
     since_build: Vec3,
 }
 
@@ -80,7 +93,7 @@ fn advance_grains(
                 let (force, torque) = sums::with_others(scratch, i, of_pairs);
                 let (mass, radius) = (grains.masses[i], grains.radii[i]);
                 let (before, velocity) = (positions[k], &mut velocities[k]);
-                *velocity += force * (dt / mass) + model.gravity * dt;
+                *velocity += force * (dt / mass) + carried.gain;
                 spins[k] += torque * (dt / (0.4 * mass * radius * radius));
                 positions[k] += *velocity * dt;
                 let built = &scratch.neighbours.grain_positions[i];
@@ -121,7 +134,7 @@ fn advance_membrane(
                     *velocity = sums::wall_velocity(wall, position);
                 } else {
                     let force = scratch.membrane.forces[v] + scratch.vertex_forces[v];
-                    *velocity += force * (dt / model.membrane.masses[v]) + model.gravity * dt;
+                    *velocity += force * (dt / model.membrane.masses[v]) + carried.gain;
                     *position += *velocity * dt;
                 }
                 let built = &scratch.neighbours.vertex_positions[v];

@@ -10,7 +10,9 @@ use crate::base::{Pose, Real, Vec3};
 /// Everything that does not change.
 #[derive(Clone)]
 pub struct Model {
-    /// Gravity [m/s²].
+    /// Inertia of grains and membrane over their real one, 1 as a rule.
+    pub density_scaling: Real,
+    /// Gravity as grains and membrane feel it [m/s²]: the real one over `density_scaling`.
     pub gravity: Vec3,
     /// Length of a substep [s].
     pub substep: Real,
@@ -56,6 +58,7 @@ impl Model {
             bending_damping: 0.0,
         };
         Self {
+            density_scaling: 1.0,
             gravity: Vec3::zeros(),
             substep,
             radius_max,

@@ -40,7 +40,7 @@ pub(crate) fn scene() -> Scene {
     Scene {
         name: String::new(),
         seed: 0,
-        time: Time { tick_ns: 0, substep: None, safety: NAN },
+        time: Time { tick_ns: 0, substep: None, safety: NAN, density_scaling: NAN },
         gravity: Vec3::repeat(NAN),
         grains: GRAINS,
         membrane: MEMBRANE,

@@ -16,6 +16,8 @@ use crate::base::{Pose, Quat, Real, Vec3};
 
 /// Numbers below which a box or a thickness is surely a slip of the unit [m].
 const LENGTH_MAX: Real = 10.0;
+/// Density scaling beyond which nothing is quasi-static any more.
+const DENSITY_SCALING_MAX: Real = 1000.0;
 
 /// Walks all keys of a scene.
 pub(crate) fn scene(walk: &mut impl Walk, scene: &mut Scene) {
@@ -44,6 +46,11 @@ pub(crate) fn time(walk: &mut impl Walk, time: &mut Time) {
     }
     walk.quantity_or("substep", "derived", Quantity::above_zero(&TIME), &mut time.substep);
     walk.number("safety", Range::AboveUpTo(0.0, 1.0), &mut time.safety);
+    walk.number(
+        "density_scaling",
+        Range::Between(1.0, DENSITY_SCALING_MAX),
+        &mut time.density_scaling,
+    );
 }
 
 pub(crate) fn material(walk: &mut impl Walk, material: &mut Material) {

@@ -57,7 +57,13 @@ pub(crate) fn session(n_threads: usize, overrides: &[&str]) -> Session {
 pub(crate) fn coupled(change: impl FnOnce(&mut Model)) -> Coupled {
     let mut compiled = compiled(1, &[]);
     change(&mut compiled.model);
+    coupled_of(compiled)
+}
+
+/// The same of a compiled scene.
+pub(crate) fn coupled_of(compiled: Compiled) -> Coupled {
     let mut state = compiled.read_start_state(start_state()).unwrap();
+    state.grains.masses.iter_mut().for_each(|it| *it *= compiled.model.density_scaling);
     let Compiled { scene, model, plan, bulks, limits, .. } = compiled;
     let mesh = &model.membrane.mesh;
     let n_samples = (mesh.n_vertices() + mesh.triangles.len()) * model.bodies.len();

@@ -72,6 +72,7 @@ impl Rig {
         let in_flange = flange.inverse();
         let of_vertex = |p: &Vec3| in_flange.rotation * p + in_flange.translation.vector;
         let model = Model {
+            density_scaling: 1.0,
             gravity: Vec3::zeros(),
             substep: dt,
             radius_max: 0.0,

@@ -31,7 +31,7 @@ pub(crate) fn scene() -> Scene {
     Scene {
         name: "synthetic".to_owned(),
         seed: 7,
-        time: Time { tick_ns: TICK_NS, substep: None, safety: 0.2 },
+        time: Time { tick_ns: TICK_NS, substep: None, safety: 0.2, density_scaling: 1.0 },
         gravity: Vec3::new(0.0, 0.0, -9.81),
         grains: Grains {
             count: 300,

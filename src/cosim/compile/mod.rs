@@ -3,6 +3,10 @@
 //! The substep is a share of the critical one (`physics::critical_step`) under the contacts that
 //! press on a vertex at full vacuum.
 
+mod heavier; // density scaling
+
+use heavier::heavier;
+
 use super::{
     FLANGE, Plan,
     flange::Limits,
@@ -98,16 +102,18 @@ impl Compiled {
     /// If the substep is too long, a shape is unusable, or threads cannot be had.
     pub fn new(scene: &Scene, n_threads: usize) -> Result<Self, CompileError> {
         let mesh = Mesh::half_icosphere(scene.membrane.radius, scene.membrane.frequency)?;
-        let mut membrane = MembraneModel::new(mesh, Sheet::of(&scene.membrane));
+        let heavy = heavier(scene);
+        let mut membrane = MembraneModel::new(mesh, Sheet::of(&heavy.membrane));
         membrane.scale_rest_lengths(1.0 - scene.membrane.rest_length_shrink);
-        let (mut bodies, bulks) = bodies(scene)?;
-        bodies.push(table(scene));
-        let laws = Laws::new(scene);
-        let plan = plan(scene, &membrane, &laws, &bodies)?;
+        let (mut bodies, bulks) = bodies(&heavy)?;
+        bodies.push(table(&heavy));
+        let laws = Laws::new(&heavy);
+        let plan = plan(&heavy, &membrane, &laws, &bodies)?;
         let dt = plan.tick / real(plan.n_substeps);
         let grains = &scene.grains;
         let model = Model {
-            gravity: scene.gravity,
+            density_scaling: scene.time.density_scaling,
+            gravity: scene.gravity / scene.time.density_scaling,
             substep: dt,
             radius_max: grains.radius_max,
             radius_mean: (grains.radius_min + grains.radius_max) / 2.0,
@@ -132,7 +138,8 @@ impl Compiled {
 
     /// Key of the settled start state: everything that the filling depends on, nothing else.
     pub fn start_digest(&self) -> u64 {
-        let Scene { seed, gravity, grains, membrane, flange, .. } = &self.scene;
+        let Scene { seed, grains, membrane, flange, .. } = &self.scene;
+        let gravity = &self.model.gravity;
         let mut digest = Digest::new();
         digest.integer(PHYSICS_VERSION);
         digest.integer(*seed);
@@ -226,6 +233,7 @@ pub fn body(scene: &Scene, object: &Object) -> Result<(BodyModel, Bulk), Compile
 
 /// Takes materials and pump from `scene` again; shapes and steps stay.
 pub fn retune(scene: &Scene, model: &mut Model) {
+    let scene = &heavier(scene);
     let laws = Laws::new(scene);
     (model.grain_law, model.membrane_law) = (laws.grain, laws.membrane);
     model.walls[FLANGE].law = laws.plate;
@@ -238,6 +246,7 @@ pub fn retune(scene: &Scene, model: &mut Model) {
 
 /// The longest stable substep of `scene` with an object that was not there when it was compiled [s].
 pub fn critical_step_with(scene: &Scene, model: &Model, body: &BodyModel) -> Real {
+    let scene = &heavier(scene);
     critical_step(scene, &model.membrane, &Laws::new(scene), std::slice::from_ref(body))
 }
 
@@ -297,7 +306,7 @@ fn plan(
     let tick = std::time::Duration::from_nanos(scene.time.tick_ns).as_secs_f64();
     // A hand-set step that divides the tick must not be cut once more by rounding.
     let n_first = count(tick / wanted - 1e-9);
-    let n_per_exchange = count((EXCHANGE_MAX * real(n_first) / tick).floor());
+    let n_per_exchange = count((EXCHANGE_MAX * real(n_first) / tick).floor()).max(1);
     let n_substeps = n_first.div_ceil(n_per_exchange) * n_per_exchange;
     Ok(Plan { tick, n_substeps, n_per_exchange })
 }

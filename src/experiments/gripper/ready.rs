@@ -127,7 +127,7 @@ impl Ready {
     /// I = γ̇ d √(ρ/p): the object's speed shears the grains over its diameter.
     pub(super) fn inertial_number(&self, speed: Real, pressure: Real) -> Real {
         let rate = speed / (2.0 * self.scene.object_radius());
-        let density = self.scene.gripper.grains.material.density;
+        let density = self.scene.gripper.grains.material.density * self.model.density_scaling;
         rate * 2.0 * self.model.radius_mean * (density / pressure).sqrt()
     }
 }

@@ -142,6 +142,7 @@ fn model(scene: &Scene, case: &Case, mut membrane: MembraneModel, n_outer: usize
         radius_mean: (scene.grains.radius_min + scene.grains.radius_max) / 2.0,
         skin: SKIN_SHARE * scene.grains.radius_max,
         period: None,
+        density_scaling: 1.0,
         grain_law: PairLaw::between(&material, &material, among_grains),
         membrane_law: sheet_law,
         held_positions,

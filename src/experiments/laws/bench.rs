@@ -93,6 +93,7 @@ impl Bench {
             radius_mean: 0.0,
             skin: 0.0,
             period: None,
+            density_scaling: 1.0,
             grain_law: PairLaw::between(material, material, surface),
             membrane_law: PairLaw::between(material, &latex, surface),
             held_positions: membrane.mesh.positions.clone(),

@@ -319,6 +319,7 @@ fn model(scene: &Scene, case: &Case, patch: Patch) -> Model {
         radius_mean: radius,
         skin: SKIN_SHARE * radius,
         period: None,
+        density_scaling: 1.0,
         grain_law: law,
         membrane_law: law,
         membrane,

@@ -192,6 +192,7 @@ fn model(setup: &Setup, choice: Choice) -> Result<Model, MeshFault> {
         radius_mean: 0.5 * (setup.grains.radius_min + setup.grains.radius_max),
         skin: SKIN_SHARE * setup.grains.radius_max,
         period: None,
+        density_scaling: 1.0,
         grain_law: grains,
         membrane_law: sheet,
         held_positions: membrane.mesh.positions.clone(),

@@ -175,7 +175,7 @@ pub fn on_walls(model: &Model, controls: &Controls, state: &State, scratch: &mut
         let force = membrane.forces[v] + vertex_forces[v];
         let velocity = wall_velocity(wall, &held_position(model, wall, v));
         let gained = velocity - state.membrane.velocities[v];
-        let own = model.gravity - gained / model.substep;
+        let own = model.gravity - gained / (model.substep * model.density_scaling);
         let position = &state.membrane.positions[v];
         add(holder as usize, position, force + own * model.membrane.masses[v]);
     }

@@ -6,6 +6,7 @@ pub mod mesh;
 mod icosphere;
 mod parts;
 mod tube;
+pub mod bar;
 pub mod stretch;
 pub mod bridson_2003;
 pub mod pressure;

@@ -35,7 +35,8 @@ impl Mesh {
         for row in 0..n_rows {
             let z = height * (row as Real / (n_rows - 1) as Real - 0.5);
             for place in 0..n_around {
-                let (cosine, sine) = part_of_turn(2 * place + row % 2, 2 * n_around);
+                let part = (2 * place + row % 2) as Real / (2 * n_around) as Real;
+                let (cosine, sine) = cosine_and_sine(part);
                 positions.push(Vec3::new(radius * cosine, radius * sine, z));
             }
         }
@@ -57,9 +58,8 @@ impl Mesh {
 /// Terms of the series for half a turn at most: the next one is below 10⁻¹⁶.
 const N_TERMS: usize = 14;
 
-/// Cosine and sine of `part`/`whole` of a turn, `part` < 2 · `whole`.
-fn part_of_turn(part: usize, whole: usize) -> (Real, Real) {
-    let mut turns = part as Real / whole as Real;
+/// Cosine and sine of a part of a turn, from 0 to 1.5.
+pub(super) fn cosine_and_sine(mut turns: Real) -> (Real, Real) {
     if turns > 0.5 {
         turns -= 1.0;
     }
@@ -126,7 +126,7 @@ mod tests {
     fn parts_of_a_turn_are_on_the_circle() {
         for whole in [3, 39, 334] {
             for part in 0..2 * whole {
-                let (cosine, sine) = part_of_turn(part, 2 * whole);
+                let (cosine, sine) = cosine_and_sine(part as Real / (2 * whole) as Real);
                 let angle = std::f64::consts::PI * part as Real / whole as Real;
                 assert!((cosine - angle.cos()).abs() < 3e-15, "{part}/{whole}");
                 assert!((sine - angle.sin()).abs() < 3e-15, "{part}/{whole}");

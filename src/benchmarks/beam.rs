@@ -1,0 +1,171 @@
+//! The beam of the seeds' bending test under vacuum: 18 500 grains of 50 MPa in a closed bar of latex.
+//!
+//! Grains grow smoothly inside the held membrane up to their size; then the membrane is let go, the
+//! air is drawn out, and all comes to rest.
+
+use crate::{
+    base::{
+        Pose, Real,
+        random::{Random, Stream},
+        real::Twist,
+    },
+    physics::{
+        Model, System,
+        boundary::{
+            body::BodyMotion,
+            wall::{WallModel, WallShape},
+        },
+        contact::{
+            law::{PairLaw, Surface},
+            stiffness_at_vertex,
+        },
+        critical_step::critical_step,
+        membrane::{
+            CARRIER_ID, FREE, MembraneModel, Sheet,
+            bar::Bar,
+            mesh::{Mesh, MeshFault},
+            pressure,
+        },
+        model::ChamberModel,
+        packing::{
+            Grown, Growth, Recipe, Room, first_scale, numbering::along_curve, scatter,
+            scatter::NoRoom, sphere_volume,
+        },
+        state::{Grains, State},
+    },
+    scene::Material,
+};
+
+/// Size and net of the membrane; the source gives 8 cm, 40 cm, rounded edges and 1792 vertices.
+const BAR: Bar = Bar { width: 0.08, length: 0.4, edge_radius: 0.01, n_side: 8, n_rows: 53 };
+/// Grains; the source leaves their number out, this is a solid fraction of 0.6.
+const N_GRAINS: usize = 18_500;
+/// Smallest and largest radius [m].
+const RADII: [Real; 2] = [2.5e-3, 2.9e-3];
+/// The grains' material, from the middle of the source's range.
+const GRAIN: Material = Material { youngs_modulus: 5e7, poisson_ratio: 0.245, density: 2000.0 };
+/// Latex, from the lower end of the source's range; as dense as the grains.
+const LATEX: Material = Material { youngs_modulus: 1e7, poisson_ratio: 1.0 / 3.0, density: 2000.0 };
+const BETWEEN_GRAINS: Surface =
+    Surface { friction: 0.25, dissipation_time: 4.3e-6, tangential_damping: 0.3 };
+const ON_LATEX: Surface = Surface { friction: 1.2, ..BETWEEN_GRAINS };
+/// Bending constants of the seeds' other membranes, which the source leaves out here.
+const SHEET: Sheet = Sheet {
+    thickness: 3e-4,
+    youngs_modulus: LATEX.youngs_modulus,
+    density: LATEX.density,
+    spring_damping: 0.15,
+    bending_stiffness: 1e-3,
+    bending_damping: 5e-6,
+};
+/// Vacuum [Pa], from the middle of the source's range.
+const VACUUM: Real = 50e3;
+/// Pressure at which nothing more would fit [Pa].
+const PRESSURE: Real = 10e3;
+/// Solid fraction of the scattered grains.
+const THIN: Real = 0.25;
+/// Share of the longest stable substep.
+const SAFETY: Real = 0.8;
+/// Neighbours are listed this share of the largest radius beyond contact.
+const SKIN_SHARE: Real = 0.2;
+/// Substeps in which the air is drawn out.
+const N_DRAWN: Real = 1000.0;
+/// Substeps from the release on, and share of its velocity that a grain keeps in each: while all gives
+/// way, and while it comes to rest.
+const N_REST: [(u64, Real); 2] = [(2000, 0.99), (1000, 0.999)];
+
+/// Names the state in the cache.
+pub(super) const KEY: &str = "beam 1";
+
+/// Why there is no beam.
+#[derive(Debug, thiserror::Error)]
+pub enum BeamError {
+    /// The grains find no place to grow from.
+    #[error(transparent)]
+    NoRoom(#[from] NoRoom),
+    /// The membrane is none.
+    #[error(transparent)]
+    Mesh(#[from] MeshFault),
+}
+
+/// The beam from its saved state, under vacuum.
+///
+/// # Errors
+/// None that `grow` did not have.
+pub(super) fn system(state: State) -> Result<System, BeamError> {
+    let mut model = model()?;
+    model.membrane.holders.fill(FREE);
+    let mut system = System::at_rest(model, vec![frame()], state.grains.clone());
+    system.controls.gauge_setpoint = -VACUUM;
+    system.state = state;
+    Ok(system)
+}
+
+/// The beam at rest under vacuum, from nothing.
+///
+/// # Errors
+/// If the grains find no room.
+pub(super) fn grow() -> Result<State, BeamError> {
+    let model = model()?;
+    let volume = pressure::volume(&model.membrane.mesh, &model.held_positions);
+    let mut random = Random::new(1, Stream::Radius);
+    let last: Vec<Real> = (0..N_GRAINS).map(|_| random.between(RADII[0], RADII[1])).collect();
+    let half = nalgebra::Vector3::new(BAR.width, BAR.width, BAR.length) / 2.0;
+    let room = Room::Box { low: -half, high: half };
+    let scale = first_scale(&last, THIN, volume);
+    let small: Vec<Real> = last.iter().map(|r| scale * r).collect();
+    let mut random = Random::new(1, Stream::Position);
+    // A corner of a square with this margin is inside the rounded edge as well.
+    let places = scatter(&small, None, &mut random, |it| room.place(1.5 * RADII[1], it))?;
+    let order = along_curve(&places, 2.0 * RADII[1]);
+    let ordered = |radii: &[Real]| order.iter().map(|&i| radii[i]).collect::<Vec<_>>();
+    let (last, small) = (ordered(&last), ordered(&small));
+    let places = order.iter().map(|&i| places[i]).collect();
+    let masses = last.iter().map(|&r| GRAIN.density * sphere_volume(r)).collect();
+    let mean = 0.5 * (RADII[0] + RADII[1]);
+    let mass = GRAIN.density * sphere_volume(mean);
+    let recipe = Recipe::new(&model, volume, PRESSURE, mass, mean);
+    let mut system = System::at_rest(model, vec![frame()], Grains::at_rest(places, small, masses));
+    let mut growth = Growth::new(recipe, last, scale);
+    while growth.step(&mut system) == Grown::Growing {
+        drag(&mut system, N_REST[0].1);
+    }
+    system.model.membrane.holders.fill(FREE);
+    system.controls.gauge_setpoint = -VACUUM;
+    for (n, share) in N_REST {
+        for _ in 0..n {
+            system.step();
+            drag(&mut system, share);
+        }
+    }
+    Ok(system.state)
+}
+
+/// Grains in a membrane that is held all over.
+fn model() -> Result<Model, MeshFault> {
+    let mesh = Mesh::bar(&BAR)?;
+    let law = PairLaw::between(&GRAIN, &GRAIN, BETWEEN_GRAINS);
+    let mean = 0.5 * (RADII[0] + RADII[1]);
+    let mut model = Model::of_grains(law, Real::NAN, RADII[1], mean);
+    model.skin = SKIN_SHARE * RADII[1];
+    model.membrane_law = PairLaw::between(&GRAIN, &LATEX, ON_LATEX);
+    model.held_positions.clone_from(&mesh.positions);
+    model.membrane = MembraneModel::new(mesh, SHEET);
+    model.membrane.holders.fill(CARRIER_ID);
+    model.walls.push(WallModel { shape: WallShape::Frame, law });
+    let on_vertex = stiffness_at_vertex(&model.membrane, &model.membrane_law, RADII[1], VACUUM);
+    model.substep = SAFETY * critical_step(RADII[0], &GRAIN, &model.membrane, on_vertex);
+    model.chamber = ChamberModel { lag_factor: 0.0, change_max: VACUUM / N_DRAWN };
+    Ok(model)
+}
+
+fn frame() -> BodyMotion {
+    BodyMotion { pose: Pose::identity(), twist: Twist::zero() }
+}
+
+/// Lets everything keep a share of its velocities.
+fn drag(system: &mut System, share: Real) {
+    let State { grains, membrane, .. } = &mut system.state;
+    let all = grains.velocities.iter_mut().chain(&mut grains.spins).chain(&mut membrane.velocities);
+    all.for_each(|it| *it *= share);
+}

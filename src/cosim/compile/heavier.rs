@@ -1,0 +1,66 @@
+//! Density scaling: heavier grains and a heavier sheet bear longer substeps.
+//!
+//! ```text
+//! ρ → f ρ,   A → √f A,   k_diss → √f k_diss,   g → g/f        and so  dt → √f dt
+//!
+//! dv/dt = F/(f m) + g/f + (1 − 1/f) dv_carrier/dt
+//! ```
+//!
+//! | symbol | meaning | unit |
+//! |---|---|---|
+//! | f | `time.density_scaling` | – |
+//! | ρ, m | density and mass of grains and sheet | kg/m³, kg |
+//! | A, k_diss | dissipation time of contacts, dissipative bending constant | s, N s |
+//! | g | gravity, as grains and sheet feel it: their weight stays | m/s² |
+//! | v_carrier | velocity of the flange | m/s |
+//!
+//! Forces, stiffnesses, friction, weights, restitution and all of the objects stay as they are. What
+//! changes is how fast grains and sheet follow: waves and rearrangements take √f times as long. The
+//! last term moves all of them with the flange, so that hanging on it and being carried on straight
+//! ways costs the flange the real mass; turning it costs f times the real moment of inertia.
+//!
+//! Valid while grips are quasi-static: the inertial number γ̇ d √(f ρ/p) must stay far below one.
+//! Source: Thornton & Antony (2000) for grains; the shares of damping and the carried frame are ours.
+
+use crate::scene::Scene;
+
+/// The scene whose grains and sheet move as density scaling wants it. Objects are as they were.
+pub(super) fn heavier(scene: &Scene) -> Scene {
+    let factor = scene.time.density_scaling;
+    let slower = factor.sqrt();
+    let mut heavy = scene.clone();
+    let Scene { grains, membrane, .. } = &mut heavy;
+    grains.material.density *= factor;
+    membrane.material.density *= factor;
+    grains.dissipation_time *= slower;
+    membrane.dissipation_time *= slower;
+    membrane.bending_damping *= slower;
+    heavy
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{base::Real, cosim::compile::Compiled};
+
+    fn compiled(scaling: Real) -> Compiled {
+        let sets = [format!("time.density_scaling={scaling}"), "time.tick=5 ms".to_owned()];
+        let text = "name: heavy\nobject: { shape: { sphere: { radius: 10 mm } }, position: [0 m, 0 m, 10 mm] }";
+        let folder = std::path::Path::new("");
+        let scene = crate::scene::parse(text, "heavy.yaml", folder, &sets).unwrap();
+        Compiled::new(&scene, 1).unwrap()
+    }
+
+    /// Oracle: the formulas of the file's head. Substeps are whole parts of the tick: one of 44 is the
+    /// tolerance.
+    #[test]
+    fn substeps_get_longer_with_the_root_and_weights_stay() {
+        let (plain, heavy) = (compiled(1.0), compiled(25.0));
+        let ratio = heavy.model.substep / plain.model.substep;
+        assert!((ratio / 5.0 - 1.0).abs() < 1.0 / 44.0, "{ratio}");
+        let weight = |it: &Compiled| it.model.membrane.mass() * it.model.gravity.z;
+        assert!((weight(&heavy) / weight(&plain) - 1.0).abs() < 1e-12);
+        // Objects keep their mass.
+        assert_eq!(heavy.bulks[0].mass.to_bits(), plain.bulks[0].mass.to_bits());
+    }
+}
