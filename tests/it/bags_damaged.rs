@@ -403,8 +403,9 @@ fn held(file: &Path) -> Held {
                 assert_eq!(it.media_type, "application/octet-stream");
                 n_attached += 1;
             }
-            Item::Metadata(it) => {
-                assert_eq!((it.name.as_str(), it.metadata["foo"].as_str()), ("myMetadata", "bar"));
+            // What is saved says of itself that it was.
+            Item::Metadata(it) if it.name == "myMetadata" => {
+                assert_eq!(it.metadata["foo"], "bar");
                 n_noted += 1;
             }
             Item::Damage(damage) => panic!("{}: {damage}", file.display()),
@@ -435,7 +436,10 @@ fn the_public_conformance_data_is_read() {
             other => panic!("{other}"),
         };
         assert_eq!(held(&file), expected, "{name}");
-        // What is saved of it holds the same.
+        // What is saved of it holds the same; without messages it is told that there is nothing to save.
+        if expected.0.is_empty() {
+            continue;
+        }
         let saved = folder.path().join("saved.mcap");
         recover::recover(&file, &saved).unwrap();
         assert_eq!(held(&saved), expected, "{name}, saved");
