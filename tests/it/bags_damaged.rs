@@ -381,16 +381,16 @@ fn held(file: &Path) -> Held {
             Item::Message(it) => {
                 let Channel { id, topic, metadata, .. } = &*it.channel;
                 assert_eq!((*id, topic.as_str(), &it.data[..]), (1, "example", &[1, 2, 3][..]));
-                let foo = metadata.get("foo").map(String::as_str);
+                let value = metadata.get("foo").map(String::as_str);
                 match (&it.channel.schema, it.channel.encoding.as_str()) {
                     (Some(schema), "a") => {
-                        assert_eq!((schema.name.as_str(), foo), ("Example", Some("bar")));
+                        assert_eq!((schema.name.as_str(), value), ("Example", Some("bar")));
                         assert_eq!(
                             (schema.encoding.as_str(), &schema.data[..]),
                             ("c", &[4, 5, 6][..])
                         );
                     }
-                    (None, "text") => assert_eq!(foo, None),
+                    (None, "text") => assert_eq!(value, None),
                     other => panic!("{other:?}"),
                 }
                 messages.push((it.sequence, it.log_time, it.publish_time));
