@@ -10,7 +10,7 @@ use std::{
 
 use super::{
     CHECKPOINT, NotABag, SCENE, SCENE_FILE, START,
-    chain::{self, Chain},
+    chain::Chain,
     files,
     reader::{Damage, Item, Reader, Recorded, unpacked},
     writer::CDR_HEADER,
@@ -96,11 +96,6 @@ pub struct Place {
     offset: u64,
 }
 
-/// The topic of statistics, which always held some digests.
-fn statistics_topic() -> String {
-    format!("{NODE}/statistics")
-}
-
 impl Recording {
     /// Reads what comes before the first message.
     ///
@@ -166,9 +161,6 @@ impl Recording {
         let mut clerk = Clerk {
             inputs,
             tick_ns,
-            links: chain::topic_name(),
-            changes: chain::changes_topic_name(),
-            statistics: statistics_topic(),
             chain: self.scene_text.as_deref().map(Chain::new),
             sparse: Vec::new(),
             course: Course::default(),
@@ -188,7 +180,13 @@ impl Recording {
 impl Course {
     /// The last checkpoint at or before a tick.
     pub fn checkpoint_before(&self, tick: u64) -> Option<&Place> {
-        self.checkpoints.iter().rev().find(|place| place.tick <= tick)
+        let n = self.checkpoints.partition_point(|place| place.tick <= tick);
+        self.checkpoints[..n].last()
+    }
+
+    /// The checkpoint after a tick.
+    pub fn checkpoint_at(&self, tick: u64) -> Option<&Place> {
+        self.checkpoint_before(tick).filter(|place| place.tick == tick)
     }
 
     /// The digest of the state after a tick.
@@ -251,9 +249,6 @@ impl Inputs {
 struct Clerk {
     inputs: Inputs,
     tick_ns: u64,
-    links: String,
-    changes: String,
-    statistics: String,
     chain: Option<Chain>,
     sparse: Vec<(u64, u64)>,
     course: Course,
@@ -276,20 +271,21 @@ impl Clerk {
     }
 
     fn message(&mut self, message: &Recorded) {
-        let topic = &message.channel.topic;
+        let (topic, kind) = (&message.channel.topic, message.channel.type_name());
         let Some(cdr) = message.data.strip_prefix(&CDR_HEADER) else { return };
-        if *topic == self.links {
+        // By their types: a node may have other names than usual.
+        if kind == StateDigest::TYPE.name {
             if let Ok(link) = StateDigest::from_cdr(cdr) {
                 self.link(&link);
             }
-        } else if *topic == self.changes {
+        } else if kind == WorldChange::TYPE.name {
             if let Some(chain) = &mut self.chain {
                 chain.command(topic, cdr);
             }
             if let Ok(WorldChange { tick, what, change }) = WorldChange::from_cdr(cdr) {
                 self.course.changes.push(Alteration { tick, what, change, digest: None });
             }
-        } else if *topic == self.statistics {
+        } else if kind == Statistics::TYPE.name {
             if let Ok(it) = Statistics::from_cdr(cdr) {
                 self.sparse.push((it.tick, it.state_digest));
             }
