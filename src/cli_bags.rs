@@ -3,21 +3,26 @@
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
-use jamgrip::lab::outcome::n_processors;
+use jamgrip::{lab::outcome::n_processors, replay::crew::Hands};
 
 use crate::cli::{bag_folder, time, time_or_zero};
 
 pub(crate) const REPLAY_HELP: &str = "\
 Without --verify or --from the recording is published on ROS 2 topics with its original timing; --cues \
-takes pause, resume, toggle, next, seek TIME, rate FACTOR and quit, one a line.\n\n\
+takes pause, resume, toggle, next, seek TIME, rate FACTOR and quit, one a line. The services of rosbag2's \
+player are below /jamgrip_player: pause, resume, toggle_paused, is_paused, set_rate, get_rate, seek, \
+play_next, burst, stop.\n\n\
 --verify simulates again from the scene, the start and the commands in the recording and compares the \
 digest of every tick. With --json it ends with one line: ticks (simulated), first_difference (the first \
-tick whose digest differs, or null), real_time_factor, compared (digests), remarks.\n\n\
+tick whose digest differs, or null), real_time_factor, compared (digests), checkpoints (compared), remarks. \
+The recording is cut at its checkpoints, and the parts are simulated side by side, in the order of time: each \
+begins at a checkpoint and ends with everything equal to the next one.\n\n\
 --from branches a new run off a recorded moment: the recorded commands go on, --set changes the scene. \
 What the recorded grains, membrane or object have in them (sizes, shapes, the seed) cannot change.\n\n\
 Examples:\n  \
 jamgrip replay bags/pick_and_lift --rate 0.5 --exclude '/jamgrip/grains'\n  \
-jamgrip replay BAG --verify --threads 7\n  \
+jamgrip replay BAG --verify --threads 7             # one part, as recorded, on seven threads\n  \
+jamgrip replay BAG --verify --jobs 4                # four parts at a time\n  \
 jamgrip replay BAG --from 1.5s --set object.friction=0.4 --bag bags/slippery\n\n\
 Exit codes: 0 played, every digest equal, or run to its end; 1 a digest differs, or it cannot be done; \
 2 the command line or a change is wrong; 130 interrupted.";
@@ -57,6 +62,9 @@ pub(crate) struct Replay {
     /// Plays so many times as fast as recorded
     #[arg(long, value_name = "FACTOR", default_value = "1", value_parser = factor)]
     pub(crate) rate: f64,
+    /// Stands still at first, until a cue or a service lets it go on
+    #[arg(long, conflicts_with_all = ["verify", "from"])]
+    pub(crate) start_paused: bool,
     /// Plays over and over
     #[arg(long = "loop", conflicts_with_all = ["verify", "from"])]
     pub(crate) is_loop: bool,
@@ -87,9 +95,17 @@ pub(crate) struct Replay {
     /// Shows no progress and ends with one line of JSON on standard output
     #[arg(long)]
     pub(crate) json: bool,
-    /// Solver threads; the result is the same for any number [default: all processors]
+    /// Solver threads of a simulation; the result is the same for any number [default: all
+    /// processors; with --verify the processors that each part has]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
+    /// With --verify, parts of the recording that are simulated at a time [default: as many as there
+    /// are processors for --threads, which is then 1]
+    #[arg(
+        long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024),
+        requires = "verify"
+    )]
+    jobs: Option<u16>,
     /// Keeps settled start states in this folder [default: ~/.cache/jamgrip]
     #[arg(long, value_name = "DIR")]
     pub(crate) cache: Option<PathBuf>,
@@ -99,6 +115,12 @@ impl Replay {
     /// How many solver threads.
     pub(crate) fn n_threads(&self) -> usize {
         self.threads.map_or_else(n_processors, usize::from)
+    }
+
+    /// How the machine is shared out when a recording is verified.
+    pub(crate) fn hands(&self) -> Hands {
+        let (n_threads, n_jobs) = (self.threads.map(usize::from), self.jobs.map(usize::from));
+        Hands { n_processors: n_processors(), n_threads, n_jobs }
     }
 
     /// Changes of the recorded scene, as `key=value`. The old recording's folder is not taken.

@@ -21,7 +21,9 @@ use jamgrip::{
     replay::{
         again::Again,
         branch::{self, Branch},
-        play::{self, Cue, Played},
+        cue::{Asked, Cue},
+        part::{Difference, Kind},
+        play::{self, Played},
         verify::{self, Verdict},
     },
     scene::Scene,
@@ -79,7 +81,7 @@ fn verify(args: &Replay) -> Result<ExitCode, Box<dyn Error>> {
     let verdict = verify::verify(
         &again,
         &verify::Options {
-            n_threads: args.n_threads(),
+            hands: args.hands(),
             settles: args.settle,
             from_ns: nanoseconds(args.start.unwrap_or(0.0)),
             to_ns: args.end.map(nanoseconds),
@@ -106,17 +108,21 @@ fn tell(out: &mut impl Write, verdict: &Verdict) -> io::Result<()> {
         writeln!(out, "{remark}")?;
     }
     let Verdict { n_ticks, n_compared, start_tick, real_time_factor, .. } = verdict;
+    let ((n_jobs, n_threads), n_checkpoints) = (verdict.shared_out, verdict.n_checkpoints);
     writeln!(
         out,
-        "{n_ticks} ticks simulated from tick {start_tick} on at {real_time_factor:.3} x real time, \
-         {n_compared} digests compared"
+        "{n_ticks} ticks simulated from tick {start_tick} on at {real_time_factor:.3} x real time \
+         ({n_jobs} parts at a time, {n_threads} threads each); \
+         {n_compared} digests and {n_checkpoints} checkpoints compared"
     )?;
     match &verdict.first_difference {
-        Some(it) => writeln!(
+        Some(Difference { tick, kind: Kind::Digest { recorded, simulated } }) => writeln!(
             out,
-            "tick {} differs: {:016x} is recorded, {:016x} was simulated",
-            it.tick, it.recorded, it.simulated
+            "tick {tick} differs: {recorded:016x} is recorded, {simulated:016x} was simulated"
         ),
+        Some(Difference { tick, kind: Kind::Checkpoint(part) }) => {
+            writeln!(out, "checkpoint at tick {tick} differs, although the digests do not: {part}")
+        }
         None if verdict.is_interrupted => writeln!(out, "interrupted; all equal so far"),
         None if *n_compared == 0 => writeln!(out, "nothing to compare"),
         None => writeln!(out, "all equal"),
@@ -155,6 +161,7 @@ fn play(args: &Replay) -> Result<ExitCode, Box<dyn Error>> {
         rate: args.rate,
         start_ns: nanoseconds(args.start.unwrap_or(0.0)),
         end_ns: args.end.map(nanoseconds),
+        is_paused: args.start_paused,
         is_loop: args.is_loop,
         topics: args.topics.clone(),
         exclude: args.exclude.clone(),
@@ -163,10 +170,12 @@ fn play(args: &Replay) -> Result<ExitCode, Box<dyn Error>> {
     };
     let (teller, cues) = mpsc::channel();
     if args.cues {
+        let teller = teller.clone();
         std::thread::Builder::new().name("cues".to_owned()).spawn(move || listen(&teller))?;
     }
-    let (played, fault) =
-        on_stage(&options, |stage| play::play(&files, &options, stage, &cues, &shutdown))?;
+    let perform =
+        |stage: &mut dyn play::Stage| play::play(&files, &options, stage, &cues, &shutdown);
+    let (played, fault) = on_stage(&options, teller, perform)?;
     let mut stderr = io::stderr().lock();
     for topic in &played.refused {
         writeln!(
@@ -198,6 +207,7 @@ type Performance = (Played, Option<String>);
 #[cfg(feature = "ros")]
 fn on_stage(
     options: &play::Options,
+    teller: mpsc::Sender<Asked>,
     perform: impl FnOnce(&mut dyn play::Stage) -> io::Result<Played>,
 ) -> Result<Performance, Box<dyn Error>> {
     use jamgrip::{replay::stage::RosStage, scene::Ros, sinks::reach::Reach};
@@ -205,6 +215,7 @@ fn on_stage(
     let anywhere = Ros { enabled: true, ..Ros::OFF };
     let reach = Reach::choose(&anywhere, |name| std::env::var(name).ok())?;
     let mut stage = RosStage::join(&reach, options.clock_rate.is_some())?;
+    let _prompter = stage.prompted(teller)?;
     let played = perform(&mut stage)?;
     Ok((played, stage.faults.1))
 }
@@ -212,17 +223,18 @@ fn on_stage(
 #[cfg(not(feature = "ros"))]
 fn on_stage(
     _: &play::Options,
+    _: mpsc::Sender<Asked>,
     _: impl FnOnce(&mut dyn play::Stage) -> io::Result<Played>,
 ) -> Result<Performance, Box<dyn Error>> {
     Err("this jamgrip was built without ROS 2 (feature `ros`): there is nowhere to play to".into())
 }
 
 /// Reads cues until standard input ends or nobody listens.
-fn listen(teller: &mpsc::Sender<Cue>) {
+fn listen(teller: &mpsc::Sender<Asked>) {
     for line in io::stdin().lock().lines().map_while(Result::ok) {
         match Cue::parse(&line) {
             Ok(cue) => {
-                if teller.send(cue).is_err() {
+                if teller.send(cue.into()).is_err() {
                     return;
                 }
             }

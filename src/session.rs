@@ -69,6 +69,13 @@ struct Saved<'a> {
     turned: Vec<(Knob, f64)>,
 }
 
+impl<'a> Saved<'a> {
+    fn read(bytes: &'a [u8]) -> Result<Self, SavedStateError> {
+        let corrupt = SavedStateError::Corrupt { n_bytes: bytes.len() };
+        postcard::from_bytes(saved_state::unsealed(bytes)?).map_err(|_| corrupt)
+    }
+}
+
 impl Session {
     /// Fills the bag of a compiled scene; this takes a while, so `on_progress` is told.
     ///
@@ -98,9 +105,7 @@ impl Session {
     /// # Errors
     /// If the bytes are damaged or of a scene with other grains, meshes or objects.
     pub fn resume(compiled: Compiled, bytes: &[u8]) -> Result<Self, SavedStateError> {
-        let corrupt = SavedStateError::Corrupt { n_bytes: bytes.len() };
-        let saved: Saved<'_> =
-            postcard::from_bytes(saved_state::unsealed(bytes)?).map_err(|_| corrupt)?;
+        let saved = Saved::read(bytes)?;
         let state = compiled.read_state(saved.state)?;
         let mut session = Self::assemble(compiled, state);
         session.coupled.world.restore(saved.world)?;
@@ -122,9 +127,7 @@ impl Session {
     /// # Errors
     /// If the bytes are damaged or of another scene.
     pub fn remember_start(&mut self, bytes: &[u8]) -> Result<(), SavedStateError> {
-        let corrupt = SavedStateError::Corrupt { n_bytes: bytes.len() };
-        let saved: Saved<'_> =
-            postcard::from_bytes(saved_state::unsealed(bytes)?).map_err(|_| corrupt)?;
+        let saved = Saved::read(bytes)?;
         let state = saved_state::read(saved.state)?;
         let now = &self.coupled.state;
         saved_state::same_counts(&[
@@ -152,6 +155,31 @@ impl Session {
         let (state, world, desk, turned) = (&state, &world, &desk, self.turned.clone());
         let saved = Saved { tick, run_tick, state, world, desk, sensor_zero, turned };
         Some(saved_state::sealed(postcard::to_stdvec(&saved).expect("bytes always serialise")))
+    }
+
+    /// Compares with what `save` wrote of another run: the first part that is not the same to the
+    /// bit, if any is not.
+    ///
+    /// # Errors
+    /// If the bytes are damaged.
+    pub fn differs_from(&self, bytes: &[u8]) -> Result<Option<&'static str>, SavedStateError> {
+        let other = Saved::read(bytes)?;
+        let state = saved_state::read(other.state)?;
+        let bits = |it: [[f64; 3]; 2]| it.map(|it| it.map(f64::to_bits));
+        let Wrench { force, torque } = self.sensor_zero;
+        let sensor_zero: [[f64; 3]; 2] = [force, torque].map(Into::into);
+        let knobs = |turned: &[(Knob, f64)]| -> Vec<(Knob, u64)> {
+            turned.iter().map(|(knob, value)| (*knob, value.to_bits())).collect()
+        };
+        let parts = [
+            ("time", [self.tick.0, self.run_tick.0] == [other.tick, other.run_tick]),
+            ("grains and membrane", saved_state::is_same(self.coupled.state.clone(), state)),
+            ("rigid world", self.coupled.world.save() == other.world),
+            ("what was commanded", self.desk.save() == other.desk),
+            ("zero of the wrist sensor", bits(sensor_zero) == bits(other.sensor_zero)),
+            ("parameters", knobs(&self.turned) == knobs(&other.turned)),
+        ];
+        Ok(parts.into_iter().find(|(_, is_same)| !is_same).map(|(part, _)| part))
     }
 
     fn start(compiled: Compiled, mut state: State) -> Self {

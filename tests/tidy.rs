@@ -71,7 +71,7 @@ const DOORS: &[(&str, &[&str])] = &[
         ],
     ),
     ("iceoryx2", &["wire/rows.rs", "sinks/shm.rs"]),
-    ("mcap", &["bag/writer.rs", "bag/reader.rs", "bag/recover.rs", "bag/check.rs"]),
+    ("mcap", &["bag/writer.rs", "bag/reader.rs", "bag/index.rs", "bag/recover.rs", "bag/check.rs"]),
     ("zstd", &["bag/writer.rs", "bag/reader.rs"]),
     ("indicatif", &["node/progress.rs", "lab/board.rs"]),
     ("comfy_table", &["node/summary.rs", "lab/table.rs"]),

@@ -7,6 +7,7 @@
 pub mod chain; // the digest of every tick, each tied to all before it
 pub mod check; // does all that it says agree with what is in it?
 pub mod disk; // a file that can be completed on a full disk
+pub mod index; // where its chunks are
 pub mod info; // what is in it, counted
 pub mod metadata; // what a recording says about itself
 pub mod reader; // records of a file, however damaged

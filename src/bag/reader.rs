@@ -1,7 +1,7 @@
 //! Records of a recording's files, one after the other, however damaged they are.
 //!
-//! Nothing is read ahead and no index is trusted: what a killed process left behind is read in the
-//! same way as a whole file. Damage is an item of its own; whatever follows it and can still be made
+//! Nothing is read ahead and no index is needed: what a killed process left behind is read in the
+//! same way as a whole file. Only who wants a part of a file may tell what to pass over. Damage is an item of its own; whatever follows it and can still be made
 //! out follows. A chunk whose checksum is wrong is left out as a whole, one that is cut off gives
 //! the messages before the cut.
 
@@ -9,6 +9,7 @@ use std::{
     collections::{BTreeMap, VecDeque},
     fs::File,
     io::{self, BufReader, Read},
+    ops::Range,
     path::{Path, PathBuf},
     sync::Arc,
 };
@@ -19,7 +20,7 @@ use mcap::{
     records::{self, Record, op},
 };
 
-use super::writer::text;
+use super::{index::Index, writer::text};
 
 /// First and last bytes of every file.
 pub const MAGIC: &[u8; 8] = b"\x89MCAP0\r\n";
@@ -181,6 +182,9 @@ pub struct Reader<R> {
     channels: BTreeMap<u16, Arc<Channel>>,
     schemas: BTreeMap<u16, Arc<Schema>>,
     waiting: VecDeque<Item>,
+    /// What to pass over, and how.
+    gaps: VecDeque<Range<u64>>,
+    pass_over: fn(&mut R, u64) -> io::Result<()>,
     is_closed: bool,
     is_over: bool,
 }
@@ -194,6 +198,20 @@ impl Reader<BufReader<File>> {
         let file = File::open(path)?;
         let length = file.metadata()?.len();
         Ok(Self::new(BufReader::with_capacity(1 << 18, file), length))
+    }
+
+    /// Opens a file to pass over parts of it, whole records each, that an index named. Channels are
+    /// those of the index: where they were told may be passed over too.
+    ///
+    /// # Errors
+    /// As the system says.
+    pub fn open_in_part(path: &Path, index: &Index, gaps: Vec<Range<u64>>) -> io::Result<Self> {
+        let mut reader = Self::open(path)?;
+        reader.channels = index.channels.clone();
+        reader.schemas = index.schemas.clone();
+        reader.gaps = gaps.into();
+        reader.pass_over = |input, n| input.seek_relative(i64::try_from(n).unwrap_or(i64::MAX));
+        Ok(reader)
     }
 }
 
@@ -219,6 +237,8 @@ impl<R: Read> Reader<R> {
             channels: BTreeMap::new(),
             schemas: BTreeMap::new(),
             waiting: VecDeque::new(),
+            gaps: VecDeque::new(),
+            pass_over: |input, n| io::copy(&mut input.take(n), &mut io::sink()).map(drop),
             is_closed: false,
             is_over: false,
         }
@@ -236,6 +256,9 @@ impl<R: Read> Reader<R> {
 
     /// Reads the next record and queues what is in it.
     fn read_record(&mut self) {
+        if let Err(error) = self.pass_gaps() {
+            return self.end_with(Some(unreadable(self.offset, &error)));
+        }
         let offset = self.offset;
         let left = self.length.saturating_sub(offset);
         if self.is_closed || left == 0 {
@@ -269,11 +292,18 @@ impl<R: Read> Reader<R> {
         }
     }
 
+    fn pass_gaps(&mut self) -> io::Result<()> {
+        while let Some(gap) = self.gaps.front().filter(|gap| gap.start == self.offset) {
+            (self.pass_over)(&mut self.input, gap.end - gap.start)?;
+            self.offset = gap.end;
+            self.gaps.pop_front();
+        }
+        Ok(())
+    }
+
     fn record(&mut self, offset: u64, opcode: u8, body: &[u8]) {
-        // The crate takes the checksum of an attachment from its end without looking.
-        let is_short = opcode == op::ATTACHMENT && body.len() < 4;
-        let record =
-            if is_short { Err(McapError::UnexpectedEof) } else { parse_record(opcode, body) };
+        let body = if opcode == op::ATTACHMENT { attachment(body) } else { Some(body) };
+        let record = body.map_or(Err(McapError::UnexpectedEof), |it| parse_record(opcode, it));
         match record {
             Ok(record) => {
                 if let Some(item) = self.take_in(record.into_owned()) {
@@ -388,6 +418,18 @@ impl<R: Read> Reader<R> {
             self.waiting.push_back(Item::Damage(damage));
         }
     }
+}
+
+/// An attachment without what may stand behind its checksum, which the crate takes from the end.
+fn attachment(body: &[u8]) -> Option<&[u8]> {
+    let mut end: usize = 16; // both times
+    for width in [4, 4, 8] {
+        let mut length = [0; 8];
+        length[..width].copy_from_slice(body.get(end..end.checked_add(width)?)?);
+        let length = usize::try_from(u64::from_le_bytes(length)).ok()?;
+        end = (end + width).checked_add(length)?;
+    }
+    body.get(..end.checked_add(4)?)
 }
 
 fn unreadable(offset: u64, error: &io::Error) -> Damage {

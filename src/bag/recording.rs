@@ -10,7 +10,7 @@ use std::{
 
 use super::{
     CHECKPOINT, NotABag, SCENE, SCENE_FILE, START,
-    chain::{self, Chain},
+    chain::Chain,
     files,
     reader::{Damage, Item, Reader, Recorded, unpacked},
     writer::CDR_HEADER,
@@ -25,8 +25,6 @@ use crate::wire::{
 
 /// The fact that names the topics of commands, in the order of the list of topics.
 pub const INPUTS: &str = "inputs";
-/// The fact that names the node.
-pub const NODE_NAME: &str = "node";
 
 /// What a recording says about its run before anything happens in it.
 #[derive(Clone, Debug, Default)]
@@ -134,11 +132,6 @@ impl Recording {
         self.facts.get("version").map(String::as_str).or_else(by_library).unwrap_or("unknown")
     }
 
-    /// Full name of the node that recorded it, below which most of its topics are.
-    pub fn node(&self) -> &str {
-        self.facts.get(NODE_NAME).map_or(NODE, String::as_str)
-    }
-
     /// The topics of commands, where the recording says which: a node may have other names than the
     /// scene says.
     pub fn inputs(&self) -> Option<Vec<String>> {
@@ -168,10 +161,6 @@ impl Recording {
         let mut clerk = Clerk {
             inputs,
             tick_ns,
-            links: chain::topic_name(self.node()),
-            changes: chain::changes_topic_name(self.node()),
-            // They held some digests before every tick's was recorded.
-            statistics: format!("{}/statistics", self.node()),
             chain: self.scene_text.as_deref().map(Chain::new),
             sparse: Vec::new(),
             course: Course::default(),
@@ -191,7 +180,13 @@ impl Recording {
 impl Course {
     /// The last checkpoint at or before a tick.
     pub fn checkpoint_before(&self, tick: u64) -> Option<&Place> {
-        self.checkpoints.iter().rev().find(|place| place.tick <= tick)
+        let n = self.checkpoints.partition_point(|place| place.tick <= tick);
+        self.checkpoints[..n].last()
+    }
+
+    /// The checkpoint after a tick.
+    pub fn checkpoint_at(&self, tick: u64) -> Option<&Place> {
+        self.checkpoint_before(tick).filter(|place| place.tick == tick)
     }
 
     /// The digest of the state after a tick.
@@ -239,7 +234,6 @@ enum Inputs {
 }
 
 impl Inputs {
-    /// True for the name of a topic of commands.
     fn contains(&self, topic: &str) -> bool {
         match self {
             Self::Named(names) => names.iter().any(|it| it == topic),
@@ -255,9 +249,6 @@ impl Inputs {
 struct Clerk {
     inputs: Inputs,
     tick_ns: u64,
-    links: String,
-    changes: String,
-    statistics: String,
     chain: Option<Chain>,
     sparse: Vec<(u64, u64)>,
     course: Course,
@@ -280,20 +271,21 @@ impl Clerk {
     }
 
     fn message(&mut self, message: &Recorded) {
-        let topic = &message.channel.topic;
+        let (topic, kind) = (&message.channel.topic, message.channel.type_name());
         let Some(cdr) = message.data.strip_prefix(&CDR_HEADER) else { return };
-        if *topic == self.links {
+        // By their types: a node may have other names than usual.
+        if kind == StateDigest::TYPE.name {
             if let Ok(link) = StateDigest::from_cdr(cdr) {
                 self.link(&link);
             }
-        } else if *topic == self.changes {
+        } else if kind == WorldChange::TYPE.name {
             if let Some(chain) = &mut self.chain {
                 chain.command(topic, cdr);
             }
             if let Ok(WorldChange { tick, what, change }) = WorldChange::from_cdr(cdr) {
                 self.course.changes.push(Alteration { tick, what, change, digest: None });
             }
-        } else if *topic == self.statistics {
+        } else if kind == Statistics::TYPE.name {
             if let Ok(it) = Statistics::from_cdr(cdr) {
                 self.sparse.push((it.tick, it.state_digest));
             }

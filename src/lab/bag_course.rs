@@ -4,9 +4,8 @@ use std::{collections::BTreeMap, path::Path};
 
 use crate::{
     bag::{
-        NotABag, START,
-        reader::{Item, Reader, Recorded},
-        recording::NODE_NAME,
+        NotABag,
+        reader::{Channel, Item, Reader, Recorded},
         writer::CDR_HEADER,
     },
     experiments::findings::{Kind, Plot, Series},
@@ -26,8 +25,8 @@ use crate::{
 /// What a page shows.
 #[derive(Debug, Default)]
 pub(super) struct Course {
-    /// Name of the node that recorded it.
-    node: String,
+    /// Full name of the node, once one of its topics was met.
+    node: Option<String>,
     /// Curves by picture and label.
     curves: BTreeMap<(Picture, String), Vec<[f64; 2]>>,
     /// What happened: simulated time [s] and what.
@@ -80,16 +79,14 @@ impl Course {
     /// # Errors
     /// If there is none.
     pub(super) fn read(path: &Path) -> Result<Self, NotABag> {
-        let mut course = Self { node: NODE.to_owned(), ..Self::default() };
+        let mut course = Self::default();
         for file in crate::bag::files(path)? {
             let reader = Reader::open(&file)
                 .map_err(|fault| NotABag::Unreadable { path: file.clone(), fault })?;
             for item in reader {
                 match item {
+                    Item::Channel(channel) => course.meet(&channel),
                     Item::Message(message) => course.take(&message),
-                    Item::Metadata(mut it) if it.name == START => {
-                        course.node = it.metadata.remove(NODE_NAME).unwrap_or(course.node);
-                    }
                     Item::Damage(it) => course.damages.push(format!("{}: {it}", file.display())),
                     _ => {}
                 }
@@ -116,11 +113,28 @@ impl Course {
         plots.into_iter().map(|(_, plot)| super::plot::reduced(plot)).collect()
     }
 
+    /// A node may have another name than usual: two topics that no other node has tell it.
+    fn meet(&mut self, channel: &Channel) {
+        let own =
+            [(Statistics::TYPE.name, "/statistics"), (VacuumState::TYPE.name, "/vacuum_state")];
+        for (type_name, end) in own {
+            if channel.type_name() == type_name
+                && let Some(node) = channel.topic.strip_suffix(end)
+            {
+                self.node.get_or_insert(node.to_owned());
+            }
+        }
+    }
+
     fn take(&mut self, message: &Recorded) {
         self.n_messages += 1;
         let Some(cdr) = message.data.strip_prefix(&CDR_HEADER) else { return };
-        let Some(name) = message.channel.topic.strip_prefix(self.node.as_str()) else { return };
-        let time_s = std::time::Duration::from_nanos(message.log_time).as_secs_f64();
+        if message.channel.type_name() == WorldChange::TYPE.name {
+            return self.world_change(message.log_time, cdr);
+        }
+        let node = self.node.as_deref().unwrap_or(NODE);
+        let Some(name) = message.channel.topic.strip_prefix(node) else { return };
+        let time_s = seconds(message.log_time);
         match name {
             "/wrench" => self.force(Picture::Force, "objects on the gripper", time_s, cdr),
             "/flange/wrench" => self.force(Picture::Force, "gripper on its mount", time_s, cdr),
@@ -129,11 +143,6 @@ impl Course {
             "/statistics" => self.statistics(time_s, cdr),
             "/vacuum_cmd" => self.vacuum_command(time_s, cdr),
             "/object_cmd" => self.object_command(time_s, cdr),
-            "/world_change" => {
-                if let Ok(it) = WorldChange::from_cdr(cdr) {
-                    self.events.push((time_s, format!("changed from outside: {}", it.what)));
-                }
-            }
             "/object_detection_status" => {
                 if let Ok(it) = ObjectDetectionStatus::from_cdr(cdr) {
                     self.detection(time_s, it.status);
@@ -206,6 +215,13 @@ impl Course {
         }
     }
 
+    fn world_change(&mut self, time_ns: u64, cdr: &[u8]) {
+        if let Ok(it) = WorldChange::from_cdr(cdr) {
+            let text = format!("changed from outside: {}", it.what);
+            self.events.push((seconds(time_ns), text));
+        }
+    }
+
     fn object_command(&mut self, time_s: f64, cdr: &[u8]) {
         let Ok(it) = ObjectCommand::from_cdr(cdr) else { return };
         let verb = if it.mode == ObjectCommand::MODE_RELEASE { "release" } else { "drive" };
@@ -227,6 +243,10 @@ impl Course {
     }
 }
 
+fn seconds(time_ns: u64) -> f64 {
+    std::time::Duration::from_nanos(time_ns).as_secs_f64()
+}
+
 fn empty_plot(picture: Picture, first: Series) -> Plot {
     Plot {
         title: picture.title().to_owned(),
@@ -236,5 +256,55 @@ fn empty_plot(picture: Picture, first: Series) -> Plot {
         log_x: false,
         log_y: false,
         series: vec![first],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::bag::reader::Schema;
+
+    fn message(topic: &str, type_name: &str, cdr: &[u8]) -> Recorded {
+        let (name, encoding) = (type_name.to_owned(), "ros2msg".to_owned());
+        let schema = Some(Arc::new(Schema { id: 1, name, encoding, data: Vec::new() }));
+        let (topic, encoding) = (topic.to_owned(), "cdr".to_owned());
+        let channel = Channel { id: 1, topic, encoding, metadata: BTreeMap::new(), schema };
+        let data = [&CDR_HEADER[..], cdr].concat();
+        let channel = Arc::new(channel);
+        Recorded { channel, sequence: 0, log_time: 5_000_000, publish_time: 5_000_000, data }
+    }
+
+    /// Oracle: the same messages of a node that has its usual name.
+    #[test]
+    fn a_renamed_node_is_drawn_like_any_other() {
+        let course = |node: &str| {
+            let wrench = WrenchStamped::default().to_cdr();
+            let messages = [
+                message(
+                    &format!("{node}/vacuum_state"),
+                    VacuumState::TYPE.name,
+                    &VacuumState::default().to_cdr(),
+                ),
+                message(&format!("{node}/wrench"), WrenchStamped::TYPE.name, &wrench),
+                message("/someone_else/wrench", WrenchStamped::TYPE.name, &wrench),
+                message(
+                    "/jamgrip/world_change",
+                    WorldChange::TYPE.name,
+                    &WorldChange::default().to_cdr(),
+                ),
+            ];
+            let mut course = Course::default();
+            messages.iter().for_each(|it| course.meet(&it.channel));
+            messages.iter().for_each(|it| course.take(it));
+            (course.plots(), course.events)
+        };
+        let (plots, events) = course("/left/grip");
+        let titles: Vec<&str> = plots.iter().map(|it| it.title.as_str()).collect();
+        assert_eq!(titles, ["Force on the gripper", "Gauge pressure in the bag", "Packing"]);
+        assert_eq!(plots[0].series[0].points.len(), 1, "what is on others' topics is not drawn");
+        assert_eq!(events.len(), 1);
+        assert_eq!(format!("{plots:?}"), format!("{:?}", course("/jamgrip").0));
     }
 }

@@ -10,11 +10,7 @@ use std::{
 
 use super::{front::Front, launch::RunError, outlets::Outlets, progress::Progress};
 #[cfg(feature = "bag")]
-use crate::{
-    bag::recording::{INPUTS, NODE_NAME},
-    cosim::compile::PHYSICS_VERSION,
-    scene::Shape,
-};
+use crate::{bag::recording::INPUTS, cosim::compile::PHYSICS_VERSION, scene::Shape};
 use crate::{
     scene::{Controller, OnError, Scene},
     sources::Source,
@@ -146,7 +142,6 @@ impl Doors<'_> {
         };
         let mut facts = vec![
             ("seed", self.scene.seed.to_string()),
-            (NODE_NAME, self.scene.outputs.ros.node.clone()),
             ("version", env!("CARGO_PKG_VERSION").to_owned()),
             ("commit", option_env!("JAMGRIP_COMMIT").unwrap_or("unknown").to_owned()),
             ("physics", PHYSICS_VERSION.to_string()),

@@ -152,6 +152,11 @@ impl Playhead {
         self.is_paused = is_paused;
     }
 
+    /// How many times as fast as recorded it goes.
+    pub fn rate(&self) -> f64 {
+        self.rate
+    }
+
     /// True while it stands still.
     pub fn is_paused(&self) -> bool {
         self.is_paused

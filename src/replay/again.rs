@@ -69,7 +69,7 @@ pub enum ReplayError {
     /// A checkpoint is of no use.
     #[error(
         "checkpoint at tick {tick} (recorded by jamgrip {version}): {fault}; \
-         with --settle the run starts from the scene instead"
+         with --settle --jobs 1 the run starts from the scene and takes up none"
     )]
     Checkpoint {
         /// Its tick.
@@ -165,35 +165,59 @@ impl Again {
         scene: &Scene,
         n_threads: usize,
     ) -> Result<Option<Session>, ReplayError> {
-        let Some(place) = self.course.checkpoint_before(tick) else { return Ok(None) };
-        let unreadable = |fault| ReplayError::Unreadable { path: self.path.clone(), fault };
-        let read = |place: &Place| place.read().map_err(unreadable);
-        let bytes = read(place)?;
-        let of_no_use = |fault| ReplayError::Checkpoint {
-            tick: place.tick,
-            version: self.recording.version().to_owned(),
-            fault,
-        };
-        let session = Session::resume(Compiled::new(scene, n_threads)?, &bytes);
-        let mut session = session.map_err(of_no_use)?;
+        let place = self.course.checkpoint_before(tick);
+        place.map(|it| self.session_at(it, scene, n_threads)).transpose()
+    }
+
+    /// A session of `scene` at a checkpoint.
+    ///
+    /// # Errors
+    /// If the checkpoint cannot be used.
+    pub fn session_at(
+        &self,
+        place: &Place,
+        scene: &Scene,
+        n_threads: usize,
+    ) -> Result<Session, ReplayError> {
+        let mut session = self.resume(place.tick, &self.read(place)?, scene, n_threads)?;
         if let Some(start) = self.course.checkpoints.first()
             && (start.tick, self.course.changes.is_empty()) == (0, false)
             && 0 < place.tick
         {
-            session.remember_start(&read(start)?).map_err(of_no_use)?;
+            let told = session.remember_start(&self.read(start)?);
+            told.map_err(|fault| self.of_no_use(start.tick, fault))?;
         }
-        Ok(Some(session))
+        Ok(session)
     }
 
-    /// Changes the world as it was changed in the recorded run; says how.
+    /// A session of `scene` from what a session of it saved after `tick`.
+    ///
+    /// # Errors
+    /// If the bytes cannot be used.
+    pub fn resume(
+        &self,
+        tick: u64,
+        bytes: &[u8],
+        scene: &Scene,
+        n_threads: usize,
+    ) -> Result<Session, ReplayError> {
+        let session = Session::resume(Compiled::new(scene, n_threads)?, bytes);
+        session.map_err(|fault| self.of_no_use(tick, fault))
+    }
+
+    fn read(&self, place: &Place) -> Result<Vec<u8>, ReplayError> {
+        place.read().map_err(|fault| ReplayError::Unreadable { path: self.path.clone(), fault })
+    }
+
+    fn of_no_use(&self, tick: u64, fault: SavedStateError) -> ReplayError {
+        ReplayError::Checkpoint { tick, version: self.recording.version().to_owned(), fault }
+    }
+
+    /// Changes the world as it was changed in the recorded run.
     ///
     /// # Errors
     /// If the change cannot be read, or not be made.
-    pub fn change(
-        &self,
-        session: &mut Session,
-        recorded: &Alteration,
-    ) -> Result<Change, ReplayError> {
+    pub fn change(&self, session: &mut Session, recorded: &Alteration) -> Result<(), ReplayError> {
         let refused = |fault: String| ReplayError::Change {
             tick: recorded.tick,
             what: recorded.what.clone(),
@@ -201,8 +225,7 @@ impl Again {
             fault,
         };
         let change = Change::from_bytes(&recorded.change).map_err(|it| refused(it.to_string()))?;
-        session.change(&change).map_err(|it| refused(it.to_string()))?;
-        Ok(change)
+        session.change(&change).map_err(|it| refused(it.to_string()))
     }
 
     /// The recorded commands.

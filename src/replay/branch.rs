@@ -1,9 +1,10 @@
 //! A new run that branches off a recorded moment: the same bits up to there, other values from there
 //! on, the recorded commands throughout.
 
-use std::time::Duration;
-
-use super::again::{Again, ReplayError};
+use super::{
+    again::{Again, ReplayError},
+    seconds,
+};
 use crate::{
     bag::recording::Alteration,
     cosim::compile::Compiled,
@@ -171,10 +172,6 @@ fn moment(again: &Again, tick: u64, n_threads: usize) -> Result<Vec<u8>, BranchE
         return Err(BranchError::Differs { tick });
     }
     session.save().ok_or(BranchError::OtherObjects { tick })
-}
-
-fn seconds(time_ns: u64) -> f64 {
-    Duration::from_nanos(time_ns).as_secs_f64()
 }
 
 /// The first value that differs though saved numbers depend on it, and why it cannot.

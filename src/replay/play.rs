@@ -3,18 +3,26 @@
 //!
 //! Messages go out in the order of the files, each when its time has come. Late readers are served as
 //! in the run itself: before the first message of a part, the last ones before it on latched topics
-//! are published.
+//! are published. What lies before a part is passed over where a file has an index.
 
 use std::{
-    collections::BTreeMap,
-    io,
+    collections::{BTreeMap, VecDeque},
+    fs::File,
+    io::{self, BufReader},
     path::PathBuf,
-    sync::{Arc, mpsc::Receiver},
+    sync::{
+        Arc,
+        mpsc::{Receiver, Sender},
+    },
     time::Duration,
 };
 
+use super::cue::{Answer, Asked, Cue};
 use crate::{
-    bag::reader::{Channel, Item, Recorded, items},
+    bag::{
+        index::Index,
+        reader::{Channel, Item, Reader, Recorded, items},
+    },
     node::{pacer::Playhead, shutdown::Shutdown},
 };
 
@@ -42,6 +50,8 @@ pub struct Options {
     pub start_ns: u64,
     /// Where to end, from the first message on [ns].
     pub end_ns: Option<u64>,
+    /// True stands still at first.
+    pub is_paused: bool,
     /// True begins again at the end.
     pub is_loop: bool,
     /// Only these topics; `*` at the end stands for any rest. Empty means all.
@@ -52,58 +62,6 @@ pub struct Options {
     pub delay: Duration,
     /// Publish recorded time this often in wall time, in place of the recorded clock [Hz].
     pub clock_rate: Option<f64>,
-}
-
-/// What someone wants while it plays.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Cue {
-    /// Stand still.
-    Pause,
-    /// Go on.
-    Resume,
-    /// One of the two above.
-    Toggle,
-    /// Play one message and stand still again.
-    Next,
-    /// Go to this place, from the first message on [ns].
-    Seek(u64),
-    /// Play so many times as fast as recorded.
-    Rate(f64),
-    /// End.
-    Quit,
-}
-
-impl Cue {
-    /// A cue as a line of text, such as `seek 1.5s`.
-    ///
-    /// # Errors
-    /// If it is none; the text says which there are.
-    pub fn parse(line: &str) -> Result<Self, String> {
-        const KNOWN: &str = "pause, resume, toggle, next, seek TIME, rate FACTOR, quit";
-        let (word, rest) = line.trim().split_once(' ').unwrap_or((line.trim(), ""));
-        let unknown = || format!("`{}`: no cue; there are: {KNOWN}", line.trim());
-        match (word, rest.trim()) {
-            ("pause", "") => Ok(Self::Pause),
-            ("resume", "") => Ok(Self::Resume),
-            ("toggle" | "", "") => Ok(Self::Toggle),
-            ("next", "") => Ok(Self::Next),
-            ("quit", "") => Ok(Self::Quit),
-            ("seek", time) => {
-                let time = crate::scene::quantity::TIME.parse(time).map_err(|it| it.to_string())?;
-                if time < 0.0 {
-                    return Err(format!("seek {time} s: the recording begins at 0 s"));
-                }
-                #[expect(clippy::cast_possible_truncation, reason = "it saturates")]
-                #[expect(clippy::cast_sign_loss, reason = "not negative, see above")]
-                Ok(Self::Seek((time * 1e9) as u64))
-            }
-            ("rate", factor) => match factor.parse() {
-                Ok(factor) if 0.0 < factor && f64::is_finite(factor) => Ok(Self::Rate(factor)),
-                _ => Err(format!("rate {factor}: write a number above zero, such as 2")),
-            },
-            _ => Err(unknown()),
-        }
-    }
 }
 
 /// What was played.
@@ -125,30 +83,44 @@ pub fn play(
     files: &[PathBuf],
     options: &Options,
     stage: &mut dyn Stage,
-    cues: &Receiver<Cue>,
+    cues: &Receiver<Asked>,
     shutdown: &Shutdown,
 ) -> io::Result<Played> {
     let mut player = Player {
+        files,
         options,
         stage,
         cues,
         shutdown,
         head: None,
         first_ns: 0,
+        indexes: files.iter().map(|_| None).collect(),
         clock_ns: None,
-        steps: 0,
+        bursts: VecDeque::new(),
+        is_step: false,
         is_open: BTreeMap::new(),
         played: Played::default(),
     };
-    player.announce(files)?;
+    player.announce()?;
     let mut start_ns = options.start_ns;
     loop {
-        match player.pass(files, start_ns)? {
+        let ending = player.pass(start_ns)?;
+        player.end_bursts();
+        match ending {
             Ending::End if options.is_loop => start_ns = options.start_ns,
             Ending::Seek(to_ns) => start_ns = to_ns,
             Ending::End | Ending::Quit => return Ok(player.played),
         }
     }
+}
+
+type FileReader = Reader<BufReader<File>>;
+
+/// Messages to play at once.
+struct Burst {
+    n_left: u64,
+    n_played: u64,
+    reply: Option<Sender<Answer>>,
 }
 
 /// How one pass through the files ended.
@@ -159,17 +131,22 @@ enum Ending {
 }
 
 struct Player<'a> {
+    files: &'a [PathBuf],
     options: &'a Options,
     stage: &'a mut dyn Stage,
-    cues: &'a Receiver<Cue>,
+    cues: &'a Receiver<Asked>,
     shutdown: &'a Shutdown,
     head: Option<Playhead>,
     /// Time of the recording's first message [ns].
     first_ns: u64,
+    /// Of each file, once it was looked for.
+    indexes: Vec<Option<Option<Index>>>,
     /// Recorded time last told to the stage [ns].
     clock_ns: Option<u64>,
     /// Messages to play although it stands still.
-    steps: u64,
+    bursts: VecDeque<Burst>,
+    /// True if the message to come is one of them.
+    is_step: bool,
     /// Whether each topic is played.
     is_open: BTreeMap<String, bool>,
     played: Played,
@@ -177,11 +154,14 @@ struct Player<'a> {
 
 impl Player<'_> {
     /// Opens the topics that are known before the first message, and waits for readers.
-    fn announce(&mut self, files: &[PathBuf]) -> io::Result<()> {
-        for (_, item) in items(files)? {
+    fn announce(&mut self) -> io::Result<()> {
+        for (_, item) in items(self.files)? {
             match item {
                 Item::Channel(channel) => drop(self.is_played(&channel)),
-                Item::Message(_) => break,
+                Item::Message(message) => {
+                    self.first_ns = message.log_time;
+                    break;
+                }
                 _ => {}
             }
         }
@@ -190,10 +170,10 @@ impl Player<'_> {
     }
 
     /// Plays once through the files from `start_ns` on.
-    fn pass(&mut self, files: &[PathBuf], start_ns: u64) -> io::Result<Ending> {
+    fn pass(&mut self, start_ns: u64) -> io::Result<Ending> {
         let mut latched: BTreeMap<String, Recorded> = BTreeMap::new();
-        let (mut first_ns, mut is_begun) = (None, false);
-        for (_, item) in items(files)? {
+        let mut is_begun = false;
+        for item in self.readers(start_ns)?.into_iter().flatten() {
             let message = match item {
                 Item::Message(message) => message,
                 Item::Damage(_) => {
@@ -202,12 +182,10 @@ impl Player<'_> {
                 }
                 _ => continue,
             };
-            let begin = *first_ns.get_or_insert(message.log_time);
-            self.first_ns = begin;
             if !self.is_played(&message.channel) {
                 continue;
             }
-            let at_ns = message.log_time.saturating_sub(begin);
+            let at_ns = message.log_time.saturating_sub(self.first_ns);
             if at_ns < start_ns {
                 if is_latched(&message.channel) {
                     latched.insert(message.channel.topic.clone(), message);
@@ -229,15 +207,42 @@ impl Player<'_> {
             }
             self.stage.publish(&message);
             self.played.n_published += 1;
+            self.count_step();
         }
         Ok(Ending::End)
+    }
+
+    /// Readers of all files that pass over what is before `start_ns`.
+    fn readers(&mut self, start_ns: u64) -> io::Result<Vec<FileReader>> {
+        let is_kept = |channel: &Channel| {
+            self.is_open.get(&channel.topic).copied().unwrap_or(true) && is_latched(channel)
+        };
+        let files = self.files.iter().zip(&mut self.indexes);
+        files
+            .map(|(file, index)| {
+                if start_ns == 0 {
+                    return Reader::open(file);
+                }
+                match index.get_or_insert_with(|| Index::read(file)) {
+                    Some(index) => {
+                        let gaps = index.before(self.first_ns.saturating_add(start_ns), &is_kept);
+                        Reader::open_in_part(file, index, gaps)
+                    }
+                    None => Reader::open(file),
+                }
+            })
+            .collect()
     }
 
     /// Sets the head to the start of a part and serves late readers.
     fn begin(&mut self, start_ns: u64, latched: &BTreeMap<String, Recorded>) {
         match &mut self.head {
             Some(head) => head.jump(start_ns),
-            None => self.head = Some(Playhead::start(start_ns, self.options.rate)),
+            None => {
+                let mut head = Playhead::start(start_ns, self.options.rate);
+                head.set_paused(self.options.is_paused);
+                self.head = Some(head);
+            }
         }
         for message in latched.values() {
             self.stage.publish(message);
@@ -252,8 +257,8 @@ impl Player<'_> {
                 return Some(ending);
             }
             self.tell_time();
-            if 0 < self.steps {
-                self.steps -= 1;
+            if !self.bursts.is_empty() {
+                self.is_step = true;
                 self.head.as_mut()?.jump(at_ns);
                 return None;
             }
@@ -267,26 +272,82 @@ impl Player<'_> {
         if self.shutdown.is_requested() {
             return Some(Ending::Quit);
         }
-        let head = self.head.as_mut()?;
-        while let Ok(cue) = self.cues.try_recv() {
+        while let Ok(Asked { cue, reply }) = self.cues.try_recv() {
+            let head = self.head.as_mut()?;
+            let is_paused = head.is_paused();
+            let (mut is_done, mut ending) = (true, None);
             match cue {
                 Cue::Pause => head.set_paused(true),
                 Cue::Resume => head.set_paused(false),
-                Cue::Toggle => head.set_paused(!head.is_paused()),
-                Cue::Next => {
+                Cue::Toggle => head.set_paused(!is_paused),
+                Cue::Next | Cue::Burst(_) if is_paused || cue == Cue::Next => {
                     head.set_paused(true);
-                    self.steps += 1;
+                    let n = if let Cue::Burst(n) = cue { n } else { 1 };
+                    let n_left = if n == 0 { u64::MAX } else { n };
+                    self.bursts.push_back(Burst { n_left, n_played: 0, reply });
+                    continue;
                 }
+                Cue::Next | Cue::Burst(_) => is_done = false,
                 Cue::Rate(rate) => head.set_rate(rate),
-                Cue::Seek(to_ns) => {
-                    head.jump(to_ns);
-                    self.clock_ns = None;
-                    return Some(Ending::Seek(to_ns));
+                Cue::Seek(to_ns) => ending = Some(Ending::Seek(to_ns)),
+                Cue::SeekTo(time_ns) => {
+                    is_done = self.last_ns().is_none_or(|last| time_ns <= last);
+                    let to_ns = time_ns.saturating_sub(self.first_ns);
+                    ending = is_done.then_some(Ending::Seek(to_ns));
                 }
-                Cue::Quit => return Some(Ending::Quit),
+                Cue::Look => {}
+                Cue::Quit => ending = Some(Ending::Quit),
+            }
+            self.answer(reply.as_ref(), is_done, 0);
+            if let Some(Ending::Seek(to_ns)) = ending {
+                self.head.as_mut()?.jump(to_ns);
+                self.clock_ns = None;
+            }
+            if ending.is_some() {
+                return ending;
             }
         }
         None
+    }
+
+    /// Tells whoever asked; nobody may listen any more.
+    fn answer(&self, reply: Option<&Sender<Answer>>, is_done: bool, n_played: u64) {
+        let (Some(reply), Some(head)) = (reply, &self.head) else { return };
+        let (is_paused, rate) = (head.is_paused(), head.rate());
+        let answer = Answer { is_done, is_paused, rate, n_played };
+        // An asker that has gone needs no answer.
+        let _ = reply.send(answer);
+    }
+
+    /// A message was published.
+    fn count_step(&mut self) {
+        if !std::mem::take(&mut self.is_step) {
+            return;
+        }
+        let Some(mut burst) = self.bursts.pop_front() else { return };
+        burst.n_played += 1;
+        burst.n_left -= 1;
+        if burst.n_left == 0 {
+            self.answer(burst.reply.as_ref(), true, burst.n_played);
+        } else {
+            self.bursts.push_front(burst);
+        }
+    }
+
+    /// Nothing is left to play at once: those who wait for it are told.
+    fn end_bursts(&mut self) {
+        for burst in std::mem::take(&mut self.bursts) {
+            self.answer(burst.reply.as_ref(), 0 < burst.n_played, burst.n_played);
+        }
+    }
+
+    /// Time of the recording's last message [ns], if all files have an index.
+    fn last_ns(&mut self) -> Option<u64> {
+        let files = self.files.iter().zip(&mut self.indexes);
+        let ends = files.map(|(file, index)| {
+            index.get_or_insert_with(|| Index::read(file)).as_ref().map(Index::last_ns)
+        });
+        ends.collect::<Option<Vec<_>>>()?.into_iter().max()
     }
 
     /// Tells recorded time as often as asked for.

@@ -1,9 +1,16 @@
 //! The ROS 2 node that plays a recording: a publisher for each topic, with the recorded quality of
 //! service.
 
-use std::{collections::BTreeMap, sync::Arc};
+use std::{
+    collections::BTreeMap,
+    sync::{Arc, mpsc::Sender},
+};
 
-use super::play::{CLOCK, Stage};
+use super::{
+    cue::Asked,
+    play::{CLOCK, Stage},
+    prompter::Prompter,
+};
 use crate::{
     bag::{
         metadata::qos_in_words,
@@ -50,6 +57,14 @@ impl RosStage {
         };
         let clock = tells_time.then(|| node.publisher(&topic())).transpose()?;
         Ok(Self { node, publishers: BTreeMap::new(), clock, faults: (0, None) })
+    }
+
+    /// Opens the services by which others give cues.
+    ///
+    /// # Errors
+    /// When one cannot be opened.
+    pub fn prompted(&self, teller: Sender<Asked>) -> Result<Prompter, RosError> {
+        Prompter::open(&self.node, NODE_NAME, teller)
     }
 
     fn fail(&mut self, fault: String) {

@@ -2,7 +2,9 @@
 
 use super::{
     again::{Again, ReplayError},
+    crew::{Crew, Hands},
     history,
+    part::{self, Difference, Start},
 };
 use crate::{
     bag::recording::Alteration,
@@ -20,8 +22,8 @@ use crate::{
 
 /// How to verify.
 pub struct Options<'a> {
-    /// Solver threads; they do not change the result.
-    pub n_threads: usize,
+    /// How the machine is shared out; it does not change the result.
+    pub hands: Hands,
     /// True fills the bag anew from scene and seed; false takes the start that was recorded.
     pub settles: bool,
     /// Simulated time from which on to verify [ns]; from the last checkpoint before it.
@@ -36,17 +38,6 @@ pub struct Options<'a> {
     pub shutdown: &'a Shutdown,
 }
 
-/// A tick that did not come out as recorded.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Difference {
-    /// The tick.
-    pub tick: u64,
-    /// The digest in the recording.
-    pub recorded: u64,
-    /// The digest found.
-    pub simulated: u64,
-}
-
 /// What verification found.
 #[derive(Clone, Debug)]
 pub struct Verdict {
@@ -54,10 +45,14 @@ pub struct Verdict {
     pub n_ticks: u64,
     /// Digests that were compared.
     pub n_compared: u64,
+    /// Checkpoints that were compared, all of the state to the bit.
+    pub n_checkpoints: u64,
     /// The first that differed.
     pub first_difference: Option<Difference>,
-    /// Simulated over wall time.
+    /// Simulated over wall time, of all parts together.
     pub real_time_factor: f64,
+    /// Parts that were simulated at a time, and threads of each.
+    pub shared_out: (usize, usize),
     /// The tick it began with.
     pub start_tick: u64,
     /// What is to be said about the recording, for people.
@@ -72,31 +67,6 @@ impl Verdict {
         self.first_difference.is_none() && 0 < self.n_compared && !self.is_interrupted
     }
 
-    fn goes_on(&self) -> bool {
-        self.first_difference.is_none() && !self.is_interrupted
-    }
-
-    /// Compares the state with what is recorded of it, if anything is.
-    fn compare(&mut self, recorded: Option<u64>, session: &Session) {
-        let (Some(recorded), simulated) = (recorded, session.digest()) else { return };
-        self.n_compared += 1;
-        if recorded != simulated && self.first_difference.is_none() {
-            let tick = session.run_tick().0;
-            self.first_difference = Some(Difference { tick, recorded, simulated });
-        }
-    }
-
-    /// The same after a change between two ticks.
-    fn compare_after(&mut self, change: &Alteration, session: &Session) {
-        let was_equal = self.first_difference.is_none();
-        self.compare(change.digest, session);
-        if was_equal && self.first_difference.is_some() {
-            let Alteration { tick, what, .. } = change;
-            self.remarks
-                .push(format!("the difference is behind a change after tick {tick}: {what}"));
-        }
-    }
-
     /// The verdict for machines.
     pub fn to_json(&self) -> serde_json::Value {
         serde_json::json!({
@@ -104,6 +74,7 @@ impl Verdict {
             "first_difference": self.first_difference.map(|it| it.tick),
             "real_time_factor": self.real_time_factor,
             "compared": self.n_compared,
+            "checkpoints": self.n_checkpoints,
             "remarks": self.remarks,
         })
     }
@@ -114,91 +85,85 @@ impl Verdict {
 /// # Errors
 /// If it cannot be run again. A difference is no error.
 pub fn verify(again: &Again, options: &Options<'_>) -> Result<Verdict, ReplayError> {
-    let mut verdict = Verdict {
-        n_ticks: 0,
-        n_compared: 0,
-        first_difference: None,
-        real_time_factor: 0.0,
-        start_tick: 0,
-        remarks: remarks(again),
-        is_interrupted: false,
-    };
-    let tick_ns = again.scene.time.tick_ns;
-    let mut session = session(again, options, &mut verdict)?;
-    verdict.start_tick = session.run_tick().0;
-    let mut script = again.script()?;
+    let (course, tick_ns) = (&again.course, again.scene.time.tick_ns);
+    let mut remarks = remarks(again);
+    if options.settles {
+        remarks.extend(again.course.changes.iter().filter_map(not_settled));
+    }
+    let start = start(again, options, &mut remarks)?;
+    let start_tick = start.tick();
     // Beyond a gap commands are missing.
-    let last = again.course.gap_after.unwrap_or(u64::MAX).min(again.course.last_tick());
+    let last = course.gap_after.unwrap_or(u64::MAX).min(course.last_tick());
     let last = options.to_ns.map_or(last, |end_ns| last.min(end_ns / tick_ns));
+    let mut parts = part::cut(start.clone(), last, &course.checkpoints);
+    let (n_jobs, n_threads) = options.hands.shared_out(parts.len());
+    if n_jobs == 1 {
+        parts = part::cut(start, last, &[]);
+    }
     options.progress.running(Some(last * tick_ns));
     let stopwatch = Stopwatch::start();
-    loop {
-        let tick = session.run_tick().0;
-        verdict.compare(again.course.digest_of(tick), &session);
-        verdict.is_interrupted = options.shutdown.is_requested();
-        if !verdict.goes_on() {
-            break;
-        }
-        for it in again.course.changes_after(tick) {
-            let change = again.change(&mut session, it)?;
-            if options.settles && matches!(change, Change::LoadScene(_)) {
-                let what = &it.what;
-                verdict.remarks.push(format!(
-                    "after tick {tick}: {what}: it began as recorded, only the first was filled anew"
-                ));
-            }
-            verdict.compare_after(it, &session);
-        }
-        if !verdict.goes_on() || last <= tick {
-            break;
-        }
-        session.tick(&script.of(tick + 1))?;
-        verdict.n_ticks += 1;
-        let simulated_s = seconds(verdict.n_ticks * tick_ns);
-        options.progress.share(session.run_time_ns(), simulated_s / stopwatch.total_s());
-    }
+    let (progress, shutdown) = (options.progress, options.shutdown);
+    let crew = Crew { again, script: again.script()?, n_jobs, n_threads, progress, shutdown };
+    let found = crew.simulate(&parts)?;
     options.progress.end();
     let wall_s = stopwatch.total_s();
-    verdict.real_time_factor = seconds(verdict.n_ticks * tick_ns) / wall_s.max(1e-9);
-    if verdict.first_difference.is_some() {
-        verdict.remarks.extend(blame(again));
+    remarks.extend(found.remarks);
+    if found.first_difference.is_some() {
+        remarks.extend(blame(again));
     }
-    Ok(verdict)
+    Ok(Verdict {
+        n_ticks: found.n_ticks,
+        n_compared: found.n_compared,
+        n_checkpoints: found.n_checkpoints,
+        first_difference: found.first_difference,
+        real_time_factor: super::seconds(found.n_ticks * tick_ns) / wall_s.max(1e-9),
+        shared_out: (n_jobs, n_threads),
+        start_tick,
+        remarks,
+        is_interrupted: found.is_left,
+    })
 }
 
-fn seconds(time_ns: u64) -> f64 {
-    std::time::Duration::from_nanos(time_ns).as_secs_f64()
+/// What is to be said of a scene that was loaded later, when bags are filled anew.
+fn not_settled(change: &Alteration) -> Option<String> {
+    let Alteration { tick, what, .. } = change;
+    matches!(Change::from_bytes(&change.change), Ok(Change::LoadScene(_))).then(|| {
+        format!("after tick {tick}: {what}: it begins as recorded, only the first is filled anew")
+    })
 }
 
-/// A session at the start, or at the checkpoint before the time asked for.
-fn session(
-    again: &Again,
+/// The start, or the checkpoint before the time asked for.
+fn start<'a>(
+    again: &'a Again,
     options: &Options<'_>,
-    verdict: &mut Verdict,
-) -> Result<Session, ReplayError> {
+    remarks: &mut Vec<String>,
+) -> Result<Start<'a>, ReplayError> {
     // A run that branched off another begins later than at zero.
     let first = again.course.digests.first().map_or(0, |(tick, _)| *tick);
     let tick = first.max(options.from_ns / again.scene.time.tick_ns);
-    if !options.settles
-        && let Some(session) = again.session_before(tick, &again.scene, options.n_threads)?
-    {
-        return Ok(session);
+    let recorded = again.course.checkpoint_before(tick).filter(|_| !options.settles);
+    if let Some(place) = recorded {
+        return Ok(Start::Recorded(place));
     }
     if again.course.is_every_tick && 1 < first {
         return Err(ReplayError::NoStart { path: again.path.clone(), tick: first });
     }
-    let compiled = Compiled::new(&again.scene, options.n_threads)?;
-    if options.settles {
+    let (_, n_threads) = options.hands.shared_out(1);
+    let compiled = Compiled::new(&again.scene, n_threads)?;
+    let session = if options.settles {
         let on_progress = &mut |it: crate::physics::fill::Progress| {
             options.progress.settling(it.stage, it.share);
         };
-        return Ok(Session::settle(compiled, on_progress)?);
-    }
-    let started = start::start(compiled, options.n_threads, &options.cache, options.progress);
-    let Started { session, origin } = started.map_err(ReplayError::from)?;
-    let start = format!("no checkpoint is recorded: the start was {origin} from the scene");
-    verdict.remarks.push(start);
-    Ok(session)
+        Session::settle(compiled, on_progress)?
+    } else {
+        let started = start::start(compiled, n_threads, &options.cache, options.progress);
+        let Started { session, origin } = started.map_err(ReplayError::from)?;
+        let start = format!("no checkpoint is recorded: the start was {origin} from the scene");
+        remarks.push(start);
+        session
+    };
+    let bytes = session.save().expect("a start has the scene's own objects");
+    Ok(Start::Made(session.run_tick().0, bytes.into()))
 }
 
 /// What is wrong with a recording before anything is simulated.

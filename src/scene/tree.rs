@@ -4,7 +4,7 @@
 //! first fault, and a person wants to see all of them; and defaults and `--set` are merged here
 //! without losing the places.
 
-use std::{fmt, rc::Rc};
+use std::{fmt, sync::Arc};
 
 use crate::base::Real;
 
@@ -12,7 +12,7 @@ use crate::base::Real;
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Place {
     /// File, or the `--set` it came from.
-    pub source: Rc<str>,
+    pub source: Arc<str>,
     /// Line, from 1; 0 means the source as a whole.
     pub line: u64,
     /// Column, from 1.
@@ -22,7 +22,7 @@ pub struct Place {
 impl Place {
     /// The source as a whole.
     pub fn whole(source: &str) -> Self {
-        Self { source: Rc::from(source), line: 0, column: 0 }
+        Self { source: Arc::from(source), line: 0, column: 0 }
     }
 }
 

@@ -1,6 +1,6 @@
 //! YAML text to a tree of values with places. The only file that knows the YAML crate.
 
-use std::{fmt, rc::Rc};
+use std::{fmt, sync::Arc};
 
 use serde::de::{Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
 use serde_saphyr::{Location, Spanned};
@@ -64,7 +64,7 @@ fn name_source(bare: Spanned<Bare>, whole: &Place) -> Node {
 }
 
 fn place(whole: &Place, at: Location) -> Place {
-    Place { source: Rc::clone(&whole.source), line: at.line(), column: at.column() }
+    Place { source: Arc::clone(&whole.source), line: at.line(), column: at.column() }
 }
 
 /// What the crate says, without the place, which we say ourselves, and without advice to callers.

@@ -3,7 +3,10 @@
 //! Recordings of jamgrip's know their ticks. In others the first message is taken for the start of
 //! the run, and a message is a command of the tick in which it was recorded.
 
-use std::path::{Path, PathBuf};
+use std::{
+    path::{Path, PathBuf},
+    sync::Arc,
+};
 
 use super::{Source, SourceCounters};
 use crate::{
@@ -35,10 +38,10 @@ pub enum NoCommands {
     },
 }
 
-/// Commands, each with the tick in which it takes effect.
+/// Commands, each with the tick in which it takes effect. Copies share the list.
 #[derive(Clone, Debug, Default)]
 pub struct Script {
-    commands: Vec<(u64, Command)>,
+    commands: Arc<Vec<(u64, Command)>>,
     next: usize,
     counters: SourceCounters,
 }
@@ -47,7 +50,7 @@ impl Script {
     /// Commands with their ticks; those of one tick keep their order.
     pub fn new(mut commands: Vec<(u64, Command)>) -> Self {
         commands.sort_by_key(|(tick, _)| *tick);
-        Self { commands, ..Self::default() }
+        Self { commands: Arc::new(commands), ..Self::default() }
     }
 
     /// The commands in a recording, whoever made it, on `topics` as `codec` reads them.
@@ -90,7 +93,7 @@ impl Script {
     /// The commands of a tick. Ticks are asked for in ascending order; what lies before is skipped.
     pub fn of(&mut self, tick: u64) -> Vec<Command> {
         let left = &self.commands[self.next..];
-        let n_before = left.iter().take_while(|(at, _)| *at < tick).count();
+        let n_before = left.partition_point(|(at, _)| *at < tick);
         let of_tick = left[n_before..].iter().take_while(|(at, _)| *at == tick);
         let of_tick: Vec<_> = of_tick.map(|(_, command)| command.clone()).collect();
         self.next += n_before + of_tick.len();

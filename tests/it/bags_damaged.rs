@@ -12,7 +12,7 @@ use jamgrip::{
     bag::{
         check,
         info::Info,
-        reader::{Damage, Item, Reader},
+        reader::{Channel, Damage, Item, Reader},
         recording::Recording,
         recover,
     },
@@ -367,6 +367,82 @@ fn every_variant_that_others_write_is_read() {
         // What is saved of it reads the same in the end.
         let saved = folder.path().join("saved.mcap");
         assert_eq!(recover::recover(&file, &saved).unwrap().n_messages, 5, "{name}");
+        fs::remove_file(&saved).unwrap();
+    }
+}
+
+/// What is in a file of the conformance data: messages as sequence and times, attachments, metadata.
+type Held = (Vec<(u32, u64, u64)>, usize, usize);
+
+fn held(file: &Path) -> Held {
+    let (mut messages, mut n_attached, mut n_noted) = (Vec::new(), 0, 0);
+    for item in Reader::open(file).unwrap() {
+        match item {
+            Item::Message(it) => {
+                let Channel { id, topic, metadata, .. } = &*it.channel;
+                assert_eq!((*id, topic.as_str(), &it.data[..]), (1, "example", &[1, 2, 3][..]));
+                let value = metadata.get("foo").map(String::as_str);
+                match (&it.channel.schema, it.channel.encoding.as_str()) {
+                    (Some(schema), "a") => {
+                        assert_eq!((schema.name.as_str(), value), ("Example", Some("bar")));
+                        assert_eq!(
+                            (schema.encoding.as_str(), &schema.data[..]),
+                            ("c", &[4, 5, 6][..])
+                        );
+                    }
+                    (None, "text") => assert_eq!(value, None),
+                    other => panic!("{other:?}"),
+                }
+                messages.push((it.sequence, it.log_time, it.publish_time));
+            }
+            Item::Attachment(it) => {
+                assert_eq!(
+                    (it.name.as_str(), it.times, &it.data[..]),
+                    ("myFile", (2, 1), &[1, 2, 3][..])
+                );
+                assert_eq!(it.media_type, "application/octet-stream");
+                n_attached += 1;
+            }
+            // What is saved says of itself that it was.
+            Item::Metadata(it) if it.name == "myMetadata" => {
+                assert_eq!(it.metadata["foo"], "bar");
+                n_noted += 1;
+            }
+            Item::Damage(damage) => panic!("{}: {damage}", file.display()),
+            _ => {}
+        }
+    }
+    (messages, n_attached, n_noted)
+}
+
+/// Oracle: the inputs of the format's public conformance tests. `write_conformance.py` writes its files,
+/// and checks itself against published checksums.
+#[test]
+fn the_public_conformance_data_is_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let said = peers::run("write_conformance.py", &[folder.path().to_str().unwrap()]);
+    assert_eq!(said.trim(), "416 7", "files, and how many of them have a published sum");
+    let times = [0, 2, 1, 3, 3, 5, 4, 7, 8, 9];
+    let ten = || (0..).zip(times).map(|(i, time)| (i, time, time)).collect();
+    let files: Vec<_> = fs::read_dir(folder.path()).unwrap().map(|it| it.unwrap().path()).collect();
+    for file in files {
+        let name = file.file_stem().unwrap().to_str().unwrap().to_owned();
+        let expected: Held = match name.split('-').next().unwrap() {
+            "NoData" => (vec![], 0, 0),
+            "OneMessage" | "OneSchemalessMessage" => (vec![(10, 2, 1)], 0, 0),
+            "OneAttachment" => (vec![], 1, 0),
+            "OneMetadata" => (vec![], 0, 1),
+            "TenMessages" => (ten(), 0, 0),
+            other => panic!("{other}"),
+        };
+        assert_eq!(held(&file), expected, "{name}");
+        // What is saved of it holds the same; without messages it is told that there is nothing to save.
+        if expected.0.is_empty() {
+            continue;
+        }
+        let saved = folder.path().join("saved.mcap");
+        recover::recover(&file, &saved).unwrap();
+        assert_eq!(held(&saved), expected, "{name}, saved");
         fs::remove_file(&saved).unwrap();
     }
 }

@@ -9,7 +9,10 @@ use std::{
 use jamgrip::{
     bag::reader::{Channel, Recorded},
     node::shutdown::Shutdown,
-    replay::play::{Cue, Options, Played, Stage, play},
+    replay::{
+        cue::{Asked, Cue},
+        play::{Options, Played, Stage, play},
+    },
     sinks::{
         Sink,
         bag::{Bag, Format, Subject},
@@ -39,7 +42,7 @@ struct Memory {
     published: Vec<(String, u64, Instant)>,
     clock: Vec<u64>,
     cues: Vec<(usize, Cue)>,
-    teller: Option<Sender<Cue>>,
+    teller: Option<Sender<Asked>>,
 }
 
 #[expect(clippy::disallowed_methods, reason = "when a message is published is what is tested")]
@@ -56,7 +59,7 @@ impl Stage for Memory {
         self.published.push((message.channel.topic.clone(), message.log_time, now()));
         let n = self.published.len();
         for (_, cue) in self.cues.iter().filter(|(after, _)| *after == n) {
-            self.teller.as_ref().unwrap().send(*cue).unwrap();
+            self.teller.as_ref().unwrap().send((*cue).into()).unwrap();
         }
     }
 
@@ -71,6 +74,7 @@ fn options() -> Options {
         start_ns: 0,
         end_ns: None,
         is_loop: false,
+        is_paused: false,
         topics: Vec::new(),
         exclude: Vec::new(),
         delay: Duration::ZERO,
@@ -116,7 +120,7 @@ fn parts_filters_and_an_own_clock() {
     let folder = tempfile::tempdir().unwrap();
     let files = record(folder.path());
     let part = Options {
-        rate: 8.0,
+        rate: 1.0,
         start_ns: 200_000_000,
         end_ns: Some(295_000_000),
         topics: vec!["/jamgrip/*".to_owned(), "/tf_static".to_owned(), "/clock".to_owned()],
@@ -159,6 +163,68 @@ fn it_is_wound_stepped_looped_and_ended_by_cues() {
     // Oracle: counting by hand. Each cue is heard before the next message.
     let expected: Vec<u64> = (1..=10).chain([5, 6, 7]).chain([399, 400]).map(ms).collect();
     assert_eq!(of(&stage, "/clock"), expected);
+}
+
+/// Oracle: the recording read from its beginning, which a copy without an index forces.
+#[test]
+fn an_index_changes_nothing_but_the_time_it_takes() {
+    let folder = tempfile::tempdir().unwrap();
+    let files = record(folder.path());
+    let indexed: Vec<bool> =
+        files.iter().map(|it| jamgrip::bag::index::Index::read(it).is_some()).collect();
+    assert_eq!(indexed, [true; 3]);
+    let copies: Vec<PathBuf> = files
+        .iter()
+        .map(|file| {
+            let copy = file.with_extension("copy");
+            let bytes = std::fs::read(file).unwrap();
+            // Footer and magic are the last 37 bytes.
+            std::fs::write(&copy, &bytes[..bytes.len() - 37]).unwrap();
+            assert!(jamgrip::bag::index::Index::read(&copy).is_none());
+            copy
+        })
+        .collect();
+    for start_ms in [0, 1, 149, 150, 151, 290, 399, 400] {
+        let part = Options { rate: 100.0, start_ns: start_ms * 1_000_000, ..options() };
+        let what = |files: &[PathBuf]| -> Vec<(String, u64)> {
+            let (_, stage) = run(files, &part, Vec::new());
+            stage.published.into_iter().map(|(topic, time, _)| (topic, time)).collect()
+        };
+        let expected = what(&copies);
+        assert!(!expected.is_empty());
+        assert!(what(&files) == expected, "from {start_ms} ms on");
+    }
+}
+
+/// Oracle: counting by hand.
+#[test]
+fn who_asks_is_told_when_it_is_done() {
+    let folder = tempfile::tempdir().unwrap();
+    let files = record(folder.path());
+    let only_clock = Options { topics: vec!["/clock".to_owned()], is_paused: true, ..options() };
+    let (teller, listener) = mpsc::channel();
+    let ask = |cue| {
+        let (reply, answer) = mpsc::channel();
+        teller.send(Asked { cue, reply: Some(reply) }).unwrap();
+        answer
+    };
+    let (look, five) = (ask(Cue::Look), ask(Cue::Burst(5)));
+    let nowhere = ask(Cue::SeekTo(401_000_000));
+    let (rate, there) = (ask(Cue::Rate(3.0)), ask(Cue::SeekTo(399_000_000)));
+    let (rest, end) = (ask(Cue::Burst(0)), ask(Cue::Resume));
+    let mut stage = Memory::default();
+    play(&files, &only_clock, &mut stage, &listener, &Shutdown::default()).unwrap();
+    let look = look.recv().unwrap();
+    assert_eq!((look.is_done, look.is_paused, look.rate), (true, true, 4.0));
+    // Going elsewhere ends what was to be played at once.
+    let five = five.recv().unwrap();
+    assert_eq!((five.is_done, five.n_played), (false, 0));
+    assert!(!nowhere.recv().unwrap().is_done, "the recording ends at 400 ms");
+    assert!(there.recv().unwrap().is_done && rate.recv().unwrap().is_done);
+    let rest = rest.recv().unwrap();
+    assert_eq!((rest.is_done, rest.n_played), (true, 2), "399 ms and 400 ms");
+    assert!(end.recv().unwrap().is_done);
+    assert_eq!(of(&stage, "/clock"), [399_000_000, 400_000_000]);
 }
 
 #[test]
@@ -226,5 +292,131 @@ fn a_played_recording_reaches_a_subscriber() {
         let n = forces.len();
         assert!(10 <= n && forces == expected[40 - n..], "{forces:?}");
         assert!(!times.is_empty() && times.windows(2).all(|it| it[0] < it[1]), "{times:?}");
+    });
+}
+
+/// Someone who asks a player's services, in both ways in turn.
+#[cfg(feature = "ros")]
+struct Someone {
+    /// Its clients are found as long as it is there.
+    _node: std::sync::Arc<jamgrip::sinks::ros::RosNode>,
+    clients: Vec<jamgrip::services::ros::RosClient>,
+}
+
+#[cfg(feature = "ros")]
+impl Someone {
+    fn join() -> Self {
+        use jamgrip::{
+            replay::{prompter, stage},
+            services::ros::{RosClient, Way},
+            sinks::ros::RosNode,
+        };
+
+        let node = RosNode::join_as("someone", &crate::private_network::reach()).unwrap();
+        let offers = prompter::offers(stage::NODE_NAME);
+        let clients = offers.iter().enumerate().map(|(i, offer)| {
+            let way = if i.is_multiple_of(2) { Way::Enhanced } else { Way::Cyclone };
+            RosClient::open(&node, offer, way).unwrap()
+        });
+        let clients = clients.collect();
+        Self { _node: node, clients }
+    }
+
+    /// Asks and waits for the answer.
+    fn ask<A>(&mut self, name: &str, question: &impl serde::Serialize) -> A
+    where
+        A: serde::de::DeserializeOwned,
+    {
+        use jamgrip::{replay::prompter, wire::cdr::Cdr};
+
+        let i = prompter::SERVICES.iter().position(|it| it.0 == name).unwrap();
+        let client = &mut self.clients[i];
+        let begin = now();
+        let nap = || {
+            assert!(now() - begin < Duration::from_secs(30), "{name} is not answered");
+            std::thread::sleep(Duration::from_millis(1));
+        };
+        while !client.is_matched() {
+            nap();
+        }
+        client.ask(&Cdr::of(question));
+        loop {
+            if let Some(answer) = client.answer() {
+                return answer.read().unwrap();
+            }
+            nap();
+        }
+    }
+
+    fn sees_it_paused(&mut self) -> bool {
+        use jamgrip::wire::messages::rosbag2_interfaces::{IsPausedRequest, IsPausedResponse};
+
+        let answer: IsPausedResponse = self.ask("is_paused", &IsPausedRequest::default());
+        answer.paused
+    }
+}
+
+/// Oracle: the meaning of the services in rosbag2_interfaces, and counting by hand.
+#[cfg(feature = "ros")]
+#[test]
+fn services_pause_wind_and_step_it() {
+    use jamgrip::{
+        replay::stage::RosStage,
+        wire::messages::{
+            builtin_interfaces::Time,
+            rosbag2_interfaces::{
+                BurstRequest, BurstResponse, GetRateRequest, GetRateResponse, PauseRequest,
+                PauseResponse, PlayNextRequest, PlayNextResponse, SeekRequest, SeekResponse,
+                SetRateRequest, SetRateResponse, StopRequest, StopResponse, TogglePausedRequest,
+                TogglePausedResponse,
+            },
+        },
+    };
+
+    use crate::private_network::{inside, reach};
+
+    inside("bags_played::services_pause_wind_and_step_it", || {
+        let folder = tempfile::tempdir().unwrap();
+        let files = record(folder.path());
+        let mut someone = Someone::join();
+        let player = std::thread::spawn(move || {
+            let stage = RosStage::join(&reach(), false).unwrap();
+            let (teller, listener) = mpsc::channel();
+            let _prompter = stage.prompted(teller).unwrap();
+            let only_clock =
+                Options { topics: vec!["/clock".to_owned()], is_paused: true, ..options() };
+            let mut memory = Memory::default();
+            play(&files, &only_clock, &mut memory, &listener, &Shutdown::default()).unwrap();
+            memory
+        });
+        assert!(someone.sees_it_paused());
+        let next: PlayNextResponse = someone.ask("play_next", &PlayNextRequest::default());
+        assert!(next.success);
+        let burst: BurstResponse = someone.ask("burst", &BurstRequest { num_messages: 9 });
+        assert_eq!(burst.actually_burst, 9);
+        for (sec, ms, expected) in [(9, 0, false), (0, 300, true)] {
+            let time = Time { sec, nanosec: ms * 1_000_000 };
+            let sought: SeekResponse = someone.ask("seek", &SeekRequest { time });
+            assert_eq!(sought.success, expected);
+        }
+        for (rate, expected) in [(-1.0, false), (1e-3, true)] {
+            let set: SetRateResponse = someone.ask("set_rate", &SetRateRequest { rate });
+            assert_eq!(set.success, expected);
+        }
+        let rate: GetRateResponse = someone.ask("get_rate", &GetRateRequest::default());
+        assert_eq!(rate.rate.to_bits(), 1e-3_f64.to_bits());
+        // A thousand times as slowly it does not come far before it is paused again.
+        let toggle = TogglePausedRequest::default();
+        let TogglePausedResponse { .. } = someone.ask("toggle_paused", &toggle);
+        assert!(!someone.sees_it_paused());
+        let burst: BurstResponse = someone.ask("burst", &BurstRequest { num_messages: 2 });
+        assert_eq!(burst.actually_burst, 0, "only when paused");
+        let PauseResponse { .. } = someone.ask("pause", &PauseRequest::default());
+        assert!(someone.sees_it_paused());
+        let StopResponse { .. } = someone.ask("stop", &StopRequest::default());
+        let ticks: Vec<u64> = of(&player.join().unwrap(), "/clock");
+        let expected: Vec<u64> = (1..=10).map(|tick| tick * 1_000_000).collect();
+        assert_eq!(ticks[..10], expected);
+        assert!(ticks[10..].iter().all(|it| (300_000_000..400_000_000).contains(it)), "{ticks:?}");
     });
 }

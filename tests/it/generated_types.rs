@@ -17,7 +17,7 @@ const SEPARATOR: &str =
 
 /// Hashes that the library computes wrongly, because it takes `byte` for a nested type. These are
 /// the ones of the type store of PyPI's `rosbags`; `peers.rs` compares all hashes with it.
-const HASHES_OF_TYPES_WITH_BYTE: [(&str, &str); 2] = [
+const HASHES_OF_TYPES_WITH_BYTE: [(&str, &str); 5] = [
     (
         "diagnostic_msgs/DiagnosticArray",
         "RIHS01_5a8a36efb05fb25070fa0fb3810290c0e6cd4862b54a8fb975a1ee8dc55a333e",
@@ -25,6 +25,18 @@ const HASHES_OF_TYPES_WITH_BYTE: [(&str, &str); 2] = [
     (
         "diagnostic_msgs/DiagnosticStatus",
         "RIHS01_b0e3e692ea2d54a8af2f4ef1930e81556a2db55216b771f8a7d2724ed47bf0e4",
+    ),
+    (
+        "rcl_interfaces/Parameter",
+        "RIHS01_ddfe6442cffc462317adb5c92536a7b6dd55858c5c3e1e328165a6b73c2831af",
+    ),
+    (
+        "rcl_interfaces/ParameterEvent",
+        "RIHS01_043e627780fcad87a22d225bc2a037361dba713fca6a6b9f4b869a5aa0393204",
+    ),
+    (
+        "rcl_interfaces/ParameterValue",
+        "RIHS01_115fc089a387e23c7ecd3525c9189c379109119d6ab82e8dfbde0fdf6a7f9b68",
     ),
 ];
 

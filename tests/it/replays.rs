@@ -112,6 +112,19 @@ fn every_tick_comes_out_as_recorded_for_any_number_of_threads_and_lanes() {
         );
         assert_eq!(verdict["remarks"], serde_json::json!([]));
     }
+    for (jobs, threads) in [("1", "1"), ("2", "1"), ("7", "2")] {
+        let arguments = ["--jobs", jobs, "--threads", threads];
+        let (verdict, code) =
+            told(&[&["replay", bag.bag(), "--verify", "--json"][..], &arguments].concat());
+        // Oracle: the recording, whose checkpoints are after 0, 100, 200 and 300 ticks. The first is
+        // where it begins; every other is compared as a whole.
+        assert_eq!((code, &verdict["first_difference"]), (0, &Value::Null), "{verdict}");
+        assert_eq!(
+            (&verdict["ticks"], &verdict["compared"], &verdict["checkpoints"]),
+            (&N_TICKS.into(), &(N_TICKS + 1).into(), &3.into()),
+            "{jobs} parts at a time, {threads} threads each"
+        );
+    }
     for lanes in ["1", "4", "8"] {
         let (verdict, code) = told(&["replay", bag.bag(), "--verify", "--json", "--lanes", lanes]);
         assert_eq!((code, &verdict["first_difference"]), (0, &Value::Null), "{lanes}: {verdict}");
@@ -126,20 +139,8 @@ fn every_tick_comes_out_as_recorded_for_any_number_of_threads_and_lanes() {
 
 /// Copies a recording and changes one command; says in which tick it takes effect.
 fn tampered(from: &Path, to: &Path) -> u64 {
-    let mut files = fs::read_dir(from).unwrap().map(|it| it.unwrap().path());
-    let file = files.find(|it| it.extension().is_some_and(|it| it == "mcap")).unwrap();
-    let bytes = fs::read(&file).unwrap();
-    let mut out = mcap::Writer::new(fs::File::create(to).unwrap()).unwrap();
-    let summary = mcap::Summary::read(&bytes).unwrap().unwrap();
-    for index in &summary.metadata_indexes {
-        out.write_metadata(&mcap::read::metadata(&bytes, index).unwrap()).unwrap();
-    }
-    for index in &summary.attachment_indexes {
-        out.attach(&mcap::read::attachment(&bytes, index).unwrap()).unwrap();
-    }
     let mut altered_in = None;
-    for message in mcap::MessageStream::new(&bytes).unwrap() {
-        let mut message = message.unwrap();
+    copied(from, to, &mut |_| {}, &mut |message| {
         let is_command = message.channel.topic == "/jamgrip/flange/pose_cmd";
         if is_command && 100_000_000 < message.log_time && altered_in.is_none() {
             // The flange shall go a micrometre to the side. A pose ends with three numbers of
@@ -150,10 +151,36 @@ fn tampered(from: &Path, to: &Path) -> u64 {
             message.data = data.into();
             altered_in = Some(message.log_time / 1_000_000 + 1);
         }
+    });
+    altered_in.unwrap()
+}
+
+/// Copies a recording into one file, with its attachments and messages altered.
+fn copied(
+    from: &Path,
+    to: &Path,
+    alter_attachments: &mut dyn FnMut(&mut Vec<mcap::Attachment<'_>>),
+    alter: &mut dyn FnMut(&mut mcap::Message<'_>),
+) {
+    let mut files = fs::read_dir(from).unwrap().map(|it| it.unwrap().path());
+    let file = files.find(|it| it.extension().is_some_and(|it| it == "mcap")).unwrap();
+    let bytes = fs::read(&file).unwrap();
+    let mut out = mcap::Writer::new(fs::File::create(to).unwrap()).unwrap();
+    let summary = mcap::Summary::read(&bytes).unwrap().unwrap();
+    for index in &summary.metadata_indexes {
+        out.write_metadata(&mcap::read::metadata(&bytes, index).unwrap()).unwrap();
+    }
+    let indexes = summary.attachment_indexes.iter();
+    let mut attachments: Vec<_> =
+        indexes.map(|it| mcap::read::attachment(&bytes, it).unwrap()).collect();
+    alter_attachments(&mut attachments);
+    attachments.iter().for_each(|it| out.attach(it).unwrap());
+    for message in mcap::MessageStream::new(&bytes).unwrap() {
+        let mut message = message.unwrap();
+        alter(&mut message);
         out.write(&message).unwrap();
     }
     out.finish().unwrap();
-    altered_in.unwrap()
 }
 
 #[test]
@@ -161,9 +188,14 @@ fn one_altered_command_is_found_in_its_tick() {
     let place = tempfile::tempdir().unwrap();
     let copy = place.path().join("copy.mcap");
     let tick = tampered(&recorded().folder, &copy);
-    let (verdict, code) = told(&["replay", copy.to_str().unwrap(), "--verify", "--json"]);
-    // Oracle: the tick whose command was altered.
-    assert_eq!((code, &verdict["first_difference"]), (1, &tick.into()), "{verdict}");
+    for jobs in ["1", "3"] {
+        let copy = copy.to_str().unwrap();
+        let (verdict, code) = told(&["replay", copy, "--verify", "--json", "--jobs", jobs]);
+        // Oracle: the tick whose command was altered. Parts behind it are as they were recorded.
+        assert_eq!((code, &verdict["first_difference"]), (1, &tick.into()), "{verdict}");
+        assert_eq!(verdict["ticks"], tick, "parts behind do not count: {verdict}");
+    }
+    let (verdict, _) = told(&["replay", copy.to_str().unwrap(), "--verify", "--json"]);
     let remarks = verdict["remarks"].to_string();
     assert!(remarks.contains(&format!("broken at tick {tick}")), "{remarks}");
     let output = Process::new(env!("CARGO_BIN_EXE_jamgrip"))
@@ -173,6 +205,32 @@ fn one_altered_command_is_found_in_its_tick() {
     let said = String::from_utf8_lossy(&output.stdout);
     assert_eq!(output.status.code(), Some(1), "{said}");
     assert!(said.contains(&format!("broken at tick {tick}")), "{said}");
+}
+
+/// Oracle: which checkpoint was put in the place of which. No digest tells that: parts that begin at
+/// forged checkpoints would all be proved on their own.
+#[test]
+fn a_checkpoint_that_is_not_the_state_before_it_is_found() {
+    let place = tempfile::tempdir().unwrap();
+    let copy = place.path().join("copy.mcap");
+    let bag = recorded();
+    copied(
+        &bag.folder,
+        &copy,
+        &mut |attachments| {
+            let named = |name: &str| attachments.iter().position(|it| it.name == name).unwrap();
+            let (at_100, at_200) = (named("checkpoint/000000100"), named("checkpoint/000000200"));
+            attachments[at_200].data = attachments[at_100].data.clone();
+        },
+        &mut |_| {},
+    );
+    for jobs in ["1", "3"] {
+        let output = jamgrip(&["replay", copy.to_str().unwrap(), "--verify", "--jobs", jobs]);
+        let said = String::from_utf8_lossy(&output.stdout);
+        assert_eq!(output.status.code(), Some(1), "{said}");
+        let expected = "checkpoint at tick 200 differs, although the digests do not: time";
+        assert!(said.contains(expected), "{jobs}: {said}");
+    }
 }
 
 #[test]

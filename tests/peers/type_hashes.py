@@ -1,4 +1,8 @@
-"""Compares type hashes, given as NAME=HASH, with those that `rosbags` computes from msgs/."""
+"""Compares type hashes, given as NAME=HASH, with those of `rosbags`: of its own store of types where it
+has the type, else computed from msgs/.
+
+Prints how many are compared with its own types, and how many with those of msgs/.
+"""
 
 import pathlib
 import sys
@@ -6,9 +10,13 @@ import sys
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 store = get_typestore(Stores.ROS2_JAZZY)
+theirs = set(store.fielddefs)
 own = {}
-for file in pathlib.Path("msgs/msg").glob("*.msg"):
-    own.update(get_types_from_msg(file.read_text(), f"jamgrip_msgs/msg/{file.stem}"))
+for file in [*pathlib.Path("msgs/msg").glob("*.msg"), *pathlib.Path("msgs").glob("*/*/msg/*.msg")]:
+    package = "jamgrip_msgs" if file.parts[1] == "msg" else file.parts[2]
+    name = f"{package}/msg/{file.stem}"
+    if name not in theirs:
+        own.update(get_types_from_msg(file.read_text(), name))
 store.register(own)
 
 given = dict(argument.split("=") for argument in sys.argv[1:])
@@ -20,3 +28,5 @@ differing = {
 }
 if differing:
     sys.exit(f"type: (ours, that of rosbags): {differing}")
+known = sum(name in theirs for name in given)
+print(known, len(given) - known)

@@ -40,7 +40,6 @@ pub(super) fn heavier(scene: &Scene) -> Scene {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use crate::{base::Real, cosim::compile::Compiled};
 
     fn compiled(scaling: Real) -> Compiled {

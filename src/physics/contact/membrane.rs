@@ -16,7 +16,7 @@ use arrayvec::ArrayVec;
 use super::{
     candidates,
     law::{self, Touch},
-    sharing::{self, Minimum, N_TOUCHED, Passes},
+    sharing::{self, Minimum, N_TOUCHED, Passes, short},
 };
 use crate::{
     base::{Real, Vec3, parallel},
@@ -32,8 +32,6 @@ use crate::{
 const SAME_HISTORY: Real = 0.7;
 /// Squared distances that differ by less than this share are equal.
 const EQUAL: Real = 1e-9;
-/// Edges of a triangle by their short numbers.
-const NUMBER: [u8; 3] = [0, 1, 2];
 
 /// A triangle within reach of a grain.
 #[derive(Clone, Copy)]
@@ -152,25 +150,36 @@ impl Grain<'_> {
     /// Adds the edges between the triangles that the grain overlaps.
     fn passes(&self, touched: &[Touched], passes: &mut Passes) {
         let mesh = &self.model.membrane.mesh;
-        let centre = &self.state.grains.positions[self.i];
+        let mut edges = [[0_u8; 3]; N_TOUCHED * (N_TOUCHED - 1) / 2];
+        let mut n_edges = 0;
         for (place, contact) in touched.iter().enumerate() {
-            let triangle = contact.triangle as usize;
-            for (k, neighbour) in mesh.neighbours_of_triangle[triangle].into_iter().enumerate() {
-                let later = touched[place + 1..].iter().position(|it| it.triangle == neighbour);
-                let Some(later) = later else { continue };
-                let height_squared = if contact.feature == Feature::Edge(NUMBER[k]) {
-                    contact.distance_squared
-                } else {
-                    let [from, to] = [k, (k + 1) % 3].map(|corner| {
-                        &self.state.membrane.positions[mesh.triangles[triangle][corner] as usize]
-                    });
-                    let (side, arm) = (to - from, centre - from);
-                    let share = (arm.dot(&side) / side.norm_squared()).clamp(0.0, 1.0);
-                    (arm - side * share).norm_squared()
-                };
-                passes.add([place, place + 1 + later], height_squared);
+            let across = &mesh.neighbours_of_triangle[contact.triangle as usize];
+            for (later, other) in touched.iter().enumerate().skip(place + 1) {
+                let is_across = across.map(|it| it == other.triangle);
+                // Without a branch: whether two of those touched are neighbours follows no rule.
+                let edge = u8::from(is_across[1]) + 2 * u8::from(is_across[2]);
+                edges[n_edges] = [short(place), short(later), edge];
+                n_edges += usize::from(is_across[0] | is_across[1] | is_across[2]);
             }
         }
+        for &[place, later, edge] in &edges[..n_edges] {
+            let height_squared = self.height_squared(&touched[usize::from(place)], edge);
+            passes.add([place, later], height_squared);
+        }
+    }
+
+    /// Squared distance of the grain's centre from an edge of a triangle that it touches [m²].
+    fn height_squared(&self, contact: &Touched, edge: u8) -> Real {
+        if contact.feature == Feature::Edge(edge) {
+            return contact.distance_squared;
+        }
+        let corners = &self.model.membrane.mesh.triangles[contact.triangle as usize];
+        let k = usize::from(edge);
+        let [from, to] =
+            [k, (k + 1) % 3].map(|corner| &self.state.membrane.positions[corners[corner] as usize]);
+        let (side, arm) = (to - from, self.state.grains.positions[self.i] - from);
+        let share = (arm.dot(&side) / side.norm_squared()).clamp(0.0, 1.0);
+        (arm - side * share).norm_squared()
     }
 
     /// Force on the grain, and torque [N m].
@@ -252,14 +261,20 @@ fn touching(
             place: a,
         };
         let is_deeper = |other: &Touched| distance_squared < other.distance_squared;
-        let place = touched.iter().position(is_deeper).unwrap_or(touched.len());
         if touched.is_full() {
-            if place == touched.len() {
+            if !touched.last().is_some_and(is_deeper) {
                 continue;
             }
             touched.pop();
         }
-        touched.insert(place, contact);
+        // From the end on, those that are less deep make room.
+        touched.push(contact);
+        let mut place = touched.len() - 1;
+        while place > 0 && is_deeper(&touched[place - 1]) {
+            touched[place] = touched[place - 1];
+            place -= 1;
+        }
+        touched[place] = contact;
     }
 }
 

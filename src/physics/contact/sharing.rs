@@ -77,9 +77,9 @@ impl Passes {
 
     /// Adds an edge between the triangles at two places.
     #[inline(always)]
-    pub(super) fn add(&mut self, between: [usize; 2], height_squared: Real) {
+    pub(super) fn add(&mut self, between: [u8; 2], height_squared: Real) {
         self.heights_squared[self.n] = height_squared;
-        self.between[self.n] = between.map(short);
+        self.between[self.n] = between;
         self.n += 1;
     }
 
@@ -99,24 +99,33 @@ impl Passes {
 
 /// A place among few.
 #[expect(clippy::cast_possible_truncation, reason = "places are below N_TOUCHED")]
-fn short(place: usize) -> u8 {
+pub(super) fn short(place: usize) -> u8 {
     place as u8
 }
 
 /// Share c of each of several minima of a grain of radius R = `radius` [m].
 pub(super) fn shares(minima: &[Minimum], passes: &mut Passes, radius: Real) -> [Real; N_PATCHES] {
     let heights = heights(minima, passes, radius * radius);
+    // What depends on two minima, once for both.
+    let (mut to_pass, mut likenesses) =
+        ([[0.0; N_PATCHES]; N_PATCHES], [[0.0; N_PATCHES]; N_PATCHES]);
+    for (i, one) in minima.iter().enumerate() {
+        for (j, other) in minima[..i].iter().enumerate() {
+            let width = |it: &Minimum| (heights[i][j] - it.distance_squared).max(0.0).sqrt();
+            (to_pass[i][j], to_pass[j][i]) = (width(one), width(other));
+            let likeness = likeness(&one.normal, &other.normal);
+            (likenesses[i][j], likenesses[j][i]) = (likeness, likeness);
+        }
+    }
     let mut weights = [0.0; N_PATCHES];
     for (i, own) in minima.iter().enumerate() {
-        weights[i] = own.overlap * hold(i, minima, &heights[i]);
+        weights[i] = own.overlap * hold(i, minima.len(), &to_pass);
     }
     let mut shares = [0.0; N_PATCHES];
-    for (i, own) in minima.iter().enumerate() {
+    for i in 0..minima.len() {
         let mut all = weights[i];
-        for (j, other) in minima.iter().enumerate() {
-            if j != i {
-                all += likeness(&own.normal, &other.normal) * weights[j];
-            }
+        for j in (0..minima.len()).filter(|&j| j != i) {
+            all += likenesses[i][j] * weights[j];
         }
         shares[i] = weights[i] / all;
     }
@@ -130,16 +139,13 @@ fn likeness(a: &Vec3, b: &Vec3) -> Real {
     APART + (1.0 - APART) * share * share * (3.0 - 2.0 * share)
 }
 
-/// h of minimum `i`, whose passes to the others have these squared heights.
-fn hold(i: usize, minima: &[Minimum], heights: &[Real; N_PATCHES]) -> Real {
+/// h of the `i`-th of `n` minima that are separated by these w.
+fn hold(i: usize, n: usize, to_pass: &[[Real; N_PATCHES]; N_PATCHES]) -> Real {
     let mut hold: Real = 1.0;
-    for (j, other) in minima.iter().enumerate() {
-        if j != i {
-            let to_pass = |it: &Minimum| (heights[j] - it.distance_squared).max(0.0).sqrt();
-            let (own, others) = (to_pass(&minima[i]), to_pass(other));
-            if own < hold * (own + others) {
-                hold = own / (own + others);
-            }
+    for j in (0..n).filter(|&j| j != i) {
+        let (own, others) = (to_pass[i][j], to_pass[j][i]);
+        if own < hold * (own + others) {
+            hold = own / (own + others);
         }
     }
     hold.max(HOLD_MIN)

@@ -1540,7 +1540,7 @@ string[] prefixes
         const TYPE: MessageType = MessageType {
             name: "rcl_interfaces/msg/Parameter",
             dds_name: "rcl_interfaces::msg::dds_::Parameter_",
-            type_hash: "RIHS01_78d768833adeeca1dc00e34c467996997d31509e9874edeaa3464e1c265b723e",
+            type_hash: "RIHS01_ddfe6442cffc462317adb5c92536a7b6dd55858c5c3e1e328165a6b73c2831af",
             definition: r##"string name
 rcl_interfaces/ParameterValue value
 ================================================================================
@@ -1626,7 +1626,7 @@ uint64 step
         const TYPE: MessageType = MessageType {
             name: "rcl_interfaces/msg/ParameterEvent",
             dds_name: "rcl_interfaces::msg::dds_::ParameterEvent_",
-            type_hash: "RIHS01_d9e1477e648fb0e03948d60a7a5238227a772a874531ca0dc6d2b669e42ae6c8",
+            type_hash: "RIHS01_043e627780fcad87a22d225bc2a037361dba713fca6a6b9f4b869a5aa0393204",
             definition: r##"builtin_interfaces/Time stamp
 string node
 rcl_interfaces/Parameter[] new_parameters
@@ -1733,7 +1733,7 @@ uint8 PARAMETER_STRING_ARRAY=9
         const TYPE: MessageType = MessageType {
             name: "rcl_interfaces/msg/ParameterValue",
             dds_name: "rcl_interfaces::msg::dds_::ParameterValue_",
-            type_hash: "RIHS01_cb2f37479f0576e981db6a7fa8d624e2f9dd00d98aa18bc68b1b4823949a8b79",
+            type_hash: "RIHS01_115fc089a387e23c7ecd3525c9189c379109119d6ab82e8dfbde0fdf6a7f9b68",
             definition: r##"uint8 type
 bool bool_value
 int64 integer_value
@@ -1881,6 +1881,295 @@ string reason
                 name: "rcl_interfaces/srv/SetParametersAtomically",
                 request_dds_name: "rcl_interfaces::srv::dds_::SetParametersAtomically_Request_",
                 response_dds_name: "rcl_interfaces::srv::dds_::SetParametersAtomically_Response_",
+            };
+        }
+    }
+}
+
+/// Messages of `rosbag2_interfaces`.
+pub mod rosbag2_interfaces {
+
+    /// `rosbag2_interfaces/msg/BurstRequest`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct BurstRequest {
+        /// `uint64 num_messages`
+        pub r#num_messages: u64,
+    }
+
+    /// `rosbag2_interfaces/msg/BurstResponse`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct BurstResponse {
+        /// `uint64 actually_burst`
+        pub r#actually_burst: u64,
+    }
+
+    /// `rosbag2_interfaces/msg/GetRateRequest`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct GetRateRequest {
+        /// `uint8 structure_needs_at_least_one_member`
+        pub r#structure_needs_at_least_one_member: u8,
+    }
+
+    /// `rosbag2_interfaces/msg/GetRateResponse`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct GetRateResponse {
+        /// `float64 rate`
+        pub r#rate: f64,
+    }
+
+    /// `rosbag2_interfaces/msg/IsPausedRequest`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct IsPausedRequest {
+        /// `uint8 structure_needs_at_least_one_member`
+        pub r#structure_needs_at_least_one_member: u8,
+    }
+
+    /// `rosbag2_interfaces/msg/IsPausedResponse`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct IsPausedResponse {
+        /// `bool paused`
+        pub r#paused: bool,
+    }
+
+    /// `rosbag2_interfaces/msg/PauseRequest`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct PauseRequest {
+        /// `uint8 structure_needs_at_least_one_member`
+        pub r#structure_needs_at_least_one_member: u8,
+    }
+
+    /// `rosbag2_interfaces/msg/PauseResponse`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct PauseResponse {
+        /// `uint8 structure_needs_at_least_one_member`
+        pub r#structure_needs_at_least_one_member: u8,
+    }
+
+    /// `rosbag2_interfaces/msg/PlayNextRequest`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct PlayNextRequest {
+        /// `uint8 structure_needs_at_least_one_member`
+        pub r#structure_needs_at_least_one_member: u8,
+    }
+
+    /// `rosbag2_interfaces/msg/PlayNextResponse`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct PlayNextResponse {
+        /// `bool success`
+        pub r#success: bool,
+    }
+
+    /// `rosbag2_interfaces/msg/ResumeRequest`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct ResumeRequest {
+        /// `uint8 structure_needs_at_least_one_member`
+        pub r#structure_needs_at_least_one_member: u8,
+    }
+
+    /// `rosbag2_interfaces/msg/ResumeResponse`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct ResumeResponse {
+        /// `uint8 structure_needs_at_least_one_member`
+        pub r#structure_needs_at_least_one_member: u8,
+    }
+
+    /// `rosbag2_interfaces/msg/SeekRequest`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct SeekRequest {
+        /// `builtin_interfaces/Time time`
+        pub r#time: super::builtin_interfaces::Time,
+    }
+
+    /// `rosbag2_interfaces/msg/SeekResponse`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct SeekResponse {
+        /// `bool success`
+        pub r#success: bool,
+    }
+
+    /// `rosbag2_interfaces/msg/SetRateRequest`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct SetRateRequest {
+        /// `float64 rate`
+        pub r#rate: f64,
+    }
+
+    /// `rosbag2_interfaces/msg/SetRateResponse`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct SetRateResponse {
+        /// `bool success`
+        pub r#success: bool,
+    }
+
+    /// `rosbag2_interfaces/msg/StopRequest`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct StopRequest {
+        /// `uint8 structure_needs_at_least_one_member`
+        pub r#structure_needs_at_least_one_member: u8,
+    }
+
+    /// `rosbag2_interfaces/msg/StopResponse`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct StopResponse {
+        /// `uint8 structure_needs_at_least_one_member`
+        pub r#structure_needs_at_least_one_member: u8,
+    }
+
+    /// `rosbag2_interfaces/msg/TogglePausedRequest`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct TogglePausedRequest {
+        /// `uint8 structure_needs_at_least_one_member`
+        pub r#structure_needs_at_least_one_member: u8,
+    }
+
+    /// `rosbag2_interfaces/msg/TogglePausedResponse`.
+    #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+    pub struct TogglePausedResponse {
+        /// `uint8 structure_needs_at_least_one_member`
+        pub r#structure_needs_at_least_one_member: u8,
+    }
+
+    /// Services of `rosbag2_interfaces`.
+    pub mod srv {
+        use crate::wire::messages::{RosService, ServiceType};
+
+        /// `rosbag2_interfaces/srv/Burst`.
+        #[derive(Clone, Copy, Debug)]
+        pub struct Burst;
+
+        impl RosService for Burst {
+            type Request = super::BurstRequest;
+            type Response = super::BurstResponse;
+            const TYPE: ServiceType = ServiceType {
+                name: "rosbag2_interfaces/srv/Burst",
+                request_dds_name: "rosbag2_interfaces::srv::dds_::Burst_Request_",
+                response_dds_name: "rosbag2_interfaces::srv::dds_::Burst_Response_",
+            };
+        }
+
+        /// `rosbag2_interfaces/srv/GetRate`.
+        #[derive(Clone, Copy, Debug)]
+        pub struct GetRate;
+
+        impl RosService for GetRate {
+            type Request = super::GetRateRequest;
+            type Response = super::GetRateResponse;
+            const TYPE: ServiceType = ServiceType {
+                name: "rosbag2_interfaces/srv/GetRate",
+                request_dds_name: "rosbag2_interfaces::srv::dds_::GetRate_Request_",
+                response_dds_name: "rosbag2_interfaces::srv::dds_::GetRate_Response_",
+            };
+        }
+
+        /// `rosbag2_interfaces/srv/IsPaused`.
+        #[derive(Clone, Copy, Debug)]
+        pub struct IsPaused;
+
+        impl RosService for IsPaused {
+            type Request = super::IsPausedRequest;
+            type Response = super::IsPausedResponse;
+            const TYPE: ServiceType = ServiceType {
+                name: "rosbag2_interfaces/srv/IsPaused",
+                request_dds_name: "rosbag2_interfaces::srv::dds_::IsPaused_Request_",
+                response_dds_name: "rosbag2_interfaces::srv::dds_::IsPaused_Response_",
+            };
+        }
+
+        /// `rosbag2_interfaces/srv/Pause`.
+        #[derive(Clone, Copy, Debug)]
+        pub struct Pause;
+
+        impl RosService for Pause {
+            type Request = super::PauseRequest;
+            type Response = super::PauseResponse;
+            const TYPE: ServiceType = ServiceType {
+                name: "rosbag2_interfaces/srv/Pause",
+                request_dds_name: "rosbag2_interfaces::srv::dds_::Pause_Request_",
+                response_dds_name: "rosbag2_interfaces::srv::dds_::Pause_Response_",
+            };
+        }
+
+        /// `rosbag2_interfaces/srv/PlayNext`.
+        #[derive(Clone, Copy, Debug)]
+        pub struct PlayNext;
+
+        impl RosService for PlayNext {
+            type Request = super::PlayNextRequest;
+            type Response = super::PlayNextResponse;
+            const TYPE: ServiceType = ServiceType {
+                name: "rosbag2_interfaces/srv/PlayNext",
+                request_dds_name: "rosbag2_interfaces::srv::dds_::PlayNext_Request_",
+                response_dds_name: "rosbag2_interfaces::srv::dds_::PlayNext_Response_",
+            };
+        }
+
+        /// `rosbag2_interfaces/srv/Resume`.
+        #[derive(Clone, Copy, Debug)]
+        pub struct Resume;
+
+        impl RosService for Resume {
+            type Request = super::ResumeRequest;
+            type Response = super::ResumeResponse;
+            const TYPE: ServiceType = ServiceType {
+                name: "rosbag2_interfaces/srv/Resume",
+                request_dds_name: "rosbag2_interfaces::srv::dds_::Resume_Request_",
+                response_dds_name: "rosbag2_interfaces::srv::dds_::Resume_Response_",
+            };
+        }
+
+        /// `rosbag2_interfaces/srv/Seek`.
+        #[derive(Clone, Copy, Debug)]
+        pub struct Seek;
+
+        impl RosService for Seek {
+            type Request = super::SeekRequest;
+            type Response = super::SeekResponse;
+            const TYPE: ServiceType = ServiceType {
+                name: "rosbag2_interfaces/srv/Seek",
+                request_dds_name: "rosbag2_interfaces::srv::dds_::Seek_Request_",
+                response_dds_name: "rosbag2_interfaces::srv::dds_::Seek_Response_",
+            };
+        }
+
+        /// `rosbag2_interfaces/srv/SetRate`.
+        #[derive(Clone, Copy, Debug)]
+        pub struct SetRate;
+
+        impl RosService for SetRate {
+            type Request = super::SetRateRequest;
+            type Response = super::SetRateResponse;
+            const TYPE: ServiceType = ServiceType {
+                name: "rosbag2_interfaces/srv/SetRate",
+                request_dds_name: "rosbag2_interfaces::srv::dds_::SetRate_Request_",
+                response_dds_name: "rosbag2_interfaces::srv::dds_::SetRate_Response_",
+            };
+        }
+
+        /// `rosbag2_interfaces/srv/Stop`.
+        #[derive(Clone, Copy, Debug)]
+        pub struct Stop;
+
+        impl RosService for Stop {
+            type Request = super::StopRequest;
+            type Response = super::StopResponse;
+            const TYPE: ServiceType = ServiceType {
+                name: "rosbag2_interfaces/srv/Stop",
+                request_dds_name: "rosbag2_interfaces::srv::dds_::Stop_Request_",
+                response_dds_name: "rosbag2_interfaces::srv::dds_::Stop_Response_",
+            };
+        }
+
+        /// `rosbag2_interfaces/srv/TogglePaused`.
+        #[derive(Clone, Copy, Debug)]
+        pub struct TogglePaused;
+
+        impl RosService for TogglePaused {
+            type Request = super::TogglePausedRequest;
+            type Response = super::TogglePausedResponse;
+            const TYPE: ServiceType = ServiceType {
+                name: "rosbag2_interfaces/srv/TogglePaused",
+                request_dds_name: "rosbag2_interfaces::srv::dds_::TogglePaused_Request_",
+                response_dds_name: "rosbag2_interfaces::srv::dds_::TogglePaused_Response_",
             };
         }
     }
