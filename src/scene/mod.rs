@@ -69,7 +69,7 @@ pub struct Time {
     pub substep: Option<Real>,
     /// Fraction of the critical step that a derived substep takes.
     pub safety: Real,
-    /// Inertia of grains and membrane over their real one, for longer substeps.
+    /// Inertia of grains and membrane over their real one, for longer substeps [-].
     pub density_scaling: Real,
 }
 
