@@ -37,6 +37,11 @@ const PATIENCE: Duration = Duration::from_secs(1);
 /// Answers that wait for their turn; a client that does not read them loses them.
 const OUTBOX: usize = 4096;
 
+/// Longest time that one who leaves waits until its last answers have arrived, and the time that it
+/// then stays for them to be read.
+const FAREWELL: Duration = Duration::from_secs(2);
+const LINGERING: Duration = Duration::from_millis(200);
+
 /// How often is looked for a client's ears, and how long between two looks.
 const HEARING_TRIES: usize = 40;
 const HEARING_NAP: Duration = Duration::from_millis(5);
@@ -245,7 +250,9 @@ impl Mouths {
     }
 
     fn speak(&mut self, waiting: &mpsc::Receiver<(Outgoing, u64)>, announced: &Announced) {
+        let mut has_spoken = false;
         while let Ok((outgoing, after_packet)) = waiting.recv() {
+            has_spoken = true;
             announced.wait_for(after_packet, PATIENCE);
             let said = match outgoing {
                 Outgoing::Answer(asker, body) => {
@@ -259,6 +266,21 @@ impl Mouths {
                 log::warn!("an answer was not taken: {error}; is its reader stopped?");
             }
         }
+        if has_spoken {
+            self.see_off();
+        }
+    }
+
+    /// Waits until the last answers are with those who asked. What is still on its way goes with its
+    /// writer; some readers (those of RustDDS) even lose what they hold and have not handed out.
+    fn see_off(&self) {
+        let has_arrived = |(writer, _): &(Writer, _)| {
+            writer.wait_for_acknowledgments(FAREWELL).is_ok_and(|has_arrived| has_arrived)
+        };
+        if !self.answers.iter().all(has_arrived) {
+            log::warn!("the last answers did not arrive in {FAREWELL:?}; did their readers stop?");
+        }
+        std::thread::sleep(LINGERING);
     }
 }
 
