@@ -228,10 +228,10 @@ impl Session {
         self.advance(&inputs);
         self.tick = self.tick.next();
         self.run_tick = self.run_tick.next();
-        let Coupled { model, state, scratch, .. } = &self.coupled;
+        let Coupled { state, scratch, .. } = &self.coupled;
         self.normal_forces = measure::normal_forces(state, scratch);
         self.digest = self.take_digest();
-        health::check(model, state, scratch, self.tick.0)
+        health::check(state, scratch, self.tick.0)
     }
 
     /// Changes the world between two ticks.

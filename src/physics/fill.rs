@@ -338,7 +338,7 @@ impl Filling {
         substep(&self.model, &self.controls, &mut self.state, &mut self.scratch);
         let mut is_over = k + 1 == n_substeps;
         if k.is_multiple_of(LOOK_EVERY) {
-            health::check(&self.model, &self.state, &self.scratch, 0)?;
+            health::check(&self.state, &self.scratch, 0)?;
             is_over |= stage == Stage::Resting && speed(&self.state) < REST_SPEED;
         }
         self.place.k += 1;

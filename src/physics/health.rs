@@ -1,11 +1,11 @@
 //! Can the run go on? Looked at once per tick.
 
-use super::{Model, Scratch, State};
+use super::{Scratch, State};
 use crate::base::{Real, Vec3};
 
 /// Why a run cannot go on.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("tick {tick}: {what} {which} is at {value:e}, beyond {limit:e}; {remedy}")]
+#[error("tick {tick}: {what} {which} is at {value:e}{}; {remedy}", beyond(*limit))]
 pub struct Diverged {
     /// Tick in which it was seen.
     pub tick: u64,
@@ -15,10 +15,14 @@ pub struct Diverged {
     pub which: usize,
     /// Its value.
     pub value: Real,
-    /// The limit it exceeded.
-    pub limit: Real,
+    /// The limit it exceeded, unless it is not the value that tells.
+    pub limit: Option<Real>,
     /// What can be done.
     pub remedy: &'static str,
+}
+
+fn beyond(limit: Option<Real>) -> String {
+    limit.map(|limit| format!(", beyond {limit:e}")).unwrap_or_default()
 }
 
 /// No grain and no vertex of a working gripper is faster than this [m/s].
@@ -28,7 +32,7 @@ const SPEED_MAX: Real = 50.0;
 ///
 /// # Errors
 /// The first fault in a fixed order.
-pub fn check(model: &Model, state: &State, scratch: &Scratch, tick: u64) -> Result<(), Diverged> {
+pub fn check(state: &State, scratch: &Scratch, tick: u64) -> Result<(), Diverged> {
     let faster = |what, velocities: &[Vec3]| {
         let limit = SPEED_MAX;
         // The comparison is false for NaN, which must not pass.
@@ -42,7 +46,7 @@ pub fn check(model: &Model, state: &State, scratch: &Scratch, tick: u64) -> Resu
                 what,
                 which,
                 value: velocities[which].norm(),
-                limit,
+                limit: Some(limit),
                 remedy: "take a shorter substep, a slower pump or slower motion",
             }),
         }
@@ -56,7 +60,7 @@ pub fn check(model: &Model, state: &State, scratch: &Scratch, tick: u64) -> Resu
             what: "the membrane leaks: distance from the carrier [m] of grain",
             which,
             value: from_carrier.norm(),
-            limit: model.membrane.mesh.positions.iter().map(|p| p.norm()).fold(0.0, Real::max),
+            limit: None,
             remedy: "use a finer or stiffer membrane, larger grains, less pressure or slower motion",
         });
     }

@@ -71,6 +71,6 @@ impl System {
     /// # Errors
     /// The first fault in a fixed order.
     pub fn check(&self, tick: u64) -> Result<(), Diverged> {
-        health::check(&self.model, &self.state, &self.scratch, tick)
+        health::check(&self.state, &self.scratch, tick)
     }
 }

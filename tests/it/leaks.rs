@@ -85,7 +85,7 @@ fn evacuate(mut rig: Rig) -> Result<Rig, Diverged> {
         rig.controls.gauge_setpoint = -PRESSURE * (Real::from(step) / 5000.0).min(1.0);
         rig.step();
         if step % 50 == 49 {
-            health::check(&rig.model, &rig.state, &rig.scratch, 0)?;
+            health::check(&rig.state, &rig.scratch, 0)?;
         }
     }
     Ok(rig)
@@ -129,7 +129,7 @@ fn breakthrough(mesh: Mesh, contact: SheetContact, place: Vec3, radius: Real, mo
         let load = most * Real::from(step) / Real::from(n_steps);
         rig.model.gravity = Vec3::z() * (-load / rig.state.grains.masses[0]);
         rig.step();
-        if health::check(&rig.model, &rig.state, &rig.scratch, 0).is_err() {
+        if health::check(&rig.state, &rig.scratch, 0).is_err() {
             return load;
         }
     }

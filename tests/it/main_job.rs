@@ -71,13 +71,16 @@ fn an_independent_peer_commands_the_whole_job() {
             Command::new(env!("CARGO_BIN_EXE_jamgrip"))
                 .args(["run", "launch_configs/pick_and_lift.yaml", "--json", "--bag"])
                 .arg(&bag)
-                .args(["--set", "controller=topics", "--cache"])
+                .args(["--set", "controller=topics"])
+                // What the controller sees does not depend on what else the machine does.
+                .args(["--set", "topics.lockstep=wait_command"])
+                .args(["--set", "topics.steps_per_command=10", "--cache"])
                 .arg(concat!(env!("CARGO_TARGET_TMPDIR"), "/starts"))
                 .current_dir(env!("CARGO_MANIFEST_DIR"))
                 .env("ROS_DOMAIN_ID", reach().domain_id.to_string())
                 .env("JAMGRIP_STREAM_PREFIX", format!("jamgrip_test_{}", std::process::id())),
         );
-        let mut peer = start_peer(folder.path(), &["cylinder"]);
+        let mut peer = start_peer(folder.path(), &["cylinder", "--lockstep"]);
         while !peer.is_over() {
             assert!(!node.is_over(), "the run ended before its controller");
             std::thread::sleep(Duration::from_millis(20));
@@ -95,7 +98,7 @@ fn an_independent_peer_commands_the_whole_job() {
         );
         let weight = weight(&scene);
         let force = seen["hold_force_z_n"].as_f64().unwrap();
-        // The object hangs at rest; what is left of its swing averages out to well below this.
+        // The object bounces a little on the jammed bag; weighted, whole swings average out.
         assert!((force + weight).abs() < 0.005 * weight, "{force} N under a weight of {weight} N");
         let (theirs, ours) = (&seen["lifted_m"], &told["lift_height_m"]);
         let difference = theirs.as_f64().unwrap() - ours.as_f64().unwrap();
@@ -117,7 +120,9 @@ fn check_recording(bag: &Path, told: &Value) {
     let commands = &told["commands"];
     let n_commands: u64 =
         ["applied", "limited", "refused"].iter().map(|key| commands[key].as_u64().unwrap()).sum();
-    assert_eq!(count("/jamgrip/vacuum_cmd") + count("/jamgrip/flange/pose_cmd"), n_commands);
+    let recorded = ["vacuum_cmd", "flange/pose_cmd", "joint_commands"];
+    let n_recorded: u64 = recorded.iter().map(|it| count(&format!("/jamgrip/{it}"))).sum();
+    assert_eq!(n_recorded, n_commands);
     for topic in ["grains", "membrane", "wrench", "vacuum_state", "object/cylinder/pose"] {
         assert!(10 < count(&format!("/jamgrip/{topic}")), "{topic} is recorded");
     }

@@ -173,7 +173,14 @@ impl Run for Swing {
         if 10.0 < state.x.abs() {
             let (what, remedy) = ("height [m] of oscillator", "damp it");
             let (value, limit) = (state.x.abs(), 10.0);
-            return Err(Diverged { tick: state.step, what, which: 0, value, limit, remedy });
+            return Err(Diverged {
+                tick: state.step,
+                what,
+                which: 0,
+                value,
+                limit: Some(limit),
+                remedy,
+            });
         }
         let share = state.step as f64 / N_STEPS as f64;
         Ok(Progress { stage: "swinging", share, is_done: state.step == N_STEPS })

@@ -179,7 +179,7 @@ fn press(radius: Real, pressure: Real, place: Vec3) -> Result<Rig, health::Diver
         let share = (Real::from(step) / 10_000.0).min(1.0);
         rig.model.gravity = Vec3::z() * -(share * load / rig.state.grains.masses[0]);
         rig.step();
-        health::check(&rig.model, &rig.state, &rig.scratch, 0)?;
+        health::check(&rig.state, &rig.scratch, 0)?;
     }
     Ok(rig)
 }
@@ -245,7 +245,7 @@ fn sag(n: i32, edge: Real, offset: [Real; 2]) -> (Real, Real) {
         let v = &mut rig.state.grains.velocities[0];
         *v = Vec3::new(0.0, 0.0, v.z * 0.998);
         rig.step();
-        health::check(&rig.model, &rig.state, &rig.scratch, 0).unwrap();
+        health::check(&rig.state, &rig.scratch, 0).unwrap();
         if step >= n_steps - n_last {
             carried -= rig.scratch.wall_wrenches[0].force.z / Real::from(n_last);
             depth += (RADIUS - rig.state.grains.positions[0].z) / Real::from(n_last);

@@ -201,7 +201,7 @@ fn run(mut rig: Rig, n_threads: usize) -> Way {
             }
         }
     });
-    health::check(&rig.model, &rig.state, &rig.scratch, 0).unwrap();
+    health::check(&rig.state, &rig.scratch, 0).unwrap();
     Way { digests, n_builds: rig.scratch.neighbours.n_builds, n_loaded_max }
 }
 
@@ -251,7 +251,7 @@ fn a_grain_that_falls_through_a_hole_is_found() {
         for _ in 0..3000 {
             rig.step();
             let height = rig.state.grains.positions[0].z;
-            if health::check(&rig.model, &rig.state, &rig.scratch, 0).is_err() {
+            if health::check(&rig.state, &rig.scratch, 0).is_err() {
                 found_below = Some(height);
                 break;
             }

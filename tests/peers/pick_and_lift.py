@@ -3,20 +3,27 @@
 An own small controller, not the project's: it comes down until it feels the object, pushes in,
 evacuates, lifts, holds, puts back and lets go. Meanwhile it reads force, poses, vacuum, membrane
 and grains. Prints one JSON line with what it saw.
+
+With `--lockstep` time waits for it: whatever the machine is busy with, the run is the same.
 """
 
+import argparse
 import json
 import math
-import sys
 import time
 
 import ros_types as t
 from ros_node import Node, columns, wait_for
 
-OBJECT = sys.argv[1] if len(sys.argv) > 1 else "cylinder"
+parser = argparse.ArgumentParser(description=__doc__)
+parser.add_argument("object", nargs="?", default="cylinder")
+parser.add_argument("--lockstep", action="store_true")
+arguments = parser.parse_args()
+OBJECT, LOCKSTEP = arguments.object, arguments.lockstep
+
 TRAVEL_M_S, PUSH_M_S = 0.10, 0.02
 TOUCH_N, PUSH_MAX_N, PUSH_M = 0.1, 60.0, 0.028
-GRIP_PA = float(sys.argv[2]) if len(sys.argv) > 2 else -90e3
+GRIP_PA = -90e3
 VENT_PA, SETTLE_S, HOLD_S, VENT_S = 5e3, 0.2, 1.2, 0.5
 LIFT_M, RETREAT_M = 0.100, 0.040
 PERIOD_S = 0.01
@@ -32,14 +39,18 @@ grains = node.subscribe("/jamgrip/grains", t.PointCloud2, depth=1)
 membrane = node.subscribe("/jamgrip/membrane", t.PointCloud2, depth=1)
 vacuum_cmd = node.publish("/jamgrip/vacuum_cmd", t.Float64)
 flange_cmd = node.publish("/jamgrip/flange/pose_cmd", t.PoseStamped)
+joint_cmd = node.publish("/jamgrip/joint_commands", t.JointState)
 wait_for(vacuum_cmd.get_matched_subscriptions, "the vacuum's subscriber", 300.0)
 wait_for(flange_cmd.get_matched_subscriptions, "the flange's subscriber", 300.0)
+if LOCKSTEP:
+    wait_for(joint_cmd.get_matched_subscriptions, "the joints' subscriber", 300.0)
 
 
 class Seen:
     """The newest of every topic, and what was counted."""
 
     now = None
+    stamps = {}
     force = None
     flange = None
     object = None
@@ -57,14 +68,18 @@ class Seen:
         for it in wrench.take(N=1000):
             assert it.header.frame_id == "gripper_flange", it.header.frame_id
             self.force = it.wrench.force
+            self.stamps["force"] = it.header.stamp.seconds()
             if self.holding:
                 self.hold_forces.append(self.force.z)
         for it in flange.take(N=1000):
             self.flange = it.pose
+            self.stamps["flange"] = it.header.stamp.seconds()
         for it in thing.take(N=1000):
             self.object = it.pose.position
+            self.stamps["object"] = it.header.stamp.seconds()
         for it in vacuum.take(N=1000):
             self.gauge = it.gauge
+            self.stamps["gauge"] = it.header.stamp.seconds()
         for it in grains.take(N=1):
             read = columns(it)
             self.grain_heights = read["z"]
@@ -80,6 +95,10 @@ class Seen:
         parts = (self.now, self.force, self.flange, self.object, self.gauge)
         return all(it is not None for it in parts + (self.grain_heights, self.vertex_heights))
 
+    def has_all_of(self, seconds):
+        """True once all that a decision needs has come of this time."""
+        return all(seconds - 1e-6 < it for it in [self.now, *self.stamps.values()])
+
     def push(self):
         return math.sqrt(self.force.x**2 + self.force.y**2 + self.force.z**2)
 
@@ -89,8 +108,12 @@ heard_at = time.monotonic()
 called_at = -1e9
 while not seen.is_complete():
     assert time.monotonic() - heard_at < 300.0, "the run did not begin"
-    if 0.5 < time.monotonic() - called_at:
-        vacuum_cmd.write(t.Float64(0.0))  # the run waits for a first command
+    # The run waits for a first command; poses are known after its first tick.
+    if 2.0 < time.monotonic() - called_at:
+        if LOCKSTEP:
+            joint_cmd.write(t.JointState())
+        else:
+            vacuum_cmd.write(t.Float64(0.0))
         called_at = time.monotonic()
     seen.look()
     time.sleep(0.001)
@@ -101,21 +124,22 @@ pressure = 0.0
 trace = []
 
 
+def wait_for_news():
+    """The next tick that is seen; in lockstep all of the last one that a command lets pass."""
+    global heard_at
+    before = seen.now
+    while seen.now == before or (LOCKSTEP and not seen.has_all_of(before + PERIOD_S)):
+        assert time.monotonic() - heard_at < SILENCE_S, "the clock stands still"
+        time.sleep(0.0005)
+        seen.look()
+    heard_at = time.monotonic()
+
+
 def run_until(is_over, speed=0.0, goal=None):
     """Moves the set-point to height `goal` at `speed` until it is there or `is_over()`."""
-    global heard_at
     said_at = seen.now
-    while True:
-        before = seen.now
-        seen.look()
-        if seen.now == before:
-            assert time.monotonic() - heard_at < SILENCE_S, "the clock stands still"
-            time.sleep(0.0005)
-            continue
-        heard_at = time.monotonic()
-        if is_over():
-            return True
-        step = seen.now - said_at
+    while not is_over():
+        step = PERIOD_S if LOCKSTEP else seen.now - said_at
         if PERIOD_S <= step:
             said_at = seen.now
             if goal is not None:
@@ -124,8 +148,11 @@ def run_until(is_over, speed=0.0, goal=None):
                     return False
                 position[2] += math.copysign(min(abs(left), speed * step), left)
             pose = t.Pose(t.Point(*position), upright)
-            flange_cmd.write(t.PoseStamped(t.Header(t.Time(), "world"), pose))
+            # The stamp of the pose is what lets time pass: the vacuum goes first.
             vacuum_cmd.write(t.Float64(pressure))
+            flange_cmd.write(t.PoseStamped(t.Header(t.Time(), "world"), pose))
+        wait_for_news()
+    return True
 
 
 def after(seconds):
@@ -136,6 +163,12 @@ def after(seconds):
 
 def never():
     return False
+
+
+def mean(samples):
+    """Weighted by sin², so that a swing that is cut off at the ends does not count."""
+    weights = [math.sin(math.pi * (i + 0.5) / len(samples)) ** 2 for i in range(len(samples))]
+    return sum(w * it for w, it in zip(weights, samples)) / sum(weights)
 
 
 def mark(name):
@@ -201,7 +234,8 @@ print(
             "held_s": held_s,
             "peak_push_n": peak_n,
             "gauge_reached_pa": reached_pa,
-            "hold_force_z_n": sum(seen.hold_forces) / len(seen.hold_forces),
+            "hold_force_z_n": mean(seen.hold_forces),
+            "hold_force_swing_n": max(seen.hold_forces) - min(seen.hold_forces),
             "n_hold_forces": len(seen.hold_forces),
             "cloud_lifted_m": cloud_lifted,
             "n_grains": len(seen.grain_heights),

@@ -100,6 +100,16 @@ class WrenchStamped(IdlStruct, typename=ros("geometry_msgs", "WrenchStamped")):
 
 @dataclass
 @final
+class JointState(IdlStruct, typename=ros("sensor_msgs", "JointState")):
+    header: Header = field(default_factory=Header)
+    name: sequence[str] = field(default_factory=list)
+    position: sequence[float64] = field(default_factory=list)
+    velocity: sequence[float64] = field(default_factory=list)
+    effort: sequence[float64] = field(default_factory=list)
+
+
+@dataclass
+@final
 class PointField(IdlStruct, typename=ros("sensor_msgs", "PointField")):
     name: str = ""
     offset: uint32 = 0
