@@ -169,7 +169,8 @@ pub struct GrainRow {
 
 /// Force between two grains.
 #[derive(Clone, Copy, Default, bytemuck::Pod, bytemuck::Zeroable)]
-#[repr(C)]
+// A row in one line of the cache.
+#[repr(C, align(64))]
 pub struct PairForce {
     /// Force on the first grain [N].
     pub force: Vec3,

@@ -40,6 +40,9 @@ impl Kernel for PairSums<'_> {
     fn run<L: Lanes>(self) {
         let lists = &self.scratch.neighbours;
         let rows: &[[Real; 8]] = bytemuck::cast_slice(&self.scratch.pair_forces);
+        // Told where the compiler does not see it: it would make an addition and a subtraction of each
+        // row's parts, one waiting for the other.
+        let reversed = std::hint::black_box(-1.0);
         for (i, written) in (self.first..).zip(self.sums) {
             let mut sum = [0.0; 8];
             let radius = self.radii[i];
@@ -50,7 +53,7 @@ impl Kernel for PairSums<'_> {
             }
             let second = lists.second_starts[i] as usize..lists.second_starts[i + 1] as usize;
             for &k in &lists.second_pairs[second] {
-                sum = with_row(sum, &rows[k as usize], -1.0, radius);
+                sum = with_row(sum, &rows[k as usize], reversed, radius);
             }
             *written = sum;
         }
