@@ -64,6 +64,10 @@ impl Scratch {
 pub struct Neighbours {
     /// False before the first build.
     pub is_built: bool,
+    /// Distance beyond contact within which grains were listed at the last build [m].
+    pub skin: Real,
+    /// Substeps since the last build.
+    pub n_since_build: u64,
     /// Positions of the grains at the last build [m].
     pub grain_positions: Vec<Vec3>,
     /// Positions of the vertices at the last build [m].

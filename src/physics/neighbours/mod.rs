@@ -7,6 +7,7 @@
 mod body_list;
 mod cell_grid;
 mod crossings;
+mod skin;
 mod sphere_list;
 mod triangle_list;
 mod verlet_list;
@@ -18,6 +19,7 @@ use super::{
     scratch::{Neighbours, PatchForces},
     state::Patches,
 };
+use crate::base::Real;
 
 /// Builds the lists anew if they may have become incomplete.
 pub fn refresh(model: &Model, controls: &Controls, state: &mut State, scratch: &mut Scratch) {
@@ -30,16 +32,22 @@ pub fn refresh(model: &Model, controls: &Controls, state: &mut State, scratch: &
 
 /// The same for all that has to do with grains.
 fn refresh_grains(model: &Model, state: &mut State, scratch: &mut Scratch) {
-    if is_complete(model, state, &scratch.neighbours) {
+    let lists = &mut scratch.neighbours;
+    let used = 2.0 * used(model, state, lists);
+    // The factor keeps the last substep's motion, which is not measured yet, inside the skin.
+    let is_complete = lists.is_built && used < 0.9 * lists.skin;
+    if is_complete && !skin::is_too_thick(model, lists, used) {
+        lists.n_since_build += 1;
         return;
     }
-    let lists = &mut scratch.neighbours;
+    // Nothing is known of motion before the first build, nor of what others have moved.
+    lists.skin = if lists.is_built { skin::cheapest(model, lists, used) } else { model.skin };
     // In a periodic box there is no membrane, so the wrapped grid serves the pairs alone.
     let positions = match &model.period {
         Some(period) => verlet_list::wrap(&state.grains.positions, period),
         None => state.grains.positions.clone(),
     };
-    let grid = cell_grid::CellGrid::new(&positions, 2.0 * model.radius_max + model.skin);
+    let grid = cell_grid::CellGrid::new(&positions, 2.0 * model.radius_max + lists.skin);
     verlet_list::build(model, &grid, &positions, state, lists);
     match model.membrane.contact {
         SheetContact::Triangles => {
@@ -62,18 +70,19 @@ fn refresh_grains(model: &Model, state: &mut State, scratch: &mut Scratch) {
     lists.growth_max = 0.0;
     lists.displacement_squared_max = 0.0;
     lists.is_built = true;
+    lists.n_since_build = 0;
     lists.n_builds += 1;
 }
 
-/// True while nobody has come or grown so far that a contact could be missing.
-fn is_complete(model: &Model, state: &State, lists: &Neighbours) -> bool {
-    let reach = model.skin / 2.0;
-    // The factor keeps the last substep's motion, which is not measured yet, inside the skin.
-    let limit = 0.9 * reach - lists.growth_max;
-    lists.is_built
-        && limit > 0.0
-        && lists.displacement_squared_max < limit * limit
-        && wall_list::displacement(model, state, lists) < limit
+/// How far anybody has come or grown since the last build [m].
+fn used(model: &Model, state: &State, lists: &Neighbours) -> Real {
+    if !lists.is_built {
+        return 0.0;
+    }
+    let (moved, walls) =
+        (lists.displacement_squared_max.sqrt(), wall_list::displacement(model, state, lists));
+    // What is no number is further than all.
+    lists.growth_max + if moved < walls { walls } else { moved }
 }
 
 /// Grains without candidates have no patches: nobody looks at them until the next build.

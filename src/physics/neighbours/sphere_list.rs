@@ -23,10 +23,11 @@ pub(super) fn build(
     lists: &mut Neighbours,
 ) {
     let n_vertices = state.membrane.positions.len();
+    let beyond = radius + lists.skin;
     let mut chunks = vec![Vec::new(); n_vertices.div_ceil(CHUNK)];
     parallel::for_each(&mut chunks, |chunk, found| {
         for v in chunk * CHUNK..n_vertices.min((chunk + 1) * CHUNK) {
-            grains_near(model, radius, grid, state, v, found);
+            grains_near(model, beyond, grid, state, v, found);
         }
     });
     let mut ids = chunks.concat();
@@ -52,17 +53,17 @@ pub(super) fn clear(state: &mut State, lists: &mut Neighbours) {
 
 fn grains_near(
     model: &Model,
-    radius: Real,
+    beyond: Real,
     grid: &CellGrid,
     state: &State,
     vertex: usize,
     found: &mut Vec<[u32; 2]>,
 ) {
     let position = state.membrane.positions[vertex];
-    let reach = Vec3::repeat(model.radius_max + radius + model.skin);
+    let reach = Vec3::repeat(model.radius_max + beyond);
     grid.visit(&(position - reach), &(position + reach), |grain| {
         let i = grain as usize;
-        let cut = state.grains.radii[i] + radius + model.skin;
+        let cut = state.grains.radii[i] + beyond;
         if (state.grains.positions[i] - position).norm_squared() < cut * cut {
             found.push([grain, id(vertex)]);
         }

@@ -2,7 +2,7 @@
 
 use super::cell_grid::{CellGrid, id};
 use crate::{
-    base::{Vec3, parallel},
+    base::{Real, Vec3, parallel},
     physics::{Model, State, membrane::contact_geometry::closest_on_triangle, scratch::Neighbours},
 };
 
@@ -12,10 +12,11 @@ const CHUNK: usize = 128;
 /// Lists, for each grain, the triangles closer than contact plus skin, ascending.
 pub(super) fn build(model: &Model, grid: &CellGrid, state: &State, lists: &mut Neighbours) {
     let triangles = &model.membrane.mesh.triangles;
+    let skin = lists.skin;
     let mut chunks = vec![Vec::new(); triangles.len().div_ceil(CHUNK)];
     parallel::for_each(&mut chunks, |chunk, found| {
         for t in chunk * CHUNK..triangles.len().min((chunk + 1) * CHUNK) {
-            grains_near(model, grid, state, t, found);
+            grains_near(model, skin, grid, state, t, found);
         }
     });
     let n_grains = state.grains.len();
@@ -53,6 +54,7 @@ pub(super) fn clear(state: &State, lists: &mut Neighbours) {
 
 fn grains_near(
     model: &Model,
+    skin: Real,
     grid: &CellGrid,
     state: &State,
     triangle: usize,
@@ -60,12 +62,12 @@ fn grains_near(
 ) {
     let corners = model.membrane.mesh.triangles[triangle]
         .map(|vertex| &state.membrane.positions[vertex as usize]);
-    let reach = Vec3::repeat(model.radius_max + model.skin);
+    let reach = Vec3::repeat(model.radius_max + skin);
     let low = corners[0].inf(corners[1]).inf(corners[2]) - reach;
     let high = corners[0].sup(corners[1]).sup(corners[2]) + reach;
     grid.visit(&low, &high, |grain| {
         let i = grain as usize;
-        let cut = state.grains.radii[i] + model.skin;
+        let cut = state.grains.radii[i] + skin;
         let closest = closest_on_triangle(&state.grains.positions[i], corners);
         if (closest.point - state.grains.positions[i]).norm_squared() < cut * cut {
             found.push([grain, id(triangle)]);

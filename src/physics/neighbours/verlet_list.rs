@@ -25,7 +25,7 @@ pub(super) fn build(
     lists: &mut Neighbours,
 ) {
     let radii = &state.grains.radii;
-    let search = Search { model, grid, positions, radii };
+    let search = Search { model, skin: lists.skin, grid, positions, radii };
     let mut chunks = vec![Vec::new(); radii.len().div_ceil(CHUNK)];
     parallel::for_each(&mut chunks, |chunk, found| {
         for i in chunk * CHUNK..radii.len().min((chunk + 1) * CHUNK) {
@@ -42,6 +42,8 @@ pub(super) fn build(
 /// All that is needed to look for partners.
 struct Search<'a> {
     model: &'a Model,
+    /// Distance beyond contact [m].
+    skin: Real,
     grid: &'a CellGrid,
     positions: &'a [Vec3],
     radii: &'a [Real],
@@ -62,13 +64,13 @@ impl Search<'_> {
     /// Those near `position`, where grain `i` or an image of it is.
     fn around(&self, i: usize, position: &Vec3, found: &mut Vec<[u32; 2]>) {
         let (model, radius) = (self.model, self.radii[i]);
-        let reach = Vec3::repeat(radius + model.radius_max + model.skin);
+        let reach = Vec3::repeat(radius + model.radius_max + self.skin);
         self.grid.visit(&(position - reach), &(position + reach), |other| {
             let j = other as usize;
             if j <= i {
                 return;
             }
-            let cut = radius + self.radii[j] + model.skin;
+            let cut = radius + self.radii[j] + self.skin;
             if (self.positions[j] - position).norm_squared() < cut * cut {
                 found.push([id(i), other]);
             }
@@ -78,7 +80,7 @@ impl Search<'_> {
     /// Those near the images of grain `i` that reach into the box. No partner is near two of them,
     /// since the box is wide enough.
     fn around_images(&self, i: usize, position: &Vec3, period: &Vec3, found: &mut Vec<[u32; 2]>) {
-        let reach = self.radii[i] + self.model.radius_max + self.model.skin;
+        let reach = self.radii[i] + self.model.radius_max + self.skin;
         let shifts = [0, 1, 2].map(|k| {
             let back = position[k] + reach > period[k];
             let ahead = position[k] < reach;

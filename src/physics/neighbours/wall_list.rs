@@ -30,8 +30,8 @@ pub(super) fn build(
     for (i, position) in state.grains.positions.iter().enumerate() {
         for (w, (wall, motion)) in model.walls.iter().zip(&state.walls).enumerate() {
             let arm = position - motion.pose.translation.vector;
-            lists.wall_extents[w] = lists.wall_extents[w].max(arm.norm() + model.skin);
-            let cut = state.grains.radii[i] + model.skin;
+            lists.wall_extents[w] = lists.wall_extents[w].max(arm.norm() + lists.skin);
+            let cut = state.grains.radii[i] + lists.skin;
             if wall.shape.distance(motion, &arm).is_some_and(|(distance, _)| distance < cut) {
                 lists.walls.push([w, i].map(id));
             }
