@@ -261,7 +261,7 @@ fn substeps(setup: &Setup, model: &Model) -> (Real, Real) {
     let (membrane, law) = (&model.membrane, &model.membrane_law);
     let pressure = setup.confining.pressure;
     let on_vertex = stiffness_at_vertex(membrane, law, grains.radius_max, pressure);
-    let sheet = membrane::critical_step::critical_step(membrane, on_vertex);
-    let safety = setup.time.safety;
+    let first = membrane::critical_step::critical_step(membrane, on_vertex);
+    let (safety, sheet) = (setup.time.safety, setup.time.sheet_share * first);
     (safety * growing, safety * stiff.min(sheet))
 }
