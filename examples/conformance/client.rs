@@ -12,8 +12,7 @@ use jamgrip::{
     wire::{
         cdr::Cdr,
         messages::{
-            RosMessage, RosService, ServiceType, rosgraph_msgs::Clock,
-            simulation_interfaces::Result as Told,
+            RosService, ServiceType, rosgraph_msgs::Clock, simulation_interfaces::Result as Told,
         },
         topics::{Qos, Topic},
     },
@@ -44,13 +43,7 @@ const NAP: Duration = Duration::from_millis(1);
 impl Client {
     /// A client that has heard of the simulator.
     pub(crate) fn new(node: Arc<RosNode>, options: &Options) -> Result<Self, String> {
-        let topic = Topic {
-            name: "/clock".to_owned(),
-            type_name: Clock::TYPE.name,
-            message_type: Clock::TYPE,
-            qos: Qos { is_reliable: true, depth: 1000, is_latched: false },
-            is_input: false,
-        };
+        let topic = Topic::input::<Clock>("/clock", Qos::reliable(1000));
         let clock = node.subscription::<Clock>(&topic).map_err(|it| it.to_string())?;
         let (clients, options) = (BTreeMap::new(), options.clone());
         Ok(Self { node, options, clients, clock, times_ns: Vec::new(), last_ns: None })

@@ -4,23 +4,14 @@
 use xxhash_rust::xxh3::Xxh3;
 
 use crate::wire::{
-    messages::{
-        RosMessage,
-        jamgrip_msgs::{StateDigest, WorldChange},
-    },
+    messages::jamgrip_msgs::{StateDigest, WorldChange},
     topics::{Qos, Topic},
 };
 
 /// The topic of the links of a node's run; only recordings have it. A tick has another link for each
 /// time that the world was changed after it.
 pub fn topic(node: &str) -> Topic {
-    Topic {
-        name: topic_name(node),
-        type_name: StateDigest::TYPE.name,
-        message_type: StateDigest::TYPE,
-        qos: Qos { is_reliable: true, depth: 10, is_latched: false },
-        is_input: false,
-    }
+    Topic::output::<StateDigest>(&topic_name(node), Qos::reliable(10))
 }
 
 /// Name of that topic.
@@ -30,9 +21,7 @@ pub fn topic_name(node: &str) -> String {
 
 /// The topic of changes of the world between ticks; only recordings have it.
 pub fn changes_topic(node: &str) -> Topic {
-    let name = changes_topic_name(node);
-    let message_type = WorldChange::TYPE;
-    Topic { name, type_name: message_type.name, message_type, ..topic(node) }
+    Topic::output::<WorldChange>(&changes_topic_name(node), Qos::reliable(10))
 }
 
 /// Name of that topic.

@@ -52,7 +52,7 @@ impl Row {
     pub fn of(topic: &Topic) -> Self {
         Self {
             name: topic.name.clone(),
-            type_name: topic.type_name.to_owned(),
+            type_name: topic.message_type.name.to_owned(),
             encoding: "cdr".to_owned(),
             qos: qos_profiles(topic.qos),
             type_hash: topic.message_type.type_hash.to_owned(),

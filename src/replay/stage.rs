@@ -48,13 +48,7 @@ impl RosStage {
     /// When there is no graph, or the topic cannot be opened.
     pub fn join(reach: &Reach, tells_time: bool) -> Result<Self, RosError> {
         let node = RosNode::join_as(NODE_NAME, reach)?;
-        let topic = || Topic {
-            name: CLOCK.to_owned(),
-            type_name: Clock::TYPE.name,
-            message_type: Clock::TYPE,
-            qos: Qos { is_reliable: true, depth: 1, is_latched: false },
-            is_input: false,
-        };
+        let topic = || Topic::output::<Clock>(CLOCK, Qos::reliable(1));
         let clock = tells_time.then(|| node.publisher(&topic())).transpose()?;
         Ok(Self { node, publishers: BTreeMap::new(), clock, faults: (0, None) })
     }
@@ -123,7 +117,6 @@ fn topic(channel: &Channel) -> Topic {
     let no_details = MessageType { name: type_name, dds_name: "", type_hash: "", definition: "" };
     Topic {
         name: channel.topic.clone(),
-        type_name,
         message_type: no_details,
         qos: Qos {
             is_reliable: !qos.contains("reliability: best_effort"),

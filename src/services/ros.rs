@@ -374,7 +374,7 @@ async fn tell_faults(queue: &Mutex<Queue>) {
 }
 
 /// How services are offered and asked.
-pub(super) const SERVICE: Qos = Qos { is_reliable: true, depth: 100, is_latched: false };
+pub(super) const SERVICE: Qos = Qos::reliable(100);
 
 pub(super) fn reader(
     participant: &DomainParticipant,

@@ -200,7 +200,7 @@ impl RosNode {
     ) -> Result<Port, RosError> {
         let refused = |reason: String| RosError::Topic {
             topic: topic.name.clone(),
-            type_name: topic.type_name.to_owned(),
+            type_name: topic.message_type.name.to_owned(),
             reason,
         };
         let (namespace, base) =
@@ -208,7 +208,8 @@ impl RosNode {
         let namespace = if namespace.is_empty() { "/" } else { namespace };
         let name = Name::new(namespace, base).map_err(|it| refused(format!("{it:?}")))?;
         let (package, rest) = topic
-            .type_name
+            .message_type
+            .name
             .split_once("/msg/")
             .ok_or_else(|| refused("the type is not `package/msg/Type`".to_owned()))?;
         // A panic while another port was opened leaves the node as it was before that port.

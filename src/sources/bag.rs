@@ -78,7 +78,7 @@ impl Script {
         if gathered.commands.is_empty() {
             let known = topics.iter().filter(|it| it.is_input);
             let known: Vec<String> =
-                known.map(|it| format!("{} ({})", it.name, it.type_name)).collect();
+                known.map(|it| format!("{} ({})", it.name, it.message_type.name)).collect();
             let (path, known) = (path.to_owned(), known.join(", "));
             return Err(NoCommands::NoTopic { path, known });
         }
@@ -141,7 +141,7 @@ impl Gathered {
         let Some(index) = topics.iter().position(|it| it.is_input && it.name == *name) else {
             return;
         };
-        let has_type = message.channel.type_name() == topics[index].type_name;
+        let has_type = message.channel.type_name() == topics[index].message_type.name;
         let body = message.data.strip_prefix(&CDR_HEADER).filter(|_| has_type);
         match body.map(|cdr| codec.decode(index, cdr)) {
             Some(Ok(command)) => {

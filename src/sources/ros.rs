@@ -51,7 +51,7 @@ impl RosSource {
         for (index, topic) in topics.iter().enumerate().filter(|(_, it)| it.is_input) {
             let subscription = node.subscription::<Received>(topic)?;
             let encoder = Arc::clone(encoder);
-            let recode = Recode { type_name: topic.type_name };
+            let recode = Recode { type_name: topic.message_type.name };
             ears.push(Ear { index, name: topic.name.clone(), recode, subscription, encoder });
         }
         let (stop, stopped) = channel::bounded(1);
@@ -106,14 +106,9 @@ impl RosClock {
     /// # Errors
     /// When it cannot be opened.
     pub fn new(node: &Arc<RosNode>, name: &str) -> Result<Self, RosError> {
-        let topic = Topic {
-            name: name.to_owned(),
-            type_name: Clock::TYPE.name,
-            message_type: Clock::TYPE,
-            // Only the last one matters, and any publisher will do.
-            qos: Qos { is_reliable: false, depth: 1, is_latched: false },
-            is_input: true,
-        };
+        // Only the last one matters, and any publisher will do.
+        let qos = Qos { is_reliable: false, ..Qos::reliable(1) };
+        let topic = Topic::input::<Clock>(name, qos);
         let subscription = node.subscription::<Clock>(&topic)?;
         let time_ns = Arc::new(AtomicU64::new(0));
         let (stop, stopped) = channel::bounded(1);

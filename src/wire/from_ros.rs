@@ -109,7 +109,7 @@ impl CommandCodec {
     fn read<T: RosMessage>(&self, topic: usize, cdr: &[u8]) -> Result<T, NotACommand> {
         T::from_cdr(cdr).map_err(|fault| NotACommand::Malformed {
             topic: self.topics[topic].name.clone(),
-            type_name: self.topics[topic].type_name,
+            type_name: self.topics[topic].message_type.name,
             n_bytes: cdr.len(),
             fault: fault.to_string(),
         })

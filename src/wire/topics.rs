@@ -22,9 +22,7 @@ pub const NODE: &str = "/jamgrip";
 pub struct Topic {
     /// Full name, such as `/jamgrip/wrench`.
     pub name: String,
-    /// ROS 2 type, such as `geometry_msgs/msg/WrenchStamped`.
-    pub type_name: &'static str,
-    /// All that ROS 2 knows about the type.
+    /// Its type.
     pub message_type: MessageType,
     /// How it is offered.
     pub qos: Qos,
@@ -43,14 +41,26 @@ pub struct Qos {
     pub is_latched: bool,
 }
 
+impl Topic {
+    /// A topic that we publish, if messages `M` go by `qos` on it.
+    pub fn output<M: RosMessage>(name: &str, qos: Qos) -> Self {
+        Self { name: name.to_owned(), message_type: M::TYPE, qos, is_input: false }
+    }
+
+    /// The same, if we listen there.
+    pub fn input<M: RosMessage>(name: &str, qos: Qos) -> Self {
+        Self { is_input: true, ..Self::output::<M>(name, qos) }
+    }
+}
+
 impl Qos {
     /// Reliable, volatile.
-    const fn reliable(depth: u32) -> Self {
+    pub const fn reliable(depth: u32) -> Self {
         Self { is_reliable: true, depth, is_latched: false }
     }
 
     /// Reliable, transient local: who comes late gets the last one.
-    const fn latched() -> Self {
+    pub const fn latched() -> Self {
         Self { is_reliable: true, depth: 1, is_latched: true }
     }
 }
@@ -181,7 +191,6 @@ const OF_OBJECT: [Row<OfObject>; 4] = [
 pub fn topics(scene: &Scene) -> Vec<Topic> {
     let common = COMMON.iter().map(|&(_, name, message_type, qos, is_input)| Topic {
         name: full_name(&scene.outputs.ros, name),
-        type_name: message_type.name,
         message_type,
         qos,
         is_input,
@@ -189,7 +198,6 @@ pub fn topics(scene: &Scene) -> Vec<Topic> {
     let of_objects = scene.objects.iter().flat_map(|object| {
         OF_OBJECT.iter().map(|&(_, name, message_type, qos, is_input)| Topic {
             name: full_name(&scene.outputs.ros, &format!("~/object/{}/{name}", object.name)),
-            type_name: message_type.name,
             message_type,
             qos,
             is_input,
@@ -204,7 +212,6 @@ pub fn topics_of_guest(ros: &Ros, object: &str) -> Vec<Topic> {
     let outputs = OF_OBJECT.iter().filter(|it| !it.4);
     let topic = |&(_, name, message_type, qos, is_input): &Row<OfObject>| Topic {
         name: full_name(ros, &format!("~/object/{object}/{name}")),
-        type_name: message_type.name,
         message_type,
         qos,
         is_input,

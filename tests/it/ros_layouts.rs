@@ -38,7 +38,7 @@ fn layouts_name_what_there_is() {
                     .definition
                     .lines()
                     .any(|line| line.split_whitespace().nth(1).is_some_and(|it| it == field));
-                assert!(is_there, "{file}: `{}` has no `{field}`", topic.type_name);
+                assert!(is_there, "{file}: `{}` has no `{field}`", topic.message_type.name);
             }
         }
     }

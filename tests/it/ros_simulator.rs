@@ -14,7 +14,7 @@ use jamgrip::{
     wire::{
         cdr::Cdr,
         messages::{
-            RosMessage, RosService,
+            RosService,
             geometry_msgs::WrenchStamped,
             rcl_interfaces::{
                 DescribeParametersRequest, DescribeParametersResponse, GetParametersRequest,
@@ -253,10 +253,7 @@ fn parameters_are_listed_described_read_and_set() {
         assert_eq!(told.descriptors[0].floating_point_range.len(), 1);
         assert!(told.descriptors[1].read_only);
 
-        let kind = ParameterEvent::TYPE;
-        let qos = Qos { is_reliable: true, depth: 100, is_latched: false };
-        let (name, is_input) = ("/parameter_events".to_owned(), true);
-        let topic = Topic { name, type_name: kind.name, message_type: kind, qos, is_input };
+        let topic = Topic::input::<ParameterEvent>("/parameter_events", Qos::reliable(100));
         let events = node.subscription::<ParameterEvent>(&topic).unwrap();
         // The node's own writer there, which it never uses, and ours.
         wait_until("writers", || node.n_writers("/parameter_events") == 2);
@@ -304,10 +301,7 @@ fn rates_of_topics_are_parameters() {
         let folder = tempfile::tempdir().unwrap();
         let _program = Running::start(folder.path(), &["outputs.state_rate=1 kHz"]);
         let node = RosNode::join_as("operator", &reach()).unwrap();
-        let kind = WrenchStamped::TYPE;
-        let qos = Qos { is_reliable: true, depth: 1000, is_latched: false };
-        let (name, is_input) = ("/jamgrip/wrench".to_owned(), true);
-        let topic = Topic { name, type_name: kind.name, message_type: kind, qos, is_input };
+        let topic = Topic::input::<WrenchStamped>("/jamgrip/wrench", Qos::reliable(1000));
         let wrench = node.subscription::<WrenchStamped>(&topic).unwrap();
         let mut play = Client::of::<srv::SetSimulationState>(&node, "set_simulation_state");
         let mut step = Client::of::<srv::StepSimulation>(&node, "step_simulation");

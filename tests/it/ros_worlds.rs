@@ -6,7 +6,6 @@ use jamgrip::{
     sinks::ros::RosNode,
     wire::{
         messages::{
-            RosMessage,
             geometry_msgs::PoseStamped,
             shape_msgs::Mesh,
             simulation_interfaces::{
@@ -87,13 +86,7 @@ fn a_scene_is_filled_while_questions_are_answered() {
         // The filling takes a second or more, an answer some milliseconds.
         assert!(10 < n_answers, "{n_answers} questions were answered meanwhile");
 
-        let topic = Topic {
-            name: "/jamgrip/membrane/mesh".to_owned(),
-            type_name: Mesh::TYPE.name,
-            message_type: Mesh::TYPE,
-            qos: Qos { is_reliable: true, depth: 1, is_latched: true },
-            is_input: true,
-        };
+        let topic = Topic::input::<Mesh>("/jamgrip/membrane/mesh", Qos::latched());
         let mesh = node.subscription::<Mesh>(&topic).unwrap();
         let mut n_vertices = 0;
         wait_until("the mesh", || {
@@ -136,13 +129,7 @@ fn objects_that_come_later_have_topics() {
             SpawnEntityRequest { name, entity_resource, initial_pose, ..Default::default() };
         let answer: SpawnEntityResponse = spawn.ask(&request);
         assert_eq!(answer.result.result, Told::RESULT_OK, "{}", answer.result.error_message);
-        let topic = Topic {
-            name: "/jamgrip/object/guest/pose".to_owned(),
-            type_name: PoseStamped::TYPE.name,
-            message_type: PoseStamped::TYPE,
-            qos: Qos { is_reliable: true, depth: 100, is_latched: false },
-            is_input: true,
-        };
+        let topic = Topic::input::<PoseStamped>("/jamgrip/object/guest/pose", Qos::reliable(100));
         let poses = node.subscription::<PoseStamped>(&topic).unwrap();
         wait_until("its topics", || {
             let is_there = |it: &str| node.n_writers(&format!("/jamgrip/object/guest/{it}")) == 1;

@@ -21,7 +21,7 @@ use crate::{
     physics::{
         System,
         health::Diverged,
-        measure::{self, real, real_of},
+        measure::{self, real},
         packing::{
             Grown, Growth, Laws,
             grow::{self, Progress as Grow},
@@ -31,6 +31,9 @@ use crate::{
 
 /// Substeps after which the specimen's cross-section is measured anew, and rest is judged.
 const LOOK_EVERY: u64 = 50;
+/// Substeps after which the free membrane's substep is found anew. In that time grains move by some
+/// hundredths of their size, and finding it takes some hundredths of the time of the substeps.
+const PACE_EVERY: u64 = 4000;
 
 /// What is being done.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -65,6 +68,10 @@ pub(super) struct Course {
     pub(super) stage: Stage,
     /// Substeps in this stage.
     pub(super) n_in_stage: u64,
+    /// Time in this stage [s].
+    pub(super) time_in_stage: Real,
+    /// The present substep [s].
+    pub(super) substep: Real,
     growth: Grow,
     /// Cross-section when it was last measured [m²].
     area: Real,
@@ -102,6 +109,8 @@ impl Test {
         let course = Course {
             stage: Stage::Growing,
             n_in_stage: 0,
+            time_in_stage: 0.0,
+            substep: system.model.substep,
             growth: growth.progress(),
             area: gauges::volume(&system) / gauges::height(&system),
             plate_forces: [0.0; 2],
@@ -120,6 +129,7 @@ impl Test {
         } else {
             self.recipe.release(&mut self.system.model);
         }
+        self.system.model.substep = course.substep;
         let recipe = growth_recipe(&self.recipe, &self.system);
         self.growth = Growth::resumed(recipe, self.recipe.final_radii.clone(), course.growth);
         self.course = course;
@@ -128,6 +138,11 @@ impl Test {
     /// Goes on by one substep.
     pub(super) fn step(&mut self) {
         self.course.n_in_stage += 1;
+        if self.course.stage != Stage::Growing && self.course.n_in_stage.is_multiple_of(PACE_EVERY)
+        {
+            self.pace();
+        }
+        self.course.time_in_stage += self.course.substep;
         match self.course.stage {
             Stage::Growing => self.grow(),
             Stage::Confining => self.confine(),
@@ -135,6 +150,13 @@ impl Test {
             Stage::Shearing => self.shear(),
             Stage::Done => {}
         }
+    }
+
+    /// Takes the substep that the membrane bears in its present shape.
+    fn pace(&mut self) {
+        let System { model, state, .. } = &mut self.system;
+        model.substep = self.recipe.step(&model.membrane, &state.membrane.positions);
+        self.course.substep = model.substep;
     }
 
     /// Looks whether it can go on.
@@ -147,21 +169,22 @@ impl Test {
 
     /// Share of the whole work that is done, as far as it can be told.
     pub(super) fn share(&self) -> Real {
-        let setup = &self.recipe.setup;
-        let dt = self.recipe.step;
-        let growing = self.growth_time() / self.recipe.growth_step;
-        let confining = setup.confining.ramp / dt;
-        let resting = 0.5 * setup.confining.rest_time_max / dt;
-        let shearing = self.shear_time() / dt;
-        let of = |whole: Real| (real_of(self.course.n_in_stage) / whole).min(1.0) * whole;
-        let done = match self.course.stage {
-            Stage::Growing => of(growing),
-            Stage::Confining => growing + of(confining),
-            Stage::Resting => growing + confining + of(resting),
-            Stage::Shearing => growing + confining + resting + of(shearing),
+        let confining = &self.recipe.setup.confining;
+        let times =
+            [self.growth_time(), confining.ramp, 0.5 * confining.rest_time_max, self.shear_time()];
+        let before = match self.course.stage {
+            Stage::Growing => 0,
+            Stage::Confining => 1,
+            Stage::Resting => 2,
+            Stage::Shearing => 3,
             Stage::Done => return 1.0,
         };
-        (done / (growing + confining + resting + shearing)).min(0.999)
+        // In substeps of the free membrane's first shape, which cost the same in all stages.
+        let [growing, free] = [self.recipe.growth_step, self.recipe.first_step];
+        let work = |k: usize| times[k] / if k == 0 { growing } else { free };
+        let now = (self.course.time_in_stage / times[before]).min(1.0) * work(before);
+        let done = (0..before).map(work).sum::<Real>() + now;
+        (done / (0..times.len()).map(work).sum::<Real>()).min(0.999)
     }
 
     /// About the time growth takes [s].
@@ -191,14 +214,14 @@ impl Test {
         let contacts = gauges::carried(&self.system).coordination;
         logbook.set("coordination_grown", contacts, "1");
         self.recipe.release(&mut self.system.model);
+        self.course.substep = self.system.model.substep;
         // The lists tell who touches the membrane, and all of it is free to move now.
         self.system.scratch.neighbours.is_built = false;
         self.enter(Stage::Confining);
     }
 
     fn confine(&mut self) {
-        let n_ramp = self.recipe.setup.confining.ramp / self.recipe.step;
-        let share = (real_of(self.course.n_in_stage) / n_ramp).min(1.0);
+        let share = (self.course.time_in_stage / self.recipe.setup.confining.ramp).min(1.0);
         self.recipe.soften(&mut self.system.model, 1.0 - share);
         self.press(share);
         if share >= 1.0 {
@@ -217,7 +240,7 @@ impl Test {
         let moving = gauges::grain_energy(&self.system);
         let is_calm = moving < confining.rest_energy * carried.elastic_energy
             && missing.abs() < confining.rest_stress;
-        let time = real_of(self.course.n_in_stage) * self.recipe.step;
+        let time = self.course.time_in_stage;
         if is_calm || time >= confining.rest_time_max {
             self.drive([0.0; 2]);
             let logbook = &mut self.course.logbook;
@@ -232,8 +255,7 @@ impl Test {
 
     fn shear(&mut self) {
         let start = self.recipe.setup.shear.start_time;
-        let time = real_of(self.course.n_in_stage) * self.recipe.step;
-        let speed = 0.5 * self.speed * (time / start).min(1.0);
+        let speed = 0.5 * self.speed * (self.course.time_in_stage / start).min(1.0);
         self.drive([speed; 2]);
         self.advance();
         let forces = gauges::plate_forces(&self.system);
@@ -286,7 +308,7 @@ impl Test {
 
     /// Lets all speeds decay at `rate` [1/s] for a substep.
     fn damp(&mut self, rate: Real) {
-        let left = 1.0 - rate * self.recipe.step;
+        let left = 1.0 - rate * self.course.substep;
         let state = &mut self.system.state;
         let of_grains = state.grains.velocities.iter_mut().chain(&mut state.grains.spins);
         of_grains.chain(&mut state.membrane.velocities).for_each(|it| *it *= left);
@@ -296,6 +318,7 @@ impl Test {
         self.course.logbook.count(self.course.stage.name(), self.course.n_in_stage);
         self.course.stage = stage;
         self.course.n_in_stage = 0;
+        self.course.time_in_stage = 0.0;
     }
 }
 

@@ -44,8 +44,6 @@ pub(super) struct Time {
     pub(super) rayleigh_share: Real,
     /// Share of the critical step that is taken.
     pub(super) safety: Real,
-    /// Share of the sheet's critical step, which is that of its first shape, that deformed ones bear.
-    pub(super) sheet_share: Real,
 }
 
 /// The sheet and its contacts with grains.
@@ -219,7 +217,7 @@ pub(super) fn blank() -> Setup {
             check_rayleigh_share: NAN,
             timing: NAN,
         },
-        time: Time { rayleigh_share: NAN, safety: NAN, sheet_share: NAN },
+        time: Time { rayleigh_share: NAN, safety: NAN },
     }
 }
 
@@ -257,7 +255,6 @@ impl Keys for Setup {
             let share = Range::AboveUpTo(0.0, 1.0);
             walk.number("rayleigh_share", share, &mut self.time.rayleigh_share);
             walk.number("safety", share, &mut self.time.safety);
-            walk.number("sheet_share", share, &mut self.time.sheet_share);
         });
     }
 

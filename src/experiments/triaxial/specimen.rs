@@ -24,7 +24,8 @@ use crate::{
         },
         critical_step::{RAYLEIGH_SHARE, rayleigh_time},
         membrane::{
-            self, FREE, MembraneModel, SheetContact,
+            FREE, MembraneModel, SheetContact,
+            critical_step::critical_step_at,
             mesh::{Mesh, MeshFault},
         },
         model::ChamberModel,
@@ -84,8 +85,10 @@ pub(super) struct Recipe {
     pub(super) first_scale: Real,
     /// Substep while grains grow [s].
     pub(super) growth_step: Real,
-    /// Substep from then on [s].
-    pub(super) step: Real,
+    /// Substep of the free membrane in its first shape [s].
+    pub(super) first_step: Real,
+    /// Stiffness of the grains at a vertex [N/m] that the sheet's substep reckons with.
+    contact_stiffness: Real,
 }
 
 impl Recipe {
@@ -102,15 +105,18 @@ impl Recipe {
         let final_radii: Vec<Real> = (0..n_grains).map(|_| random.between(low, high)).collect();
         let room = Room::Tube { radius, bottom: -0.5 * height, top: 0.5 * height };
         let thin = setup.growth.first_solid_fraction;
-        let (growth_step, step) = substeps(setup, &model);
-        let recipe = Self {
+        let (membrane, law) = (&model.membrane, &model.membrane_law);
+        let pressure = setup.confining.pressure;
+        let mut recipe = Self {
             setup: setup.clone(),
             choice,
             first_scale: first_scale(&final_radii, thin, room.volume()),
             final_radii,
-            growth_step,
-            step,
+            growth_step: growth_step(setup),
+            first_step: Real::NAN,
+            contact_stiffness: stiffness_at_vertex(membrane, law, high, pressure),
         };
+        recipe.first_step = recipe.step(membrane, &membrane.mesh.positions);
         let system = recipe.scattered(model, &room);
         Ok((recipe, system))
     }
@@ -147,8 +153,22 @@ impl Recipe {
     /// The end rings are fixed to the plates, the rest of the membrane is free; grains are stiff.
     pub(super) fn release(&self, model: &mut Model) {
         fix_rings(model);
-        model.substep = self.step;
+        model.substep = self.first_step;
         self.soften(model, 0.0);
+    }
+
+    /// Substep of the free membrane [s] with its vertices at `positions`.
+    ///
+    /// Hinges with their first areas are damped as the cube of their edges' lengths: the sheet that
+    /// grains stretch by a third bears half the substep of the straight one.
+    ///
+    /// A packing rings where ω dt nears 2, and ω² ~ √(ξ/R): at 0.4 of the Rayleigh time for overlaps
+    /// of a tenth of a diameter, far later for those of stiff grains.
+    pub(super) fn step(&self, membrane: &MembraneModel, positions: &[Vec3]) -> Real {
+        let Setup { grains, time, .. } = &self.setup;
+        let packing = time.rayleigh_share * rayleigh_time(grains.radius_min, &grains.material);
+        let sheet = critical_step_at(membrane, positions, self.contact_stiffness);
+        time.safety * packing.min(sheet)
     }
 
     /// Laws of grains that are softer: 1 as while they grow, 0 as they are.
@@ -249,19 +269,9 @@ fn set_laws(setup: &Setup, model: &mut Model, softness: Real) {
     (model.grain_law, model.membrane_law) = (grains, sheet);
 }
 
-/// Substeps while grains grow in the held membrane, and from then on [s].
-///
-/// A packing rings where ω dt nears 2, and ω² ~ √(ξ/R): at 0.4 of the Rayleigh time for overlaps of a
-/// tenth of a diameter, far later for those of stiff grains.
-fn substeps(setup: &Setup, model: &Model) -> (Real, Real) {
-    let grains = &setup.grains;
-    let soft = Material { youngs_modulus: setup.growth.youngs_modulus, ..grains.material };
-    let growing = RAYLEIGH_SHARE * rayleigh_time(grains.radius_min, &soft);
-    let stiff = setup.time.rayleigh_share * rayleigh_time(grains.radius_min, &grains.material);
-    let (membrane, law) = (&model.membrane, &model.membrane_law);
-    let pressure = setup.confining.pressure;
-    let on_vertex = stiffness_at_vertex(membrane, law, grains.radius_max, pressure);
-    let first = membrane::critical_step::critical_step(membrane, on_vertex);
-    let (safety, sheet) = (setup.time.safety, setup.time.sheet_share * first);
-    (safety * growing, safety * stiff.min(sheet))
+/// Substep while grains grow in the held membrane [s].
+fn growth_step(setup: &Setup) -> Real {
+    let Setup { grains, growth, time, .. } = setup;
+    let soft = Material { youngs_modulus: growth.youngs_modulus, ..grains.material };
+    time.safety * RAYLEIGH_SHARE * rayleigh_time(grains.radius_min, &soft)
 }

@@ -12,7 +12,12 @@ use super::{
 use crate::{
     base::{Real, digest::Digest},
     experiments::{Progress, ResumeError, Run, kept, record::Record},
-    physics::{State, health::Diverged, measure::real, membrane::mesh::MeshFault},
+    physics::{
+        State,
+        health::Diverged,
+        measure::{real, real_of},
+        membrane::mesh::MeshFault,
+    },
 };
 
 /// Stage in which both are made ready.
@@ -81,14 +86,16 @@ impl Run for Timed {
         let is_growing = test.course.stage == Stage::Growing;
         let stage = if is_growing { READY } else { KINDS[which].name() };
         let n = slice(test);
+        let mut time = 0.0;
         for _ in 0..n {
             test.step();
+            time += test.course.substep;
             if is_growing && test.course.stage != Stage::Growing {
                 break;
             }
         }
         if !is_growing {
-            self.times[which] += real(n) * test.recipe.step;
+            self.times[which] += time;
             self.n_substeps[which] += n as u64;
         }
         test.check()?;
@@ -128,7 +135,8 @@ impl Run for Timed {
             test.system.state.digest(&mut digest);
             record.n_substeps.insert(name.to_owned(), self.n_substeps[which]);
             record.set(&format!("time_{name}"), self.times[which], "s");
-            record.set(&format!("substep_{name}"), test.recipe.step, "s");
+            let n = real_of(self.n_substeps[which]);
+            record.set(&format!("substep_{name}"), self.times[which] / n, "s");
         }
         record.digest = digest.finish();
         record

@@ -8,16 +8,17 @@
 //! ```
 //!
 //! The first unstable mode has the factor −1 per step: x' = −x makes dt² K + 2 dt C − 4 M singular.
-//! K and C are those of springs and hinges in the reference shape; contacts add their stiffness to
-//! every vertex. On a regular lattice ω² = 6 k/m without hinges. A strain ε of the sheet changes
-//! the limit by a share of about ε, which is what a safety factor on the step is for.
+//! K and C are those of springs and hinges in the reference shape or another; contacts add their
+//! stiffness to every vertex. On a regular lattice ω² = 6 k/m without hinges. A strain ε of the sheet
+//! changes the limit by a share of about ε, which is what a safety factor on the step is for; where
+//! damped hinges set it and have their first areas, by 3 ε.
 //!
 //! Eigenvalues come from power iteration. Bounds from rows or elements of the matrix (9 k/m and
 //! 12 k/m on the lattice) were rejected: they cost 20–40 % of the speed of a run. Since
 //! λ(s dt) ≤ s² λ(dt) for s > 1, steps dt ← dt √(4/λ) approach the limit from the safe side.
 
 use super::bridson_2003::Fold;
-use super::{FREE, Facet, Link, MembraneModel};
+use super::{FREE, Facet, MembraneModel, Side};
 use crate::base::{Real, Vec3, lanes::Vector};
 
 /// Iterations for the first eigenvalue: about a percent, whatever its neighbours.
@@ -32,6 +33,7 @@ const MARGIN: Real = 1.02;
 /// The sheet as a linear force law with weights on its stiffness and its damping.
 struct Linear<'a> {
     model: &'a MembraneModel,
+    positions: &'a [Vec3],
     folds: Vec<Option<Fold<Real>>>,
     contact_stiffness: Real,
 }
@@ -39,8 +41,17 @@ struct Linear<'a> {
 /// The longest stable substep [s] of a sheet whose vertices meet contacts of `contact_stiffness`
 /// [N/m] (0 for none).
 pub fn critical_step(model: &MembraneModel, contact_stiffness: Real) -> Real {
-    let folds = model.links.iter().map(|link| fold(model, link)).collect();
-    let linear = Linear { model, folds, contact_stiffness };
+    critical_step_at(model, &model.mesh.positions, contact_stiffness)
+}
+
+/// The same with the vertices at `positions`.
+pub fn critical_step_at(
+    model: &MembraneModel,
+    positions: &[Vec3],
+    contact_stiffness: Real,
+) -> Real {
+    let folds = (0..model.links.len()).map(|k| fold(model, positions, k)).collect();
+    let linear = Linear { model, positions, folds, contact_stiffness };
     let mut mode = irregular(model.mesh.n_vertices());
     let square = MARGIN * linear.largest_eigenvalue([1.0, 0.0], &mut mode, N_FIRST);
     let rate = MARGIN * linear.largest_eigenvalue([0.0, 1.0], &mut mode, N_FIRST);
@@ -62,11 +73,23 @@ fn irregular(n: usize) -> Vec<Vec3> {
     (0..n).map(at).collect()
 }
 
-/// The hinge of `link` in the reference shape; `None` on the boundary.
-fn fold(model: &MembraneModel, link: &Link) -> Option<Fold<Real>> {
-    let mesh = &model.mesh;
-    let [t1, t2] = link.triangles.map(|t| Facet::new(&mesh.positions, &mesh.triangles[t as usize]));
-    link.is_hinge().then(|| link.fold(&mesh.positions, [&t1, &t2]))
+/// The hinge of the `k`-th link; `None` on the boundary.
+fn fold(model: &MembraneModel, positions: &[Vec3], k: usize) -> Option<Fold<Real>> {
+    let link = &model.links[k];
+    if !link.is_hinge() {
+        return None;
+    }
+    let triangles = link.triangles.map(|t| &model.mesh.triangles[t as usize]);
+    let [t1, t2] = triangles.map(|triangle| Facet::new(positions, triangle));
+    let fold = link.fold(positions, [&t1, &t2]);
+    let [_, _, r3, r4] = link.corners(positions);
+    let first = model.first_areas.each_ref().map(|areas| areas.get(k).copied());
+    Some(match first {
+        [Some(one), Some(two)] => {
+            fold.with_areas([one, two], [Side::from(&t1), Side::from(&t2)], (r4 - r3).norm())
+        }
+        _ => fold,
+    })
 }
 
 impl Linear<'_> {
@@ -104,7 +127,7 @@ impl Linear<'_> {
         let mut y: Vec<Vec3> = x.iter().map(|x| x * (stiff * self.contact_stiffness)).collect();
         for (link, fold) in model.links.iter().zip(&self.folds) {
             let at = link.vertices.map(|v| v as usize);
-            let [_, _, r3, r4] = link.corners(&model.mesh.positions);
+            let [_, _, r3, r4] = link.corners(self.positions);
             let edge = r4 - r3;
             let length = edge.norm();
             let along = edge / length;
