@@ -15,10 +15,17 @@ pub struct Diverged {
     pub which: usize,
     /// Its value.
     pub value: Real,
-    /// The limit it exceeded, unless it is not the value that tells.
+    /// The limit it exceeded; none of a leak, which the value does not tell.
     pub limit: Option<Real>,
     /// What can be done.
     pub remedy: &'static str,
+}
+
+impl Diverged {
+    /// True if a grain has left the membrane; all is finite then.
+    pub fn is_leak(&self) -> bool {
+        self.limit.is_none()
+    }
 }
 
 fn beyond(limit: Option<Real>) -> String {

@@ -159,12 +159,20 @@ impl Test {
         self.course.substep = model.substep;
     }
 
-    /// Looks whether it can go on.
+    /// Looks whether it can go on. A membrane that leaks while it is sheared ends the test as it does
+    /// in the laboratory: what was recorded up to there counts.
     ///
     /// # Errors
     /// The first fault in a fixed order.
-    pub(super) fn check(&self) -> Result<(), Diverged> {
-        self.system.check(self.course.n_in_stage)
+    pub(super) fn check(&mut self) -> Result<(), Diverged> {
+        match self.system.check(self.course.n_in_stage) {
+            Err(fault) if fault.is_leak() && self.course.stage == Stage::Shearing => {
+                self.course.logbook.leak(&self.system);
+                self.enter(Stage::Done);
+                Ok(())
+            }
+            other => other,
+        }
     }
 
     /// Share of the whole work that is done, as far as it can be told.

@@ -56,10 +56,10 @@ pub(super) fn findings(setup: &Setup, records: &[Record]) -> Findings {
     let n_leaked: u64 = records.iter().map(|it| it.validity.n_leaked).sum();
     let told = Told {
         id: "C7.no_leak",
-        quantity: "grains that left the membrane, all specimens",
+        quantity: "specimens whose membrane let a grain through",
         unit: "1",
         oracle: "Götz (2024), section 3.3.1: the membrane holds the grains",
-        reason: "a whole number; a specimen that leaks ends with a fault and has no record",
+        reason: "a whole number; a specimen that leaks while it is sheared ends there, with its curve up to there",
     };
     findings.rows.push(Row::new(&told, Expected::at_most(0.0), real_of(n_leaked)));
     findings.notes.extend(notes(setup));

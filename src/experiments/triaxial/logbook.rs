@@ -117,6 +117,12 @@ impl Logbook {
         now >= strain * (1.0 - 1e-9)
     }
 
+    /// Notes that a grain has left the membrane.
+    pub(super) fn leak(&mut self, system: &System) {
+        self.validity.n_leaked = 1;
+        self.set("strain_of_leak", (self.height_0 / gauges::height(system)).ln(), "1");
+    }
+
     /// Writes a line, and begins new means.
     fn point(&mut self, system: &System) {
         let (height, volume) = (gauges::height(system), gauges::volume(system));
