@@ -191,3 +191,28 @@ fn spheres_let_the_smaller_grains_through_sooner_and_triangles_do_not() {
         assert!(strength(&none, RADIUS / 25.0) < 1e-12);
     });
 }
+
+/// Oracle: the sign of the distance is that of the nearest point (Bærentzen & Aanæs 2005). A pleat lays
+/// the sheet's outside behind its inside, well within a soft overlap.
+#[test]
+fn a_fold_behind_the_sheet_is_no_leak() {
+    alone(|| {
+        let radius = RADIUS;
+        let sheet = |depth: Real| {
+            let Mesh { positions, triangles, .. } = hexagon(2, EDGE);
+            let lower = positions.iter().map(|it| it - Vec3::z() * depth).collect();
+            Mesh::new(lower, triangles).unwrap()
+        };
+        let leaks = |mesh: Mesh| {
+            let mut rig = rig(mesh, SheetContact::Triangles, 1e-6);
+            let place = Vec3::new(0.4 * EDGE, 0.25 * EDGE, 0.8 * radius);
+            rig.add_grain(place, Vec3::zeros(), radius, MATERIAL.density);
+            rig.step();
+            assert_eq!(rig.scratch.patch_forces[0].n, 2, "both layers are within the overlap");
+            health::check(&rig.state, &rig.scratch, 0).is_err()
+        };
+        let turned = |mesh: Mesh| mesh.inside_out().unwrap();
+        assert!(!leaks(sheet(0.0).joined(&turned(sheet(0.1 * radius))).unwrap()));
+        assert!(leaks(turned(sheet(0.0)).joined(&sheet(0.1 * radius)).unwrap()));
+    });
+}

@@ -115,7 +115,10 @@ impl Grain<'_> {
         patches.n = minima.len();
         result.n = minima.len();
         result.torque = Vec3::zeros();
-        result.is_outside = false;
+        // The deepest come first. What the sheet's nearest point does not see outside is inside, whatever
+        // a fold behind it sees.
+        let nearest = minima.first().map(|it| &touched[it.place]);
+        result.is_outside = nearest.is_some_and(|it| self.is_outside(it, &self.arm(it), touched));
         for (slot, minimum) in minima.iter().enumerate() {
             let (it, share) = (&touched[minimum.place], shares[slot]);
             let [_, w0, w1, w2, ..] = self.found[it.place];
@@ -128,7 +131,6 @@ impl Grain<'_> {
             let spring = spring_of(&before, &minimum.normal);
             let mut patch = Patch { spring, normal: minimum.normal };
             let (force, torque) = self.of_patch(&contact, &mut patch);
-            result.is_outside |= self.is_outside(it, &contact.from_membrane, touched);
             result.contacts[slot] =
                 PatchForce { force: force.force * share, normal: force.normal * share, ..force };
             result.torque += torque * share;
