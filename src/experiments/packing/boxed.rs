@@ -3,11 +3,11 @@
 //! ```text
 //! grow to p_first      then, while p < p_last:    all diameters + c ⟨ξ/d⟩, rest, look
 //! without friction:    grow to p_high, and while p > p_low:   all diameters − c ⟨ξ/d⟩, rest, look
-//! moduli:              at the end once more larger by ε:      K = Δp / (3 ε)
+//! moduli:              at each pressure the small changes of `moduli`
 //! ```
 //!
 //! To enlarge all grains by a share is to compress the box by that share, since the law has no length
-//! of its own: K = dp/d(ln φ). Friction stays on all the time, so that packings with friction jam
+//! of its own. Friction stays on all the time, so that packings with friction jam
 //! where grains first hold each other. Without friction the way back is taken: it is reversible, and
 //! p(φ) follows Hertz.
 
@@ -19,6 +19,7 @@ use super::{
         record::{Column, Record},
     },
     Case,
+    moduli::Probe,
     sample::{self, SLICE, Settling, Unrest},
     scene::Scene,
 };
@@ -70,8 +71,9 @@ const COLUMNS: [(&str, &str); 10] = [
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 enum Stage {
     Growing,
-    /// Sizes change by a step in every substep; then they rest.
+    /// Sizes or the box change by a step in every substep; then they rest.
     Ramping {
+        what: Changes,
         time_left: Real,
         step: Real,
     },
@@ -80,26 +82,50 @@ enum Stage {
     Done,
 }
 
+/// What changes.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) enum Changes {
+    /// All diameters, by a common factor.
+    Sizes,
+    /// The box: longer along x, and shorter along y by the same factor.
+    Shape,
+}
+
+/// A state at rest.
+pub(super) struct Seen {
+    pub(super) pressure: Real,
+    /// σ_xx − σ_yy [Pa].
+    pub(super) difference: Real,
+    /// Mean overlap over diameter.
+    pub(super) overlap: Real,
+    pub(super) solid_fraction: Real,
+    pub(super) coordination: Real,
+}
+
 /// Where the case stands.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-struct Place {
+pub(super) struct Place {
     stage: Stage,
     growth: grow::Progress,
     scale: Real,
-    /// Pressure before the last small change, if that is being done [Pa].
-    probed_from: Option<Real>,
-    record: Record,
+    /// Factor by which the box is longer along x than it was.
+    stretch: Real,
+    /// The measurement that is being made.
+    pub(super) probe: Option<Probe>,
+    /// Pressures at which moduli have been measured.
+    pub(super) n_probed: usize,
+    pub(super) record: Record,
 }
 
 /// A case in the periodic box.
 pub(super) struct Boxed {
-    scene: Scene,
+    pub(super) scene: Scene,
     case: Case,
     final_radii: Vec<Real>,
     volume: Real,
     growth: Growth,
     system: System,
-    place: Place,
+    pub(super) place: Place,
 }
 
 impl Boxed {
@@ -112,7 +138,7 @@ impl Boxed {
         let final_radii = sample::final_radii(scene, count, is_mono);
         let solid: Real = final_radii.iter().map(|&r| sphere_volume(r)).sum();
         let volume = solid / FINAL_FRACTION;
-        let period = Vec3::repeat(volume.cbrt());
+        let period = period(volume, 1.0);
         let room = Room::Periodic { period };
         let scale = first_scale(&final_radii, scene.compression.thin, volume);
         let small: Vec<Real> = final_radii.iter().map(|r| scale * r).collect();
@@ -135,7 +161,9 @@ impl Boxed {
             stage: Stage::Growing,
             growth: growth.progress(),
             scale,
-            probed_from: None,
+            stretch: 1.0,
+            probe: None,
+            n_probed: 0,
             record,
         };
         let system = System::at_rest(model, Vec::new(), grains);
@@ -155,13 +183,18 @@ impl Boxed {
                     self.begin();
                 }
             }
-            Stage::Ramping { time_left, step } => {
-                self.place.scale += step;
-                grow::resize(&mut self.system, &self.final_radii, self.place.scale);
+            Stage::Ramping { what, time_left, step } => {
+                match what {
+                    Changes::Sizes => {
+                        self.place.scale += step;
+                        grow::resize(&mut self.system, &self.final_radii, self.place.scale);
+                    }
+                    Changes::Shape => self.stretch(step),
+                }
                 self.system.step();
                 let time_left = time_left - self.system.model.substep;
                 self.place.stage = if time_left > 0.0 {
-                    Stage::Ramping { time_left, step }
+                    Stage::Ramping { what, time_left, step }
                 } else {
                     Stage::Resting(Settling::default())
                 };
@@ -187,7 +220,8 @@ impl Boxed {
         self.place.stage = Stage::Resting(Settling::default());
         if friction(&self.scene, self.case) == 0.0 {
             let overlap = grow::mean_overlap(&self.system);
-            self.ramp(-self.scene.compression.share * overlap, self.place.growth.pressure);
+            let shrinks = -self.scene.compression.share * overlap;
+            self.ramp(Changes::Sizes, shrinks, self.place.growth.pressure);
         }
     }
 
@@ -201,29 +235,44 @@ impl Boxed {
         let pressure = stress::normal_pressure(state, scratch, self.volume);
         if !is_smooth && pressure < LOOSE * compression.pressure_first {
             // Growth ended in motion, and at rest the grains do not hold each other yet.
-            return self.ramp(compression.share * self.first_overlap(), Real::INFINITY);
+            let more = compression.share * self.first_overlap();
+            return self.ramp(Changes::Sizes, more, Real::INFINITY);
         }
         let n_max = compression.rest_time_max / model.substep;
         if !unrest.is_rest() && !sample::is_over(settling.n_done, n_max) {
             return;
         }
-        let (pressure, overlap) = self.write(&unrest);
-        let last = last_pressure(&self.scene, self.case);
-        if let Some(before) = self.place.probed_from {
-            let modulus = (pressure - before) / (3.0 * self.scene.moduli.probe);
-            self.place.record.set("bulk_modulus", modulus, "Pa");
-            self.finish();
-        } else if is_smooth && pressure > compression.pressure_low {
-            self.ramp(-compression.share * overlap, pressure);
-        } else if !is_smooth && pressure < REACHED * last {
-            // By Hertz the last pressure needs this share of the overlap more.
-            let share = compression.share.min((last / pressure).powf(2.0 / 3.0) - 1.0);
-            self.ramp(share * overlap.max(self.first_overlap()), pressure);
+        let seen = self.write(&unrest);
+        if let Some(probe) = self.place.probe.take() {
+            self.probed(probe, &seen);
+        }
+        let Seen { pressure, overlap, .. } = seen;
+        if self.place.probe.is_some() {
+            return;
+        }
+        let next = next_pressure(&self.scene, self.case, self.place.n_probed);
+        let Some(next) = next else { return self.finish() };
+        if is_smooth && pressure > compression.pressure_low {
+            self.ramp(Changes::Sizes, -compression.share * overlap, pressure);
+        } else if !is_smooth && pressure < REACHED * next {
+            // By Hertz the next pressure needs this share of the overlap more.
+            let share = compression.share.min((next / pressure).powf(2.0 / 3.0) - 1.0);
+            self.ramp(Changes::Sizes, share * overlap.max(self.first_overlap()), pressure);
         } else if self.case == Case::Moduli {
-            self.place.probed_from = Some(pressure);
-            self.ramp(self.scene.moduli.probe, pressure);
+            self.probe(&seen);
         } else {
             self.finish();
+        }
+    }
+
+    /// Makes the box longer along x and narrower along y, and moves all grains with it.
+    fn stretch(&mut self, step: Real) {
+        let by = 1.0 + step / self.place.stretch;
+        self.place.stretch += step;
+        self.system.model.period = Some(period(self.volume, self.place.stretch));
+        for position in &mut self.system.state.grains.positions {
+            position.x *= by;
+            position.y /= by;
         }
     }
 
@@ -233,8 +282,9 @@ impl Boxed {
         (self.scene.compression.pressure_first / stiffness).powf(2.0 / 3.0)
     }
 
-    /// Makes all grains, which are now under `pressure` [Pa], larger by the share `growth`, steadily.
-    fn ramp(&mut self, growth: Real, pressure: Real) {
+    /// Makes all grains, which are now under `pressure` [Pa], or the box larger by the share `growth`,
+    /// steadily.
+    pub(super) fn ramp(&mut self, what: Changes, growth: Real, pressure: Real) {
         let (compression, grains) = (&self.scene.compression, &self.scene.grains);
         let rate = growth / compression.ramp_time;
         let diameter = 2.0 * grains.radius_mean();
@@ -242,12 +292,16 @@ impl Boxed {
         let seen = &mut self.place.record.validity.inertial_number_max;
         *seen = seen.max(number);
         let n = (compression.ramp_time / compression.substep).ceil();
-        let step = self.place.scale * growth / n;
-        self.place.stage = Stage::Ramping { time_left: compression.ramp_time, step };
+        let from = match what {
+            Changes::Sizes => self.place.scale,
+            Changes::Shape => self.place.stretch,
+        };
+        let (step, time_left) = (from * growth / n, compression.ramp_time);
+        self.place.stage = Stage::Ramping { what, time_left, step };
     }
 
-    /// Adds a row; returns pressure [Pa] and mean overlap over diameter.
-    fn write(&mut self, unrest: &Unrest) -> (Real, Real) {
+    /// Adds a row.
+    fn write(&mut self, unrest: &Unrest) -> Seen {
         let System { model, state, scratch, .. } = &self.system;
         let sigma = stress::contact_stress(model, state, scratch, self.volume);
         let pressure = sigma.trace() / 3.0;
@@ -257,8 +311,15 @@ impl Boxed {
         let packing = packing(state, scratch);
         let overlap = grow::mean_overlap(&self.system);
         let overlap_max = packing.overlap_max / (2.0 * self.place.scale * model.radius_mean);
+        let seen = Seen {
+            pressure,
+            difference: sigma[(0, 0)] - sigma[(1, 1)],
+            overlap,
+            solid_fraction: grain_volume(state) / self.volume,
+            coordination: coordination.mean,
+        };
         let row = [
-            grain_volume(state) / self.volume,
+            seen.solid_fraction,
             pressure,
             coordination.mean,
             coordination.backbone,
@@ -278,7 +339,7 @@ impl Boxed {
         validity.unbalanced_force = validity.unbalanced_force.max(unrest.unbalanced);
         let anisotropy = (sigma - nalgebra::Matrix3::identity() * pressure).norm() / pressure;
         record.set("stress_anisotropy", anisotropy, "1");
-        (pressure, overlap)
+        seen
     }
 
     /// Writes what is only looked at in the last state.
@@ -313,7 +374,11 @@ impl Boxed {
         let (from, to) = if friction(&self.scene, self.case) == 0.0 {
             (compression.pressure_high, compression.pressure_low)
         } else {
-            (compression.pressure_first, last_pressure(&self.scene, self.case))
+            let last = match self.case {
+                Case::Moduli => *self.scene.moduli.pressures.last().unwrap_or(&Real::NAN),
+                _ => compression.pressure_last,
+            };
+            (compression.pressure_first, last)
         };
         let pressures = self.place.record.column("pressure").unwrap_or_default();
         match (self.place.stage, pressures.last()) {
@@ -334,9 +399,18 @@ fn friction(scene: &Scene, case: Case) -> Real {
     }
 }
 
-/// Where compression with friction ends [Pa].
-fn last_pressure(scene: &Scene, case: Case) -> Real {
-    if case == Case::Moduli { scene.moduli.pressure } else { scene.compression.pressure_last }
+/// Where compression with friction rests next, when moduli have been measured `n_probed` times; `None`
+/// at the end [Pa].
+fn next_pressure(scene: &Scene, case: Case, n_probed: usize) -> Option<Real> {
+    match case {
+        Case::Moduli => scene.moduli.pressures.get(n_probed).copied(),
+        _ => Some(scene.compression.pressure_last),
+    }
+}
+
+/// A cube of `volume` [m³] that is longer along x by the factor `stretch`, and shorter along y.
+fn period(volume: Real, stretch: Real) -> Vec3 {
+    volume.cbrt() * Vec3::new(stretch, stretch.recip(), 1.0)
 }
 
 /// Growth with the friction of the case.
@@ -373,6 +447,7 @@ impl Run for Boxed {
         kept::of_one_scene(&state, &self.system.state)?;
         let mut model = self.system.model.clone();
         model.radius_max = state.grains.radii.iter().copied().fold(model.radius_max, Real::max);
+        model.period = Some(period(self.volume, place.stretch));
         let controls = self.system.controls.clone();
         let friction = friction(&self.scene, self.case);
         let recipe = recipe(&self.scene, &model, self.volume, friction);

@@ -3,17 +3,14 @@
 //! ```text
 //! φ_J  from φ = φ_J + a p^(2/3) through the three lowest pressures          (Hertz)
 //! z_J  from z = z_J + b √(φ − φ_J) through the same states
-//! K_EMT = [z² φ² G² p / (18 π² (1 − ν)²)]^(1/3)      effective medium, G of the grains (Walton 1987)
 //! ```
-
-use std::f64::consts::PI;
 
 use super::{
     super::{
         findings::{Curve, Expected, Findings, Quantity, Row, Told},
         record::Record,
     },
-    Case, fit, plots,
+    Case, fit, moduli, plots,
     scene::Scene,
 };
 use crate::base::Real;
@@ -84,7 +81,7 @@ pub(super) fn findings(scene: &Scene, records: &[Record]) -> Findings {
         None => missing("poly_smooth", "C6", &mut findings),
     }
     match of(Case::Moduli) {
-        Some(record) => modulus_row(scene, record, &mut findings),
+        Some(record) => moduli::rows(scene, record, &mut findings),
         None => missing("moduli", "U21", &mut findings),
     }
     match of(Case::Confined) {
@@ -117,7 +114,7 @@ fn curves(records: &[Record], findings: &mut Findings) {
     }
 }
 
-fn quantity(name: &str, meaning: &str, value: Real, unit: &str) -> Quantity {
+pub(super) fn quantity(name: &str, meaning: &str, value: Real, unit: &str) -> Quantity {
     Quantity {
         name: name.to_owned(),
         meaning: meaning.to_owned(),
@@ -354,39 +351,6 @@ fn growth_rows(scene: &Scene, record: &Record, findings: &mut Findings) {
         Expected::within(uniform, 0.05 * uniform),
         record.scalar("radius_spread").unwrap_or(Real::NAN),
     );
-}
-
-/// U21: the bulk modulus.
-fn modulus_row(scene: &Scene, record: &Record, findings: &mut Findings) {
-    let column = |name| record.column(name).unwrap_or_default();
-    // The last state is the one after the small change.
-    let before = column("pressure").len().checked_sub(2);
-    let at = |name| before.and_then(|k| column(name).get(k)).copied().unwrap_or(Real::NAN);
-    let (phi, p, z) = (at("solid_fraction"), at("pressure"), at("coordination"));
-    let material = &scene.grains.material;
-    let shear = material.youngs_modulus / (2.0 * (1.0 + material.poisson_ratio));
-    let inside =
-        (z * phi * shear).powi(2) * p / (18.0 * (PI * (1.0 - material.poisson_ratio)).powi(2));
-    let emt = inside.cbrt();
-    let modulus = record.scalar("bulk_modulus").unwrap_or(Real::NAN);
-    findings.quantities.push(quantity(
-        "bulk_modulus",
-        "of the packing at the seeds' vacuum",
-        modulus,
-        "Pa",
-    ));
-    findings.quantities.push(quantity("bulk_modulus_emt", "by effective-medium theory", emt, "Pa"));
-    findings.rows.push(Row::new(
-        &Told {
-            id: "U21.bulk_modulus",
-            quantity: "bulk modulus over that of effective-medium theory",
-            unit: "1",
-            oracle: "0.7 to 1.0: the theory moves all grains affinely, real ones relax (Makse et al. 1999)",
-            reason: "a range from the literature",
-        },
-        Expected::between(0.7, 1.0),
-        modulus / emt,
-    ));
 }
 
 /// U22: stress inside equals pressure outside.

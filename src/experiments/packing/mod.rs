@@ -10,6 +10,7 @@ mod boxed; // grains in a periodic box
 mod confined; // grains in a closed membrane
 mod evaluate; // what the records show
 mod fit; // straight lines
+mod moduli; // bulk and shear modulus of a packing at rest
 mod plots; // pictures
 
 mod sample; // grains, drag, rest

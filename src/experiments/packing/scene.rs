@@ -78,13 +78,13 @@ pub(super) struct Compression {
     pub(super) rest_time_max: Real,
 }
 
-/// The case whose bulk modulus is measured.
+/// The case whose elastic moduli are measured.
 #[derive(Clone, Debug)]
 pub(super) struct Moduli {
     pub(super) friction: Real,
-    /// [Pa]
-    pub(super) pressure: Real,
-    /// Relative change of all diameters.
+    /// Where they are measured, rising [Pa].
+    pub(super) pressures: Vec<Real>,
+    /// Strain of a measurement over the mean overlap of the contacts.
     pub(super) probe: Real,
 }
 
@@ -135,7 +135,7 @@ pub(super) fn blank() -> Scene {
             ramp_time: NAN,
             rest_time_max: NAN,
         },
-        moduli: Moduli { friction: NAN, pressure: NAN, probe: NAN },
+        moduli: Moduli { friction: NAN, pressures: Vec::new(), probe: NAN },
         confined: Confined {
             count: 0,
             friction: NAN,
@@ -160,8 +160,8 @@ impl Keys for Scene {
         walk.section("moduli", |walk| {
             let it = &mut self.moduli;
             walk.number("friction", Range::Above(0.0), &mut it.friction);
-            walk.quantity("pressure", Quantity::above_zero(&PRESSURE), &mut it.pressure);
-            walk.number("probe", Range::AboveUpTo(0.0, 0.01), &mut it.probe);
+            walk.quantities("pressures", Quantity::above_zero(&PRESSURE), &mut it.pressures);
+            walk.number("probe", Range::AboveUpTo(0.0, 0.1), &mut it.probe);
         });
         walk.section("confined", |walk| confined(walk, &mut self.confined));
     }
@@ -171,6 +171,10 @@ impl Keys for Scene {
         if self.grains.radius_max < self.grains.radius_min {
             let reason = "is below grains.radius_min".to_owned();
             unfit.push(("grains.radius_max", reason, "give the larger one here"));
+        }
+        if self.moduli.pressures.is_empty() || !self.moduli.pressures.is_sorted() {
+            let reason = "has no pressure, or one below the one before".to_owned();
+            unfit.push(("moduli.pressures", reason, "give rising ones: grains are compressed"));
         }
         let it = &self.compression;
         if it.pressure_last < it.pressure_first {
