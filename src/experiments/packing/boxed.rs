@@ -30,6 +30,7 @@ use crate::{
     },
     physics::{
         Model, System,
+        contact::grains::closest_image,
         health::Diverged,
         measure::{
             coordination::{NEEDED_ROUGH, NEEDED_SMOOTH, coordination},
@@ -265,15 +266,28 @@ impl Boxed {
         }
     }
 
-    /// Makes the box longer along x and narrower along y, and moves all grains with it.
+    /// Makes the box longer along x and narrower along y, and moves all grains with it. Springs of
+    /// friction, which know motion by velocities, are told of this one.
     fn stretch(&mut self, step: Real) {
         let by = 1.0 + step / self.place.stretch;
-        self.place.stretch += step;
-        self.system.model.period = Some(period(self.volume, self.place.stretch));
-        for position in &mut self.system.state.grains.positions {
+        let System { model, state, scratch, .. } = &mut self.system;
+        let before = period(self.volume, self.place.stretch);
+        let springs = state.springs.pairs.iter_mut().zip(&state.pair_ids);
+        for ((spring, [i, j]), force) in springs.zip(&scratch.pair_forces) {
+            if force.overlap > 0.0 {
+                let [first, second] = [i, j].map(|&it| state.grains.positions[it as usize]);
+                let branch = closest_image(first - second, &before);
+                let moved = Vec3::new(branch.x * (by - 1.0), branch.y * (by.recip() - 1.0), 0.0);
+                let normal = branch.normalize();
+                *spring += moved - normal * normal.dot(&moved);
+            }
+        }
+        for position in &mut state.grains.positions {
             position.x *= by;
             position.y /= by;
         }
+        self.place.stretch += step;
+        model.period = Some(period(self.volume, self.place.stretch));
     }
 
     /// Mean overlap over diameter at the first pressure, by Hertz and within a factor of two.

@@ -81,7 +81,8 @@ fn the_critical_step_separates_rest_from_blow_up() {
 #[test]
 fn a_stretched_sheet_with_first_areas_bears_a_shorter_step() {
     let stretch = 1.3;
-    let mut model = model_of(Mesh::hexagonal_patch(3e-3, 8), rubber(1e-3, 1e-2));
+    // Flat and without bending stiffness: only damping knows of motion across the sheet.
+    let mut model = model_of(Mesh::hexagonal_patch(3e-3, 8), rubber(0.0, 1e-2));
     model.bend_by_first_areas();
     let stretched: Vec<Vec3> = model.mesh.positions.iter().map(|r| r * stretch).collect();
     let ratio = critical_step_at(&model, &stretched, 0.0) / critical_step(&model, 0.0);
