@@ -112,7 +112,8 @@ pub(crate) fn fill<K: Keys>(layers: &Layers<'_>, mut keys: K) -> Result<K, Scene
     if faults.is_empty() {
         faults.extend(keys.unfit().into_iter().map(|(key, reason, remedy)| {
             let node = tree.at(key).unwrap_or(&tree);
-            let problem = Problem::Unfit { value: node.describe(), reason, remedy };
+            let value = node.describe().trim_matches('`').to_owned();
+            let problem = Problem::Unfit { value, reason, remedy };
             Fault { place: node.place.clone(), key: key.to_owned(), problem }
         }));
     }

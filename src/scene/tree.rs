@@ -128,7 +128,10 @@ impl Node {
             Value::Whole(number) => format!("`{number}`"),
             Value::Real(number) => format!("`{number}`"),
             Value::Text(text) => format!("`{text}`"),
-            Value::List(_) => "a list".to_owned(),
+            Value::List(items) => {
+                let items: Vec<String> = items.iter().map(Self::describe).collect();
+                format!("`[{}]`", items.join(", ").replace('`', ""))
+            }
             Value::Map(_) => "a map".to_owned(),
         }
     }
