@@ -44,7 +44,8 @@ fn off_centre(scene: &Scene, turn: &nalgebra::Rotation3<Real>) -> (Bench, Real) 
     let encounter = Encounter::equal(grain.radius, grain.material, grain.surface, 0.5);
     let dt = encounter.collision().duration() / real(scene.steps_per_contact);
     let mut bench = Bench::on_plane(&grain.material, grain.surface, dt);
-    let high = Vec3::z() * (20.0 * grain.radius);
+    // Clear of the plane, and no higher: the further from the origin, the more is rounded.
+    let high = Vec3::z() * (4.0 * grain.radius);
     for (place, radius) in [(Vec3::zeros(), 1.0), (Vec3::new(1.46, 0.25, 0.3), 0.5)] {
         let position = high + turn * place * grain.radius;
         bench.add_grain(position, radius * grain.radius, grain.material.density);

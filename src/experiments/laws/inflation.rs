@@ -28,6 +28,13 @@ use crate::{
     },
 };
 
+/// Force on a vertex over the air's load on it that counts as none.
+const REST: Real = 1e-4;
+/// Substeps between two looks at the kinetic energy.
+const STOP_EVERY: usize = 20;
+/// Substeps after which a sheet that still moves is taken as it is; the scene's take some thousands.
+const N_STEPS_MAX: usize = 100_000;
+
 pub(super) struct Inflation;
 
 impl Law for Inflation {
@@ -67,22 +74,42 @@ fn bag(scene: &Scene) -> Sheet {
     Sheet { bending_stiffness: 0.0, bending_damping: 0.0, spring_damping: 0.5, ..sheet }
 }
 
-/// Lets the sheet come to rest under `pressure` [Pa] and the `pull` on each vertex [N].
-fn settle(model: &MembraneModel, state: &mut MembraneState, pressure: Real, pull: &[Vec3]) {
+/// Lets the free vertices come to rest under `pressure` [Pa] and the `pull` on each vertex [N].
+///
+/// Kinetic damping (Cundall 1976): all are stopped behind each peak of the kinetic energy, until what
+/// is left of the forces counts for nothing against the air's.
+fn settle(
+    model: &MembraneModel,
+    state: &mut MembraneState,
+    pressure: Real,
+    (pull, is_free): (&[Vec3], &dyn Fn(usize) -> bool),
+) {
     let dt = 0.5 * critical_step(model, 0.0);
     let mut scratch = MembraneScratch::new(model);
-    for _ in 0..40 {
-        for _ in 0..50 {
-            forces(model, state, pressure, &mut scratch);
-            for v in 0..state.positions.len() {
-                let force = scratch.forces[v] + pull[v];
-                state.velocities[v] += force * (dt / model.masses[v]);
-                state.positions[v] += state.velocities[v] * dt;
-            }
+    let free: Vec<usize> = (0..state.positions.len()).filter(|&v| is_free(v)).collect();
+    let areas = model.mesh.vertex_areas();
+    let load = pressure * areas.iter().copied().fold(Real::INFINITY, Real::min);
+    let mut last = 0.0;
+    for step in 0..N_STEPS_MAX {
+        forces(model, state, pressure, &mut scratch);
+        let (mut energy, mut unbalanced) = (0.0, 0.0_f64);
+        for &v in &free {
+            let force = scratch.forces[v] + pull[v];
+            unbalanced = unbalanced.max(force.norm());
+            state.velocities[v] += force * (dt / model.masses[v]);
+            state.positions[v] += state.velocities[v] * dt;
+            energy += model.masses[v] * state.velocities[v].norm_squared();
         }
-        // Slow modes are hardly damped by springs: what they have gained is taken out.
-        for velocity in &mut state.velocities {
-            *velocity *= 0.3;
+        if unbalanced < REST * load {
+            return;
+        }
+        // Looked at now and then: quick modes have their own peaks, which are not those of slow ones.
+        if step % STOP_EVERY == 0 {
+            if energy < last {
+                state.velocities.fill(Vec3::zeros());
+                energy = 0.0;
+            }
+            last = energy;
         }
     }
 }
@@ -93,7 +120,8 @@ fn sphere(scene: &Scene, share: Real, record: &mut Record) {
     let model = MembraneModel::new(mesh, bag(scene));
     let mut state = MembraneState::at_rest(&model.mesh);
     let overpressure = share * scene.laplace.pressure_max;
-    settle(&model, &mut state, overpressure, &vec![Vec3::zeros(); model.masses.len()]);
+    let pull = vec![Vec3::zeros(); model.masses.len()];
+    settle(&model, &mut state, overpressure, (&pull, &|_| true));
     let volume = |positions: &[Vec3]| pressure::volume(&model.mesh, positions);
     let found = (volume(&state.positions) / volume(&model.mesh.positions)).cbrt() - 1.0;
     let in_plane = model.sheet.youngs_modulus * model.sheet.thickness;
@@ -120,7 +148,7 @@ fn cylinder(scene: &Scene, record: &mut Record) {
         })
         .collect();
     let mut state = MembraneState::at_rest(&model.mesh);
-    settle(&model, &mut state, overpressure, &pull);
+    settle(&model, &mut state, overpressure, (&pull, &|_| true));
     let row_mean = |row: usize, of: &dyn Fn(&Vec3) -> Real| {
         let vertices = (0..state.positions.len()).filter(|&v| in_row(v, row));
         vertices.map(|v| of(&state.positions[v])).sum::<Real>() / real(n_around)
@@ -152,8 +180,6 @@ const N_RINGS: usize = 24;
 const TAUT: Real = 0.05;
 /// How far the middle is to rise over the disc's radius: the slope adds a thousandth to the stretch.
 const RISE: Real = 0.01;
-/// Substeps: some twenty swings of the disc.
-const N_SWINGING: usize = 8000;
 
 /// A flat sheet that is stretched and held around a circle bulges as a paraboloid.
 fn disc(scene: &Scene, record: &mut Record) {
@@ -171,23 +197,9 @@ fn disc(scene: &Scene, record: &mut Record) {
     let tension = 3.0_f64.sqrt() * spring * TAUT / (1.0 + TAUT);
     let overpressure = 4.0 * tension * RISE / radius;
     let mut state = MembraneState::at_rest(&model.mesh);
-    let mut scratch = MembraneScratch::new(&model);
-    let dt = 0.5 * critical_step(&model, 0.0);
-    let mut last = 0.0;
-    for _ in 0..N_SWINGING {
-        forces(&model, &state, overpressure, &mut scratch);
-        let mut energy = 0.0;
-        for v in (0..state.positions.len()).filter(|&v| is_free(&model.mesh.positions[v])) {
-            state.velocities[v] += scratch.forces[v] * (dt / model.masses[v]);
-            state.positions[v] += state.velocities[v] * dt;
-            energy += model.masses[v] * state.velocities[v].norm_squared();
-        }
-        // Kinetic damping: stopped behind each peak of the energy.
-        if energy < last {
-            state.velocities.fill(Vec3::zeros());
-        }
-        last = energy;
-    }
+    let pull = vec![Vec3::zeros(); model.masses.len()];
+    let first = &model.mesh.positions;
+    settle(&model, &mut state, overpressure, (&pull, &|v| is_free(&first[v])));
     let middle = state.positions.iter().map(|p| p.z).fold(0.0, Real::max);
     record.set("U13.disc", middle / (RISE * radius), "1");
 }
