@@ -2,10 +2,13 @@
 //! surface, and the work of the pressure (Götz 2024, eqs. 30, 31).
 //!
 //! ```text
-//! sphere    ΔR/R = p R (1 − ν)/(2 E d)
+//! sphere    ΔR/R = ε,  ε = s (1 + ε)²,   s = p R (1 − ν)/(2 E d)
 //! cylinder  ε_θ = p R/(E d) (1 − ν/2),  ε_z = p R/(E d) (1/2 − ν)
 //! disc      w = p a²/(4 T),             T = √3 k ε of edges stretched by ε
 //! ```
+//!
+//! The sphere's factor (1 + ε)² is Laplace at the present radius, with springs that are linear in it:
+//! the last 0.7 % at a strain of 0.36 %.
 
 use std::collections::BTreeSet;
 
@@ -125,7 +128,8 @@ fn sphere(scene: &Scene, share: Real, record: &mut Record) {
     let volume = |positions: &[Vec3]| pressure::volume(&model.mesh, positions);
     let found = (volume(&state.positions) / volume(&model.mesh.positions)).cbrt() - 1.0;
     let in_plane = model.sheet.youngs_modulus * model.sheet.thickness;
-    let oracle = overpressure * radius / (3.0 * in_plane);
+    let small = overpressure * radius / (3.0 * in_plane);
+    let oracle = (1.0 - 2.0 * small - (1.0 - 4.0 * small).sqrt()) / (2.0 * small);
     push(record, "pressure", "Pa", overpressure);
     push(record, "strain", "1", found);
     push(record, "strain_laplace", "1", oracle);
@@ -244,9 +248,9 @@ const ROWS: &[Line] = &[
     (
         "U13.sphere",
         "largest relative error of ΔR/R of a sphere under inner pressure",
-        "Laplace: p R (1 − ν)/(2 E d)",
+        "Laplace at the present radius: ε = s (1 + ε)², s = p R (1 − ν)/(2 E d)",
         Expected::at_most(0.01),
-        "1 %: edges of an icosphere differ by 15 %, and strains of up to 0.4 % are not small to 1e-3",
+        "1 %: edges of an icosphere differ by 15 %",
     ),
     (
         "U13.cylinder_hoop",
