@@ -117,3 +117,62 @@ pub(super) fn take(test: &mut Test, course: Course, state: State) -> Result<(), 
 fn whole(value: Real) -> usize {
     value.round().max(1.0) as usize
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{
+        super::{Triaxial, setup},
+        *,
+    };
+    use crate::{
+        experiments::{Experiment, SceneText, Size},
+        scene::text::fill,
+    };
+
+    /// A specimen of 60 grains.
+    fn small() -> Sheared {
+        let overrides = [
+            "case1.radius=8 mm",
+            "case1.height=30 mm",
+            "case1.triangles.n_around=14",
+            "case1.triangles.n_rows=10",
+            "case1.triangles.n_grains_a=50",
+        ]
+        .map(str::to_owned);
+        let (source, text) = Triaxial.scene();
+        let scene = SceneText { text, source, overrides: &overrides, size: Size::Quick };
+        let setup = fill(&scene.layers(false), setup::blank()).unwrap();
+        let choice = Choice { size: 0, kind: Kind::Triangles, initial: 0 };
+        Sheared::new(&setup, "small", choice, Variant::Plain).unwrap()
+    }
+
+    /// Goes on until a stage has lasted for three slices.
+    fn go_to(run: &mut Sheared, stage: Stage) {
+        let mut n_slices = 0;
+        while n_slices < 3 {
+            run.advance().unwrap();
+            n_slices += usize::from(run.test.course.stage == stage);
+        }
+    }
+
+    /// Oracle: the contract. Under shear a leak ends the test with its curve; before, there is none.
+    #[test]
+    fn a_leak_under_shear_ends_the_test_with_its_curve() {
+        let mut run = small();
+        go_to(&mut run, Stage::Growing);
+        run.test.system.scratch.leaked = Some(7);
+        assert!(run.advance().unwrap_err().is_leak());
+
+        let mut run = small();
+        go_to(&mut run, Stage::Shearing);
+        let strains = run.record().column("strain").unwrap().to_vec();
+        run.test.system.scratch.leaked = Some(7);
+        assert!(run.advance().unwrap().is_done);
+        let record = run.record();
+        assert_eq!(record.validity.n_leaked, 1);
+        assert!(record.validity.faults().iter().any(|it| it.contains("left the membrane")));
+        let now = record.column("strain").unwrap();
+        assert!(now.starts_with(&strains) && !now.is_empty(), "{now:?}");
+        assert!(now[now.len() - 1] <= record.scalar("strain_of_leak").unwrap());
+    }
+}
