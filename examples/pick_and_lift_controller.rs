@@ -21,11 +21,11 @@ use jamgrip::{
     base::{Pose, Quat, Vec3},
     command::Command,
     controller::{Observation, Phase, PickAndLift},
-    scene::{self, Controller, Scene},
-    sinks::{
-        reach::Reach,
-        ros::{Body, LOG_FILTER, Publisher, RosError, RosNode, Subscription},
+    ros::{
+        discovery::Reach,
+        node::{Body, LOG_FILTER, Publisher, RosError, RosNode, Subscription},
     },
+    scene::{self, Controller, Scene},
     wire::{
         from_ros::CommandCodec,
         messages::{

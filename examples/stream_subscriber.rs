@@ -12,9 +12,9 @@ use std::{
     time::{Duration, Instant},
 };
 
-use jamgrip::{
-    sinks::shm::{Services, prefix},
-    wire::rows::StateRow,
+use jamgrip::shm::{
+    rows::StateRow,
+    stream::{Services, prefix},
 };
 
 /// What arrived since the last line.

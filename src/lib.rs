@@ -1,25 +1,30 @@
-//! `jamgrip`: co-simulation of granular jamming grippers for ROS 2.
+//! Co-simulation of granular jamming grippers for ROS 2.
 //!
-//! This list is the table of contents and the law: a module uses only modules listed above it.
+//! This list is the table of contents and the dependency order: a module uses only modules listed
+//! above it. `tests/architecture.rs` checks that.
 
-pub mod base; // words that everything shares
+pub mod base; // vectors, ticks, digests, random streams, threads, SIMD lanes
 pub mod scene; // text to checked numbers
 pub mod physics; // grains, membrane, chamber
 pub mod cosim; // one tick of the coupled system
-pub mod command; // what the outside may ask
+pub mod command; // inputs of a session
 pub mod session; // one run in memory
-pub mod snapshot; // what the outside may see
-pub mod controller; // who asks, if nobody outside does
-pub mod experiments; // validated experiments, cut into cases
-pub mod wire; // bytes for the outside
+pub mod snapshot; // outputs of a session
+pub mod controller; // the built-in pick-and-lift controller
+pub mod experiments; // validation experiments, divided into cases
+pub mod host; // clock, signals, files, terminal
+pub mod report; // pages and plots
+pub mod runner; // runs experiments: threads, files, reports
+pub mod wire; // ROS 2 messages and their encoding
+pub mod io; // sinks, sources and their queues
+#[cfg(feature = "ros")]
+pub mod ros; // the ROS 2 node
+#[cfg(feature = "shm")]
+pub mod shm; // zero-copy streams
 #[cfg(feature = "bag")]
-pub mod bag; // what a recording is, written and read
-pub mod sinks; // where snapshots go
-pub mod sources; // where commands come from
-pub mod services; // where questions come in and answers go out
-pub mod simulator; // what ROS 2 users may ask of a simulator
-pub mod node; // the running thing
+pub mod bag; // recordings, written and read
+pub mod simulator; // simulation_interfaces and gripper services
+pub mod node; // the running node
 #[cfg(feature = "bag")]
-pub mod replay; // recordings, run again
-pub mod lab; // runs experiments: threads, files, reports
-pub mod benchmarks; // how fast it is
+pub mod replay; // plays, verifies and branches recordings
+pub mod benchmarks; // performance cases

@@ -7,8 +7,11 @@ use std::{
 };
 
 use jamgrip::{
-    services::{Offer, ros::RosClient},
-    sinks::ros::{RosNode, Subscription},
+    io::server::Offer,
+    ros::{
+        node::{RosNode, Subscription},
+        service::RosClient,
+    },
     wire::{
         cdr::Cdr,
         messages::{

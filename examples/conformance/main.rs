@@ -24,9 +24,8 @@ use std::{
 use checks::{Outcome, Verdict};
 use client::Client;
 use jamgrip::{
+    ros::{discovery::Reach, node::RosNode, service::Way},
     scene::Ros,
-    services::ros::Way,
-    sinks::{reach::Reach, ros::RosNode},
 };
 
 /// What was asked for on the command line.

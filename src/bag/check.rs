@@ -14,7 +14,7 @@ use super::{
     reader::{ChunkNote, Item, Reader},
     recording::Recording,
 };
-use crate::scene::plain;
+use crate::scene::json;
 
 /// Something that is not as it should be.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -173,7 +173,7 @@ fn check_metadata(path: &Path, info: &Info) -> Vec<Finding> {
         }
         Err(error) => return vec![finding(true, format!("cannot be read: {error}"))],
     };
-    let tree = match plain::parse(&text, &path.display().to_string()) {
+    let tree = match json::parse(&text, &path.display().to_string()) {
         Ok(tree) => tree,
         Err(error) => return vec![finding(true, format!("{error}; {rewrite}"))],
     };

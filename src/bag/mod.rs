@@ -12,7 +12,9 @@ pub mod info; // what is in it, counted
 pub mod metadata; // what a recording says about itself
 pub mod reader; // records of a file, however damaged
 pub mod recording; // what is needed to run it again
-pub mod recover; // what can be saved of a damaged one
+pub mod recover; // repairs a damaged file
+pub mod sink; // writes a recording
+pub mod source; // commands from a recording
 pub mod writer; // one file
 
 use std::{

@@ -1,10 +1,10 @@
 //! What is measured. A closed list: a new case adds its line here.
 
 use super::{
-    laps::Work,
     packing::{Boxed, Phase},
     prepare::{Moment, Spot},
-    soundness::Limits,
+    repetitions::Work,
+    sanity::Limits,
 };
 
 /// One case.

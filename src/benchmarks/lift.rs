@@ -3,19 +3,17 @@
 use std::{collections::BTreeMap, path::Path};
 
 use super::{
-    BenchError, Case, Figures, Options,
-    figures::{Stage, median, processor_share as share},
-    process,
-    soundness::{Seen, check_lift},
+    BenchError, Case, Figures, Options, process,
+    result::{Stage, median, processor_share as share},
+    sanity::{Seen, check_lift},
 };
 use crate::{
     base::{Real, lanes},
     cosim::compile::Compiled,
+    host::{clock::Stopwatch, progress_bar::Progress},
     node::{
-        judge::Judge,
-        orders::Orders,
-        pacer::Stopwatch,
-        progress::Progress,
+        command_sources::Orders,
+        lift_monitor::Judge,
         schedule::Schedule,
         start::{self, Started},
     },

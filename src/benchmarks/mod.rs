@@ -7,29 +7,29 @@
 //! speeds are looked at: an empty, exploded or frozen system would look fast.
 
 mod beam; // grains in a closed bar
-mod cases; // what is measured
-pub mod figures; // what is told of a case
+mod cases; // the list of cases
+pub mod history_csv; // results kept over time
 #[cfg(all(feature = "ros", feature = "shm"))]
-mod latency; // of the loop
-mod laps; // stepping and timing
+mod latency; // latency of the loop
 mod lift; // a whole session
 mod packing; // grains in a box
-mod peers; // the same in other codes
-mod prepare; // states to start from
-mod process; // what the system tells
-pub mod sheet; // figures kept over time
-mod soundness; // is it worth measuring?
+mod prepare; // initial states
+mod process; // resource use of the process
+mod reference_codes; // the same cases in other DEM codes
+mod repetitions; // stepping and timing
+pub mod result; // the result of a case
+mod sanity; // checks of the system that is measured
 
 pub use beam::BeamError;
 pub use cases::{CASES, Case};
-pub use figures::Figures;
 #[cfg(all(feature = "ros", feature = "shm"))]
 pub use latency::{Latency, LatencyError, PrivateError, listen};
-pub use peers::{PeerError, PeerFigures};
-pub use soundness::Unsound;
+pub use reference_codes::{PeerError, PeerFigures};
+pub use result::Figures;
+pub use sanity::Unsound;
 
 use crate::{
-    experiments, lab::fault::LabError, node, node::cache::Cache, physics::health::Diverged,
+    experiments, host::cache::Cache, node, physics::health::Diverged, runner::error::LabError,
     scene::SceneError,
 };
 
@@ -170,7 +170,7 @@ pub fn run(case: &Case, options: &Options) -> Result<Figures, BenchError> {
         #[cfg(all(feature = "ros", feature = "shm"))]
         cases::Kind::Latency => latency::run(case, options),
         cases::Kind::Grains(..) | cases::Kind::Beam | cases::Kind::Experiment(..) => {
-            let mut course = laps::Course::new(case, options)?;
+            let mut course = repetitions::Course::new(case, options)?;
             let mut peers = course.peers()?;
             while !course.is_over() {
                 course.lap()?;

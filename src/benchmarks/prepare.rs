@@ -5,9 +5,9 @@ use crate::{
     base::{Real, digest::Digest, parallel},
     cosim::saved_state,
     experiments::{Run, SceneText, Size, StartError},
-    lab::study::by_name,
-    node::{cache::Found, progress::Progress},
+    host::{cache::Found, progress_bar::Progress},
     physics::{State, System, health::Diverged},
+    runner::experiment::by_name,
 };
 
 /// A system that can be stepped, and what is done to it after each substep.

@@ -4,9 +4,9 @@
 //! recorded too.
 
 pub mod apply;
-pub mod change; // what no body could do by moving
-mod saved_change; // the same as bytes
-mod saved_desk; // what was commanded, as bytes
+pub mod change; // discontinuous changes between ticks
+mod saved_change; // changes as bytes
+mod saved_setpoints; // setpoints as bytes
 
 /// One wish of the outside.
 #[derive(Clone, Debug, PartialEq)]

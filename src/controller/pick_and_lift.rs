@@ -299,7 +299,7 @@ fn pose_command(seen: &Observation, position: &Vec3) -> Command {
 
 #[cfg(test)]
 mod tests {
-    use super::{super::toy::Toy, *};
+    use super::{super::mock_plant::Toy, *};
 
     fn parameters() -> scene::PickAndLift {
         scene::PickAndLift {

@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{number, record::Column};
+use super::{number_format, record::Column};
 use crate::physics::measure::real;
 
 /// All that the records show.
@@ -29,7 +29,7 @@ pub struct Quantity {
     /// What it is.
     pub meaning: String,
     /// Its value.
-    #[serde(with = "number::one")]
+    #[serde(with = "number_format::one")]
     pub value: f64,
     /// Standard deviation over repetitions, if there are any.
     pub deviation: Option<f64>,
@@ -105,10 +105,10 @@ pub struct Series {
     /// Where it comes from.
     pub kind: Kind,
     /// Points x, y.
-    #[serde(with = "number::points")]
+    #[serde(with = "number_format::points")]
     pub points: Vec<[f64; 2]>,
     /// Standard deviation of each y; empty without.
-    #[serde(with = "number::many")]
+    #[serde(with = "number_format::many")]
     pub deviations: Vec<f64>,
 }
 
@@ -136,17 +136,17 @@ pub struct Row {
     /// Unit, `1` without one.
     pub unit: String,
     /// Expected value.
-    #[serde(with = "number::one")]
+    #[serde(with = "number_format::one")]
     pub oracle: f64,
     /// Where it comes from: law, paper with figure or table, computation.
     pub oracle_source: String,
     /// How measured and oracle must relate.
     pub relation: Relation,
     /// Allowed distance from the oracle; 0 where the relation is a bound.
-    #[serde(with = "number::one")]
+    #[serde(with = "number_format::one")]
     pub tolerance: f64,
     /// What came out.
-    #[serde(with = "number::one")]
+    #[serde(with = "number_format::one")]
     pub measured: f64,
     /// True if the relation holds.
     pub pass: bool,

@@ -5,15 +5,15 @@
 //! without any clock or file, the plan makes its findings: quantities, curves, plots, and rows in
 //! which a measured value stands beside its oracle. Tests, reports and benches run the same cases.
 
-pub mod findings; // what was found
+pub mod findings; // results and verdicts
 pub mod gripper; // the force that holds an object
 pub mod hollow_sphere; // how much vacuum reaches an object
-mod kept; // a run as bytes
 pub mod laws; // closed forms, equation by equation
-mod number; // numbers in text
+mod number_format; // numbers in text
 pub mod oracles; // closed forms to compare with
 pub mod packing; // dense packings and what they bear
-pub mod record; // what a case leaves
+pub mod record; // the record of a case
+mod saved_run; // a run as bytes
 pub mod slide; // a ball drawn over a membrane
 pub mod triaxial; // grains under confining pressure
 

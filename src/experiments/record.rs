@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::number;
+use super::number_format;
 
 /// A list of numbers with a name and a unit.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -15,7 +15,7 @@ pub struct Column {
     /// Unit, `1` without one.
     pub unit: String,
     /// The numbers.
-    #[serde(with = "number::many")]
+    #[serde(with = "number_format::many")]
     pub values: Vec<f64>,
 }
 
@@ -30,7 +30,7 @@ impl Column {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Scalar {
     /// Its value.
-    #[serde(with = "number::one")]
+    #[serde(with = "number_format::one")]
     pub value: f64,
     /// Its unit, `1` without one.
     pub unit: String,
@@ -99,15 +99,15 @@ pub const UNBALANCED_LIMIT: f64 = 1e-2;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Validity {
     /// Largest overlap between two grains over their mean diameter.
-    #[serde(with = "number::one")]
+    #[serde(with = "number_format::one")]
     pub overlap_over_diameter_max: f64,
     /// Grains that left the membrane.
     pub n_leaked: u64,
     /// Mean unbalanced force over mean contact force where the run claims rest.
-    #[serde(with = "number::one")]
+    #[serde(with = "number_format::one")]
     pub unbalanced_force: f64,
     /// Largest inertial number of the stages that claim to be quasi-static.
-    #[serde(with = "number::one")]
+    #[serde(with = "number_format::one")]
     pub inertial_number_max: f64,
 }
 

@@ -4,27 +4,24 @@ use std::{path::PathBuf, sync::Arc, time::Duration};
 
 use super::{
     Crew, Ending, Report,
-    cache::Cache,
-    doors::{Doors, Outside, Sizes},
-    front::Front,
-    judge::Judge,
+    command_sources::Orders,
+    connect::{Doors, Outside, Sizes},
+    lift_monitor::Judge,
     loader::Loader,
     lockstep::Gate,
-    orders::Orders,
-    outlets::Closed,
-    pacer::Pacer,
+    outputs::Closed,
     plant::Plant,
-    progress::Progress,
     schedule::Schedule,
-    shutdown::Shutdown,
+    server::Front,
     start::{self, StartError, Started},
     summary::Summary,
 };
+use crate::host::{cache::Cache, clock::Pacer, progress_bar::Progress, shutdown::Shutdown};
 use crate::{
     cosim::compile::Compiled,
+    io::sink::RunStatistics,
     physics::health::Diverged,
     scene::{Controller, Lockstep, Scene},
-    sinks::RunStatistics,
     wire::to_ros::Encoder,
 };
 
@@ -101,7 +98,7 @@ pub fn launch(scene: &Scene, options: &Options) -> Result<Finished, RunError> {
 pub fn launch_by(
     scene: &Scene,
     options: &Options,
-    script: crate::sources::bag::Script,
+    script: crate::bag::source::Script,
 ) -> Result<Finished, RunError> {
     let begin = |compiled: Compiled, progress: &Progress| {
         Ok(start::start(compiled, options.n_threads, &options.cache, progress)?)

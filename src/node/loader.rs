@@ -6,11 +6,8 @@ use std::{
     thread,
 };
 
-use super::{
-    cache::Cache,
-    progress::Progress,
-    start::{self, StartError},
-};
+use super::start::{self, StartError};
+use crate::host::{cache::Cache, progress_bar::Progress};
 use crate::{cosim::compile::Compiled, scene::Scene};
 
 /// Settles scenes, one at a time.

@@ -1,42 +1,34 @@
 //! The running thing: commands in, a tick, results out, and so on until there is a reason to end.
 
-pub mod cache; // settled start states on disk
-mod doors; // recording, streams, ROS 2
-pub mod front; // the simulator at its bench
-pub mod judge; // what came of a run
-pub mod launch; // scene to a run
-pub mod loader; // scenes that are loaded while the run goes on
+pub mod command_sources; // controllers, topics, recordings
+mod connect; // opens recording, streams and ROS 2
+pub mod launch; // from a scene to a run
+pub mod lift_monitor; // metrics of the lift
+pub mod loader; // loads scenes while the run goes on
 pub mod lockstep; // ticks that wait for a controller
-pub mod orders; // who may command
-pub mod outlets; // where results go
-pub mod pacer; // the only clock
-pub mod plant; // what runs
-pub mod progress; // one line for the terminal
-pub mod ros_args; // what ROS 2 tools put on a command line
+pub mod outputs; // encoder and sinks
+pub mod plant; // the system that runs
 pub mod schedule; // what is due when
-pub mod sealed; // files that are whole or not there
-pub mod shutdown; // Ctrl-C
-pub mod start; // a settled bag, from the cache or from scratch
-pub mod summary; // what is left at the end
+pub mod server; // serves requests between ticks
+pub mod start; // the filled bag, from the cache or computed
+pub mod summary; // the summary of a run
 
 use std::{fmt, mem, sync::Arc, time::Duration};
 
 use self::{
-    front::Front,
-    judge::Judge,
+    command_sources::Orders,
+    lift_monitor::Judge,
     lockstep::{Gate, Missed},
-    orders::Orders,
-    outlets::Outlets,
-    pacer::Pacer,
+    outputs::Outlets,
     plant::Plant,
-    progress::Progress,
     schedule::{Parts, Schedule},
-    shutdown::Shutdown,
+    server::Front,
 };
+use crate::host::{clock::Pacer, progress_bar::Progress, shutdown::Shutdown};
 use crate::{
     command::change::Change,
+    io::sink::{Packet, RunStatistics},
     simulator::World,
-    sinks::{Packet, RunStatistics},
     snapshot::{Snapshot, checkpoint::Checkpoint},
 };
 
@@ -265,10 +257,14 @@ impl Crew {
         if is_waiting && pacer.is_due(WAITING_RATE) {
             self.outlets.publish(&plant.view(&seen.snapshot), seen);
         }
-        let patience = if self.gate.is_lockstep() { pacer::NAP } else { pacer::PAUSE };
+        let patience = if self.gate.is_lockstep() {
+            crate::host::clock::NAP
+        } else {
+            crate::host::clock::PAUSE
+        };
         match &mut self.front {
             Some(front) => front.wait(patience),
-            None => pacer::pause(),
+            None => crate::host::clock::pause(),
         }
         pacer.stand_still();
         let is_playing = self.front.as_ref().is_none_or(|it| it.simulator().may_tick());

@@ -1,8 +1,8 @@
 //! A session at its first tick: with a settled bag from the cache, or settled now and kept.
 
-use super::{
+use crate::host::{
     cache::{Cache, Found},
-    progress::Progress,
+    progress_bar::Progress,
 };
 use crate::{
     cosim::compile::{CompileError, Compiled},

@@ -8,8 +8,11 @@ use std::{
 use comfy_table::Table;
 use serde_json::{Map, Value, json};
 
-use super::judge::Verdict;
-use crate::{command::CommandCounts, sinks::SinkCounters, sources::SourceCounters};
+use super::lift_monitor::Verdict;
+use crate::{
+    command::CommandCounts,
+    io::{sink::SinkCounters, source::SourceCounters},
+};
 
 /// Everything worth saying about a run.
 #[derive(Clone, Debug)]

@@ -15,11 +15,14 @@ use crate::{
         Command, CommandCounts,
         change::{Change, ChangeRefused},
     },
+    io::{
+        fanout::Delivery,
+        sink::Sink,
+        source::{Source, SourceCounters},
+    },
     scene,
     simulator::Subject,
-    sinks::{Sink, fanout::Delivery},
     snapshot::{BodySnapshot, ChamberSnapshot, JammingSnapshot, ObjectSnapshot, view::View},
-    sources::{Source, SourceCounters},
 };
 
 const TICK_NS: u64 = 1_000_000;

@@ -2,16 +2,16 @@
 //! on, the recorded commands throughout.
 
 use super::{
-    again::{Again, ReplayError},
+    recorded_run::{Again, ReplayError},
     seconds,
 };
 use crate::{
     bag::recording::Alteration,
     cosim::compile::Compiled,
+    host::progress_bar::Progress,
     node::{
+        command_sources::Orders,
         launch::{self, Finished, RunError},
-        orders::Orders,
-        progress::Progress,
         start::Started,
     },
     scene::{Grains, Membrane, Scene, SceneError},

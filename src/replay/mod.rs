@@ -1,17 +1,19 @@
 //! Recordings, run again.
 
-pub mod again; // a run from what is in a recording
 pub mod branch; // a new run from a recorded moment
-pub mod crew; // parts of it side by side
-pub mod cue; // what is wanted of one that plays
-pub mod history; // which releases changed results
-pub mod part; // from one checkpoint to the next
-pub mod play; // publishes again with the original timing
+pub mod compatibility; // which releases changed results
+pub mod page; // a recording as an HTML page
+mod page_data; // what the page shows over time
+pub mod play; // publishes a recording with its original timing
+pub mod player_command; // pause, seek, rate
 #[cfg(feature = "ros")]
-pub mod prompter; // services that give cues
+pub mod player_node; // publishes the recorded messages
 #[cfg(feature = "ros")]
-pub mod stage; // where played messages go
-pub mod verify; // is every tick as it was?
+pub mod player_services; // the services of rosbag2's player
+pub mod recorded_run; // a run set up from a recording
+pub mod segment; // from one checkpoint to the next
+pub mod verify; // compares the digest of every tick
+pub mod workers; // segments in parallel
 
 /// A time for people [s].
 fn seconds(time_ns: u64) -> f64 {

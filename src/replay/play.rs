@@ -17,13 +17,13 @@ use std::{
     time::Duration,
 };
 
-use super::cue::{Answer, Asked, Cue};
+use super::player_command::{Answer, Asked, Cue};
 use crate::{
     bag::{
         index::Index,
         reader::{Channel, Item, Reader, Recorded, items},
     },
-    node::{pacer::Playhead, shutdown::Shutdown},
+    host::{clock::Playhead, shutdown::Shutdown},
 };
 
 /// Topic of simulated time.

@@ -1,22 +1,17 @@
 //! Is every tick as it was recorded? The run is simulated again, and every digest compared.
 
 use super::{
-    again::{Again, ReplayError},
-    crew::{Crew, Hands},
-    history,
-    part::{self, Difference, Start},
+    compatibility,
+    recorded_run::{Again, ReplayError},
+    segment::{self, Difference, Start},
+    workers::{Crew, Hands},
 };
 use crate::{
     bag::recording::Alteration,
     command::change::Change,
     cosim::compile::Compiled,
-    node::{
-        cache::Cache,
-        pacer::Stopwatch,
-        progress::Progress,
-        shutdown::Shutdown,
-        start::{self, Started},
-    },
+    host::{cache::Cache, clock::Stopwatch, progress_bar::Progress, shutdown::Shutdown},
+    node::start::{self, Started},
     session::Session,
 };
 
@@ -95,10 +90,10 @@ pub fn verify(again: &Again, options: &Options<'_>) -> Result<Verdict, ReplayErr
     // Beyond a gap commands are missing.
     let last = course.gap_after.unwrap_or(u64::MAX).min(course.last_tick());
     let last = options.to_ns.map_or(last, |end_ns| last.min(end_ns / tick_ns));
-    let mut parts = part::cut(start.clone(), last, &course.checkpoints);
+    let mut parts = segment::cut(start.clone(), last, &course.checkpoints);
     let (n_jobs, n_threads) = options.hands.shared_out(parts.len());
     if n_jobs == 1 {
-        parts = part::cut(start, last, &[]);
+        parts = segment::cut(start, last, &[]);
     }
     options.progress.running(Some(last * tick_ns));
     let stopwatch = Stopwatch::start();
@@ -207,7 +202,7 @@ fn blame(again: &Again) -> Vec<String> {
         std::env::consts::OS,
         std::env::consts::ARCH
     )];
-    let changes = history::changes_since(version);
+    let changes = compatibility::changes_since(version);
     found.extend(changes.into_iter().map(|it| format!("what changed results since then: {it}")));
     found
 }

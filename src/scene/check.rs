@@ -4,8 +4,9 @@
 //! raises no second fault.
 
 use super::{
-    Controller, Object, PickAndLift, Scene, Shape, extent,
-    fault::{Fault, Problem},
+    Controller, Object, PickAndLift, Scene, Shape,
+    error::{Fault, Problem},
+    extent,
     quantity::{Dimension, FREQUENCY, LENGTH, PRESSURE, SPEED, TIME},
     text::DEFAULTS_FILE,
     tree::{Node, Place},

@@ -4,15 +4,14 @@
 //! `text` is the way from YAML to here: `yaml` makes a tree with places, `schema` walks its keys
 //! with their units and limits, `check` joins them; all faults come at once. `print` goes back.
 
-pub mod fault; // what can be wrong
-pub mod plain; // YAML that is no scene
+pub mod error; // what can be wrong with a scene
+pub mod json; // YAML to JSON
 pub mod print; // scene to text
 pub mod quantity; // "2 mm"
-pub mod resource; // objects that others name
-pub mod ros_parameters; // files of parameters
+pub mod resource; // objects described in other files
+pub mod ros_parameters; // parameter files
 pub mod text; // text to scene
 
-pub(crate) mod blank;
 mod check;
 mod extent;
 mod mesh_file;
@@ -20,10 +19,11 @@ mod read;
 pub(crate) mod schema;
 mod tree;
 mod urdf;
-pub(crate) mod walk;
+pub(crate) mod unset;
+pub(crate) mod visit;
 mod yaml;
 
-pub use fault::SceneError;
+pub use error::SceneError;
 pub use print::to_yaml;
 pub use text::{load, parse};
 

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::{
     Scene, schema,
-    walk::{Quantity, Range, Walk},
+    visit::{Quantity, Range, Walk},
 };
 use crate::base::{Real, Vec3};
 

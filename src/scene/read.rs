@@ -1,10 +1,10 @@
 //! Fills a scene from a tree and collects all faults on the way.
 
 use super::{
-    fault::{Fault, Problem, near_matches},
+    error::{Fault, Problem, near_matches},
     quantity::Dimension,
     tree::{Node, Value},
-    walk::{Quantity, Range, Walk},
+    visit::{Quantity, Range, Walk},
 };
 use crate::base::{Real, Vec3};
 

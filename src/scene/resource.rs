@@ -7,7 +7,7 @@ use std::{
 
 use super::{
     Object, Scene,
-    fault::{Problem, SceneError},
+    error::{Problem, SceneError},
     text, urdf,
 };
 

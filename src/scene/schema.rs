@@ -10,7 +10,7 @@ use super::{
         ACCELERATION, ANGLE, ANGULAR_ACCELERATION, ANGULAR_SPEED, DENSITY, FORCE, FREQUENCY,
         IMPULSE, LENGTH, PRESSURE, PRESSURE_RATE, SPEED, TIME, TORQUE,
     },
-    walk::{Quantity, Range, Walk},
+    visit::{Quantity, Range, Walk},
 };
 use crate::base::{Pose, Quat, Real, Vec3};
 

@@ -3,13 +3,14 @@
 use std::path::Path;
 
 use super::{
-    Scene, Shape, blank, check,
-    fault::{Fault, Problem, SceneError},
+    Scene, Shape, check,
+    error::{Fault, Problem, SceneError},
     mesh_file,
     read::Reader,
     schema,
     tree::{Entry, Node, Place, Value},
-    walk::Walk,
+    unset,
+    visit::Walk,
     yaml,
 };
 
@@ -49,7 +50,7 @@ pub fn parse(
         tree.lay(one_override(text)?);
     }
     tree.place = Place::whole(source);
-    let mut scene = blank::scene();
+    let mut scene = unset::scene();
     let mut reader = Reader::new(&tree, &defaults);
     schema::scene(&mut reader, &mut scene);
     let mut faults = reader.finish();

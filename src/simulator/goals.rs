@@ -5,12 +5,12 @@ use serde::Serialize;
 
 use super::{
     Simulator, Unreadable,
-    asks::{Action, channels_of},
     entities::stamp,
     failed, ok,
+    services::{Action, channels_of},
 };
 use crate::{
-    services::{Asker, Outgoing},
+    io::server::{Asker, Outgoing},
     snapshot::Snapshot,
     wire::{
         actions::{GetResultRequest, GetResultResponse, SendGoalRequest, SendGoalResponse},

@@ -6,7 +6,7 @@
 //! something and can draw no further. A new goal aborts the one before, a cancelled one keeps the
 //! pressure that it has come to.
 
-use super::{Simulator, World, asks::Action, goals::GoalId};
+use super::{Simulator, World, goals::GoalId, services::Action};
 use crate::{
     command::{
         Command,

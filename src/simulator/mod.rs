@@ -9,37 +9,37 @@
 //! states says; a step of a simulation that is not paused is `RESULT_OPERATION_FAILED`, as
 //! the service's comment says. A name filter may match anywhere in a name, as POSIX expressions do.
 
-pub mod asks; // the closed list of questions
-mod bounds; // how far things reach
-mod entities; // what is there
-mod filters; // which of it is meant
+mod bounds; // bounding volumes of entities
+mod entities; // the entities of the world
+mod entity_info; // category, tags, description
+mod filters; // entity filters
 mod goals; // actions
-mod gripper; // as drivers of vacuum grippers know theirs
-mod parameters; // as ROS 2 tools know them
-mod places; // places with names
+mod gripper; // vacuum gripper interfaces
+mod named_poses; // named poses
+mod parameters; // ROS 2 parameters
 mod running; // states, steps, resets
-mod spawning; // objects in and out
-mod tags; // what is said of entities
-mod worlds; // other scenes
+pub mod services; // the closed list of services
+mod spawning; // spawns and deletes objects
+mod worlds; // loads and unloads worlds
 
 use std::{
     cell::RefCell,
     path::{Path, PathBuf},
 };
 
-pub use asks::{Ask, Asked, asked};
 use serde::{Serialize, de::DeserializeOwned};
+pub use services::{Ask, Asked, asked};
 
-use self::{goals::Goals, gripper::Grip, running::Running, tags::Register, worlds::Loading};
+use self::{entity_info::Register, goals::Goals, gripper::Grip, running::Running, worlds::Loading};
 use crate::{
     base::real::Twist,
     command::{
         Command,
         change::{Change, ChangeRefused},
     },
+    io::server::{Asker, Call, Outgoing},
     physics::boundary::shape::Aabb,
     scene::{Outputs, Scene, resource::Shelf},
-    services::{Asker, Call, Outgoing},
     snapshot::Snapshot,
     wire::{
         cdr::Cdr,

@@ -4,19 +4,21 @@
 //! runs; they act from the next tick on and survive resets. The others are told only. What was changed
 //! is told on `/parameter_events`.
 
-use super::{Simulator, World, asks::parameter_events, entities::stamp};
+use super::{Simulator, World, entities::stamp, services::parameter_events};
 use crate::{
     command::change::{Change, Knob},
+    io::server::Outgoing,
     scene::{Outputs, Scene},
-    services::Outgoing,
-    wire::cdr::Cdr,
-    wire::messages::rcl_interfaces::{
-        DescribeParametersRequest, DescribeParametersResponse, FloatingPointRange,
-        GetParameterTypesRequest, GetParameterTypesResponse, GetParametersRequest,
-        GetParametersResponse, ListParametersRequest, ListParametersResponse, ListParametersResult,
-        Parameter, ParameterDescriptor, ParameterEvent, ParameterType, ParameterValue,
-        SetParametersAtomicallyRequest, SetParametersAtomicallyResponse, SetParametersRequest,
-        SetParametersResponse, SetParametersResult,
+    wire::{
+        cdr::Cdr,
+        messages::rcl_interfaces::{
+            DescribeParametersRequest, DescribeParametersResponse, FloatingPointRange,
+            GetParameterTypesRequest, GetParameterTypesResponse, GetParametersRequest,
+            GetParametersResponse, ListParametersRequest, ListParametersResponse,
+            ListParametersResult, Parameter, ParameterDescriptor, ParameterEvent, ParameterType,
+            ParameterValue, SetParametersAtomicallyRequest, SetParametersAtomicallyResponse,
+            SetParametersRequest, SetParametersResponse, SetParametersResult,
+        },
     },
 };
 

@@ -3,8 +3,8 @@
 use super::{Simulator, Unreadable, World, failed, goals::GoalId, ok};
 use crate::{
     command::change::{Change, ChangeRefused, Scope},
+    io::server::Asker,
     scene::resource::FORMATS,
-    services::Asker,
     wire::{
         cdr::Cdr,
         messages::simulation_interfaces::{

@@ -4,14 +4,16 @@
 //! none. What cannot be had leaves the present one as it was. Of a loaded scene all is taken but what
 //! belongs to the run: outputs, who commands, and the length of a tick.
 
-use super::{Simulator, Unreadable, Version, World, failed, ok, places::has_tags, tags::Register};
+use super::{
+    Simulator, Unreadable, Version, World, entity_info::Register, failed, named_poses::has_tags, ok,
+};
 use crate::{
     command::change::{Change, SettledScene},
+    io::server::Asker,
     scene::{
         self, Controller, Scene,
         resource::{self, ResourceFault, Shelf},
     },
-    services::Asker,
     wire::{
         cdr::Cdr,
         messages::simulation_interfaces::{

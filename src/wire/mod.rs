@@ -4,6 +4,5 @@ pub mod actions;
 pub mod cdr;
 pub mod from_ros;
 pub mod messages;
-pub mod rows;
 pub mod to_ros;
 pub mod topics;

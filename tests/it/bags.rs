@@ -6,16 +6,16 @@ use std::{
 };
 
 use jamgrip::{
+    bag::sink::{Bag, BagError, BagReport, Format, Subject},
     base::{
         Vec3,
         random::{Random, Stream},
     },
-    scene::BagCompression,
-    sinks::{
-        Packet, Sink,
-        bag::{Bag, BagError, BagReport, Format, Subject},
+    io::{
         fanout::{Delivery, Fanout},
+        sink::{Packet, Sink},
     },
+    scene::BagCompression,
     snapshot::{GrainsSnapshot, MembraneSnapshot},
     wire::to_ros::Encoder,
 };
@@ -359,7 +359,7 @@ fn a_recording_becomes_a_page() {
     let folder = tempfile::tempdir().unwrap();
     let bag = folder.path().join("bag");
     record_second(&bag);
-    let page = jamgrip::lab::bag_page::page(&bag).unwrap();
+    let page = jamgrip::replay::page::html(&bag).unwrap();
     let file = folder.path().join("report.html");
     fs::write(&file, &page).unwrap();
     let read = peers::run("read_page.py", &[file.to_str().unwrap()]);

@@ -15,15 +15,13 @@ use jamgrip::{
         reader::{Channel, Damage, Item, Reader},
         recording::Recording,
         recover,
+        sink::{Bag, Format, Subject},
     },
     base::{
         Tick,
         random::{Random, Stream},
     },
-    sinks::{
-        Packet, Sink,
-        bag::{Bag, Format, Subject},
-    },
+    io::sink::{Packet, Sink},
     snapshot::checkpoint::Checkpoint,
 };
 use serde_json::Value;

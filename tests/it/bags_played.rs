@@ -7,15 +7,15 @@ use std::{
 };
 
 use jamgrip::{
-    bag::reader::{Channel, Recorded},
-    node::shutdown::Shutdown,
-    replay::{
-        cue::{Asked, Cue},
-        play::{Options, Played, Stage, play},
+    bag::{
+        reader::{Channel, Recorded},
+        sink::{Bag, Format, Subject},
     },
-    sinks::{
-        Sink,
-        bag::{Bag, Format, Subject},
+    host::shutdown::Shutdown,
+    io::sink::Sink,
+    replay::{
+        play::{Options, Played, Stage, play},
+        player_command::{Asked, Cue},
     },
 };
 
@@ -242,8 +242,8 @@ fn cues_are_read_and_refused() {
 #[test]
 fn a_played_recording_reaches_a_subscriber() {
     use jamgrip::{
-        replay::stage::RosStage,
-        sinks::ros::RosNode,
+        replay::player_node::RosStage,
+        ros::node::RosNode,
         wire::{
             messages::{geometry_msgs::WrenchStamped, rosgraph_msgs::Clock, tf2_msgs::TFMessage},
             topics::{Topic, topics},
@@ -299,21 +299,23 @@ fn a_played_recording_reaches_a_subscriber() {
 #[cfg(feature = "ros")]
 struct Someone {
     /// Its clients are found as long as it is there.
-    _node: std::sync::Arc<jamgrip::sinks::ros::RosNode>,
-    clients: Vec<jamgrip::services::ros::RosClient>,
+    _node: std::sync::Arc<jamgrip::ros::node::RosNode>,
+    clients: Vec<jamgrip::ros::service::RosClient>,
 }
 
 #[cfg(feature = "ros")]
 impl Someone {
     fn join() -> Self {
         use jamgrip::{
-            replay::{prompter, stage},
-            services::ros::{RosClient, Way},
-            sinks::ros::RosNode,
+            replay::{player_node, player_services},
+            ros::{
+                node::RosNode,
+                service::{RosClient, Way},
+            },
         };
 
         let node = RosNode::join_as("someone", &crate::private_network::reach()).unwrap();
-        let offers = prompter::offers(stage::NODE_NAME);
+        let offers = player_services::offers(player_node::NODE_NAME);
         let clients = offers.iter().enumerate().map(|(i, offer)| {
             let way = if i.is_multiple_of(2) { Way::Enhanced } else { Way::Cyclone };
             RosClient::open(&node, offer, way).unwrap()
@@ -327,9 +329,9 @@ impl Someone {
     where
         A: serde::de::DeserializeOwned,
     {
-        use jamgrip::{replay::prompter, wire::cdr::Cdr};
+        use jamgrip::{replay::player_services, wire::cdr::Cdr};
 
-        let i = prompter::SERVICES.iter().position(|it| it.0 == name).unwrap();
+        let i = player_services::SERVICES.iter().position(|it| it.0 == name).unwrap();
         let client = &mut self.clients[i];
         let begin = now();
         let nap = || {
@@ -361,7 +363,7 @@ impl Someone {
 #[test]
 fn services_pause_wind_and_step_it() {
     use jamgrip::{
-        replay::stage::RosStage,
+        replay::player_node::RosStage,
         wire::messages::{
             builtin_interfaces::Time,
             rosbag2_interfaces::{

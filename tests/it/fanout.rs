@@ -9,9 +9,9 @@ use std::{
     time::Duration,
 };
 
-use jamgrip::sinks::{
-    Packet, Sink,
+use jamgrip::io::{
     fanout::{Delivery, Fanout},
+    sink::{Packet, Sink},
 };
 
 use crate::synthetic;

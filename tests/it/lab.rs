@@ -9,16 +9,17 @@ use std::{
 
 use jamgrip::{
     experiments::Size,
-    lab::{
-        self, Ending, Options, Task, comparison,
-        fault::LabError,
+    host::shutdown::Shutdown,
+    runner::{
+        self, Ending, Options, Task,
+        error::LabError,
+        experiment::Order,
         folder::Policy,
         outcome::Outcome,
         report,
-        study::Order,
         table::{self, Look},
+        validation_doc,
     },
-    node::shutdown::Shutdown,
 };
 
 use crate::{oscillator::Oscillator, peers};
@@ -43,7 +44,7 @@ fn run_changed(
     let overrides = overrides.iter().map(|it| (*it).to_owned()).collect();
     let order = Order { experiment, size: Size::Quick, overrides, scene: None };
     let tasks = [Task { order, out: out.map(Path::to_owned) }];
-    lab::run(&tasks, &Options { n_threads, is_quiet: true, policy, shutdown: &shutdown })
+    runner::run(&tasks, &Options { n_threads, is_quiet: true, policy, shutdown: &shutdown })
 }
 
 fn outcome(ending: Result<Ending, LabError>) -> Outcome {
@@ -88,7 +89,7 @@ fn experiments_share_one_queue_and_keep_their_order() {
     let shutdown = Shutdown::default();
     let policy = Policy::default();
     let options = Options { n_threads: 3, is_quiet: true, policy, shutdown: &shutdown };
-    let Ending::Finished(found) = lab::run(&tasks, &options).unwrap() else { panic!("stopped") };
+    let Ending::Finished(found) = runner::run(&tasks, &options).unwrap() else { panic!("stopped") };
     for (found, experiment) in found.into_iter().zip(&experiments) {
         let alone = Outcome { size: Size::Full, ..outcome(run(experiment, None, 1, policy)) };
         assert_eq!(timeless(found), timeless(alone));
@@ -108,7 +109,7 @@ fn a_scene_file_takes_the_place_of_the_scene_that_comes_along() {
             [Task { order: Order { experiment: &experiment, size, overrides, scene }, out: None }];
         let shutdown = Shutdown::default();
         let policy = Policy::default();
-        lab::run(&tasks, &Options { n_threads: 1, is_quiet: true, policy, shutdown: &shutdown })
+        runner::run(&tasks, &Options { n_threads: 1, is_quiet: true, policy, shutdown: &shutdown })
     };
     let error = run_mine().unwrap_err();
     assert!(error.is_of_command_line() && error.to_string().contains("mine.yaml"), "{error}");
@@ -240,7 +241,7 @@ fn files_tell_what_was_found() {
 #[test]
 fn documents_and_tables_name_every_row() {
     let found = outcome(run(&with(&["growing"]), None, 2, Policy::default()));
-    let told = comparison::tell(std::slice::from_ref(&found));
+    let told = validation_doc::tell(std::slice::from_ref(&found));
     let document = &told[0].1;
     assert_eq!((told.len(), told[1].0.as_str()), (2, "figures/oscillator_quick_1.svg"));
     let screen = table::of_all(std::slice::from_ref(&found), Look::new(Some(110)));
@@ -266,13 +267,13 @@ fn documents_and_tables_name_every_row() {
 /// `JAMGRIP_UPDATE=1 cargo test --release --test it validation`, then read the diff.
 #[test]
 fn the_validation_document_is_made_of_the_kept_results() {
-    let kept = comparison::read(Path::new("tests/golden/validation")).unwrap();
-    let told = comparison::tell(&kept);
+    let kept = validation_doc::read(Path::new("tests/golden/validation")).unwrap();
+    let told = validation_doc::tell(&kept);
     let is_ours = |name: &String| name == "validation.md" || name.starts_with("figures/");
     assert!(told.iter().all(|(name, _)| is_ours(name)), "only these may be replaced");
     if std::env::var_os("JAMGRIP_UPDATE").is_some() {
         drop(fs::remove_dir_all("docs/figures"));
-        comparison::write(&kept, Path::new("docs")).unwrap();
+        validation_doc::write(&kept, Path::new("docs")).unwrap();
     }
     for (name, text) in &told {
         let there = fs::read_to_string(Path::new("docs").join(name)).unwrap_or_default();

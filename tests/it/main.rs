@@ -13,7 +13,6 @@ mod changes; // back to the start, in, out and elsewhere
 mod coarse; // a coarse gripper for tests of the physics
 mod commands; // commands from ROS 2 messages
 mod coupling; // action equals reaction
-mod desk; // commands at the desk
 mod determinism; // the same bits every time
 mod fanout; // sinks behind their queues: order, drops, failure, closing
 mod generated_types; // msgs/*.msg and the Rust types agree
@@ -25,6 +24,8 @@ mod leaks; // what comes through the membranes
 mod lifts; // whole runs: what is lifted, and what is not
 #[cfg(feature = "ros")]
 mod main_job; // the main job, commanded from other processes
+#[cfg(feature = "ros")]
+mod mock_run; // a whole run with a mock plant
 mod oscillator; // a small experiment whose results are known in closed form
 mod packings; // periodic boxes and dense packings
 mod peers; // independent programs in Python
@@ -48,12 +49,11 @@ mod ros_qos; // who hears what
 mod ros_simulator; // what ROS 2 users ask of a simulator
 #[cfg(feature = "ros")]
 mod ros_worlds; // another scene while the program runs
+mod setpoints; // how commands become setpoints
 mod scenes; // scenes that run, scenes that are refused
 mod sheet; // a grain on the membrane
 mod spheres; // grains on the spheres of the classic membrane
 #[cfg(feature = "shm")]
 mod stream; // what other processes read in shared memory
 mod synthetic; // a scene and snapshots made up for tests
-#[cfg(feature = "ros")]
-mod toy_run; // a whole run with a toy for physics
 mod triaxial; // a small specimen under confining pressure

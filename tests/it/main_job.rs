@@ -8,16 +8,15 @@ use std::{
 };
 
 use jamgrip::{
+    ros::node::RosNode,
     scene::{Scene, Shape, load},
-    sinks::ros::RosNode,
 };
 use serde_json::Value;
 
 use crate::{
     by_tick::{N_GRAINS, N_VERTICES, example, main_scene},
-    peers,
+    mock_run, peers,
     private_network::{cyclone_config, inside, inside_with_peers, reach},
-    toy_run,
 };
 
 /// Oracle: the toy's own formulas; the peer has an independent controller on an independent DDS.
@@ -27,7 +26,7 @@ fn an_independent_peer_picks_up_a_toy() {
         let folder = tempfile::tempdir().unwrap();
         let mut peer = start_peer(folder.path(), &["cylinder"]);
         let node = RosNode::join(&reach()).unwrap();
-        toy_run::run(&node, || peer.is_over());
+        mock_run::run(&node, || peer.is_over());
         let seen = peer.report();
         check_lift(&seen);
         assert_eq!(
@@ -35,7 +34,7 @@ fn an_independent_peer_picks_up_a_toy() {
             (&N_GRAINS.into(), &N_VERTICES.into())
         );
         let force = seen["hold_force_z_n"].as_f64().unwrap();
-        assert!((force + toy_run::WEIGHT).abs() < 1e-9, "the toy's weight, not {force} N");
+        assert!((force + mock_run::WEIGHT).abs() < 1e-9, "the toy's weight, not {force} N");
     });
 }
 
@@ -49,7 +48,7 @@ fn the_example_controller_picks_up_a_toy() {
                 .env("ROS_DOMAIN_ID", reach().domain_id.to_string()),
         );
         let node = RosNode::join(&reach()).unwrap();
-        toy_run::run(&node, || controller.is_over());
+        mock_run::run(&node, || controller.is_over());
         let said = controller.ended_well();
         let told = said.lines().last().unwrap().strip_prefix("lifted ").expect("a result");
         let (lifted_mm, held) = told.split_once(" mm, held for ").unwrap();

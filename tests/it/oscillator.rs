@@ -15,7 +15,7 @@ use jamgrip::{
         findings::{Curve, Expected, Findings, Kind, Plot, Quantity, Row, Series, Told},
         record::{Column, Record, Validity},
     },
-    node::shutdown::Shutdown,
+    host::shutdown::Shutdown,
     physics::health::Diverged,
     scene::SceneError,
 };

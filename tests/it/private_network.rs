@@ -10,7 +10,7 @@ use std::{
     process::{Command, Stdio},
 };
 
-use jamgrip::sinks::reach::{Extent, Reach};
+use jamgrip::ros::discovery::{Extent, Reach};
 
 /// Set inside the namespace.
 const INSIDE: &str = "JAMGRIP_TEST_PRIVATE_NETWORK";

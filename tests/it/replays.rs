@@ -8,19 +8,19 @@ use std::{
 };
 
 use jamgrip::{
-    bag::recording::Recording,
+    bag::{
+        recording::Recording,
+        sink::{Bag, Format, Subject},
+    },
     base::{Pose, real::Twist},
     command::{
         Command,
         change::{Change, Knob, Scope},
     },
+    io::sink::{Packet, Sink},
     node::plant::Plant,
     scene::{Object, Shape},
     session::Session,
-    sinks::{
-        Packet, Sink,
-        bag::{Bag, Format, Subject},
-    },
     snapshot::{Parts, take},
     wire::to_ros::Encoder,
 };

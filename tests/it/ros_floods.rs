@@ -8,7 +8,7 @@ use std::{
 
 use jamgrip::{
     bag::recording::Recording,
-    sinks::ros::{Body, RosNode},
+    ros::node::{Body, RosNode},
     wire::{
         messages::{
             RosMessage,

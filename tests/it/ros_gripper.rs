@@ -4,7 +4,7 @@
 use std::{sync::Arc, time::Duration};
 
 use jamgrip::{
-    sinks::ros::{Body, Publisher, RosNode, Subscription},
+    ros::node::{Body, Publisher, RosNode, Subscription},
     wire::{
         actions::{GetResultRequest, GetResultResponse, SendGoalRequest, SendGoalResponse},
         messages::{

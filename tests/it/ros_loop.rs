@@ -12,11 +12,15 @@ use std::{
 
 use jamgrip::{
     command::{Command, PoseCommand},
-    sinks::{
-        Packet, Sink,
-        ros::{Body, RosNode, RosSink},
+    io::{
+        inbox,
+        sink::{Packet, Sink},
+        source::Source,
     },
-    sources::{Source, inbox, ros::RosSource},
+    ros::{
+        node::{Body, RosNode, RosSink},
+        subscribe::RosSource,
+    },
     wire::{
         messages::{
             RosMessage,

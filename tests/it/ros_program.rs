@@ -7,11 +7,11 @@ use std::{
 };
 
 use jamgrip::{
-    services::{
-        Offer,
-        ros::{RosClient, Way},
+    io::server::Offer,
+    ros::{
+        node::RosNode,
+        service::{RosClient, Way},
     },
-    sinks::ros::RosNode,
     wire::{
         cdr::Cdr,
         messages::{RosService, ServiceType},

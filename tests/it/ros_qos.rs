@@ -1,10 +1,10 @@
 //! Quality of service: who hears what, for each topic and each kind of subscriber.
 
 use jamgrip::{
-    services::ros::{Raw, RawCdr},
-    sinks::{
-        Sink,
-        ros::{RosNode, RosSink, policies},
+    io::sink::Sink,
+    ros::{
+        node::{RosNode, RosSink, policies},
+        service::{Raw, RawCdr},
     },
     wire::topics::{Common, Qos, common},
 };

@@ -4,12 +4,15 @@ use std::{path::Path, process::Command, time::Duration};
 
 use jamgrip::{
     command::change::{Change, ChangeRefused},
-    services::{
-        Asker, Call, Offer,
-        ros::{RosClient, Way},
+    io::server::{Asker, Call, Offer},
+    ros::{
+        node::RosNode,
+        service::{RosClient, Way},
     },
-    simulator::{Simulator, Subject, World, asks, asks::asked},
-    sinks::ros::RosNode,
+    simulator::{
+        Simulator, Subject, World,
+        services::{self, asked},
+    },
     snapshot::Snapshot,
     wire::{
         cdr::Cdr,
@@ -183,7 +186,7 @@ proptest! {
         is_big_endian in any::<bool>(),
     ) {
         let (offers, what) = asked("/jamgrip", None);
-        let n_channels = asks::channels("/jamgrip", None).len();
+        let n_channels = services::channels("/jamgrip", None).len();
         let scene = crate::by_tick::scene();
         let mut simulator = Simulator::new(&scene, what, false).with_channels(n_channels);
         let system = Synthetic::new("cylinder");
@@ -216,7 +219,7 @@ fn an_independent_dds_calls_services_and_an_action() {
         let topics = jamgrip::wire::topics::topics(&coarse::scene(&[]));
         let n_inputs = topics.iter().filter(|it| it.is_input).count();
         let n_offers = asked("/jamgrip", None).0.len();
-        let n_channels = asks::channels("/jamgrip", None).len();
+        let n_channels = services::channels("/jamgrip", None).len();
         let n_outputs = topics.len() - n_inputs + 3;
         let listed = [n_inputs + n_offers, n_outputs + n_offers + n_channels];
         let expected = serde_json::json!({

@@ -3,7 +3,7 @@
 use std::{path::Path, process::Command};
 
 use jamgrip::{
-    sinks::ros::RosNode,
+    ros::node::RosNode,
     wire::{
         messages::{
             geometry_msgs::PoseStamped,

@@ -5,9 +5,9 @@ use std::{
     time::{Duration, Instant},
 };
 
-use jamgrip::{
-    sinks::shm::{PREFIX_VARIABLE, Services, Stream},
-    wire::rows::StateRow,
+use jamgrip::shm::{
+    rows::StateRow,
+    stream::{PREFIX_VARIABLE, Services, Stream},
 };
 
 use crate::by_tick::{N_GRAINS, N_VERTICES, Synthetic, example, number};

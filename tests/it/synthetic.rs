@@ -8,11 +8,11 @@ use jamgrip::{
         real::{Twist, Wrench},
     },
     command::{Command, CommandCounts, CommandRecord, Outcome, PoseCommand, Refusal},
+    io::sink::{Packet, RunStatistics, SinkCounters},
     scene::{
         Bag, BagCompression, Chamber, Controller, Flange, Grains, Lockstep, Material, Membrane,
         Object, OnError, OnFull, Outputs, Ros, Scene, Shape, Table, Time,
     },
-    sinks::{Packet, RunStatistics, SinkCounters},
     snapshot::{
         BodySnapshot, ChamberSnapshot, ContactSnapshot, GrainsSnapshot, JammingSnapshot,
         MembraneSnapshot, ObjectSnapshot, Snapshot,

@@ -13,11 +13,9 @@ use super::reach;
 use crate::{
     base::Real,
     benchmarks::lift,
-    node::pacer::{Stopwatch, wall_ns},
-    sinks::{
-        ros::{Body, RosNode},
-        shm::Services,
-    },
+    host::clock::{Stopwatch, wall_ns},
+    ros::node::{Body, RosNode},
+    shm::stream::Services,
     wire::{
         messages::{RosMessage, rosgraph_msgs::Clock, std_msgs::Float64},
         topics::{Common, Topic, topics},

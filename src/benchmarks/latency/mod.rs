@@ -6,9 +6,9 @@
 //! process; both take the time of the same clock. All of it happens in a network of its own: nothing leaves
 //! this host, and nothing comes in.
 
-mod listener; // the other process
-mod private; // a network of its own
-mod standing; // a plant that ticks in real time
+mod idle_plant; // a plant that only ticks in real time
+mod listener; // the subscriber process
+mod private_network; // a network namespace of its own
 
 use std::{
     process::{Child, Command, Stdio},
@@ -20,26 +20,26 @@ use serde::{Deserialize, Serialize};
 use super::{BenchError, Case, Figures, Options, lift};
 use crate::{
     base::Real,
+    host::{progress_bar::Progress, shutdown::Shutdown},
+    io::{fanout::Delivery, sink::RunStatistics},
     node::{
-        Crew, judge::Judge, lockstep::Gate, orders::Orders, outlets::Outlets, progress::Progress,
-        schedule::Schedule, shutdown::Shutdown,
+        Crew, command_sources::Orders, lift_monitor::Judge, lockstep::Gate, outputs::Outlets,
+        schedule::Schedule,
     },
     physics::measure::{real, real_of},
-    scene::{Lockstep, Scene},
-    sinks::{
-        RunStatistics,
-        fanout::Delivery,
-        reach::{Extent, Reach},
-        ros::{RosNode, RosSink},
-        shm::Stream,
+    ros::{
+        discovery::{Extent, Reach},
+        node::{RosNode, RosSink},
+        subscribe::RosSource,
     },
-    sources::ros::RosSource,
+    scene::{Lockstep, Scene},
+    shm::stream::Stream,
     wire::to_ros::Encoder,
 };
+use idle_plant::Standing;
 pub use listener::listen;
 use listener::{Heard, Samples};
-pub use private::PrivateError;
-use standing::Standing;
+pub use private_network::PrivateError;
 
 /// The scene whose sizes the messages have, commanded from outside at 1 kHz.
 const OVERRIDES: [&str; 2] = ["controller=topics", "outputs.state_rate=1 kHz"];
@@ -93,10 +93,10 @@ pub struct Latency {
 
 /// Measures here, if this is a network of its own, or else in one.
 pub(super) fn run(case: &Case, options: &Options) -> Result<Figures, BenchError> {
-    if private::is_private() {
+    if private_network::is_private() {
         return here(case, options);
     }
-    let figures = private::run(case, options);
+    let figures = private_network::run(case, options);
     figures.map_err(|fault| BenchError::Latency { fault: fault.into() })
 }
 

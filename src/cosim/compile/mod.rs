@@ -3,9 +3,9 @@
 //! The substep is a share of the critical one (`physics::critical_step`) under the contacts that
 //! press on a vertex at full vacuum.
 
-mod heavier; // density scaling
+mod density_scaling;
 
-use heavier::heavier;
+use density_scaling::heavier;
 
 use super::{
     FLANGE, Plan,

@@ -4,16 +4,16 @@
 //! The object moves as prescribed and the gripper's plate stands still, so the rigid world has no
 //! part in it: grains, membrane and air alone are advanced, and their state is all there is to save.
 
-mod cases; // which grips are done
-mod curves; // what is drawn
-mod force_record; // the force over a whole grip
-mod phase; // what is done in a grip
-mod probe; // what is read off
-mod ready; // a grip ready to run
-mod run; // a case on its way
-mod scene; // what the scene says
-mod summary; // what a grip amounts to
-mod verdict; // what the records show
+mod build; // the gripper, ready to run
+mod cases; // the list of grips
+mod evaluate; // verdicts from the records
+mod force_history; // the force over a whole grip
+mod measure; // measurements during a grip
+mod phase; // phases of a grip
+mod plots; // plots for the report
+mod run; // one case
+mod scene; // scene keys
+mod summary; // the summary of a grip
 
 use super::{Experiment, Plan, Run, SceneText, StartError, findings::Findings, record::Record};
 use crate::scene::{SceneError, text};
@@ -71,6 +71,6 @@ impl Plan for GripperPlan {
     }
 
     fn evaluate(&self, records: &[Record]) -> Findings {
-        verdict::findings(&self.scene, &self.cases, records)
+        evaluate::findings(&self.scene, &self.cases, records)
     }
 }

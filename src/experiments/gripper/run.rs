@@ -3,17 +3,17 @@
 use serde::{Deserialize, Serialize};
 
 use super::{
+    build::{Ready, compile},
     cases::{Case, Change},
+    measure::{self, When},
     phase::Phase,
-    probe::{self, When},
-    ready::{Ready, compile},
     scene::GripperScene,
     summary::{has_passed, summarise},
 };
 use crate::{
     base::Real,
     cosim::compile::CompileError,
-    experiments::{Progress, ResumeError, Run, Stepped, kept, record::Record},
+    experiments::{Progress, ResumeError, Run, Stepped, record::Record, saved_run},
     physics::{
         Model, State, System,
         fill::{self, Filling},
@@ -94,7 +94,7 @@ impl GripRun {
         let record = Record {
             case: case.name.clone(),
             seed: scene.gripper.seed,
-            columns: probe::columns(),
+            columns: measure::columns(),
             ..Record::default()
         };
         Ok(Self {
@@ -134,7 +134,7 @@ impl GripRun {
     fn begin(&mut self, grip: usize) {
         let Some(ready) = self.grips.get(grip) else {
             self.place = Place::Done;
-            self.record.digest = kept::digest(self.state());
+            self.record.digest = saved_run::digest(self.state());
             return;
         };
         let phase = if ready.is_inserted { Phase::Evacuate } else { Phase::Insert };
@@ -179,7 +179,7 @@ impl GripRun {
             penetration: z + ready.scene.object_radius() - low,
             force: force / real(ready.n_substeps),
         };
-        let (overlap, pressure, n_contacts) = probe::look(&mut self.record, system, when);
+        let (overlap, pressure, n_contacts) = measure::look(&mut self.record, system, when);
         let speed = system.controls.bodies[0].twist.linear.norm();
         let validity = &mut self.record.validity;
         validity.overlap_over_diameter_max = validity.overlap_over_diameter_max.max(overlap);
@@ -257,16 +257,16 @@ impl Run for GripRun {
             record: self.record.clone(),
         };
         let states = [Some(self.state()), self.settled.as_ref(), self.inserted.as_ref()];
-        kept::pack(&self.record.case, &saved, states.into_iter().flatten())
+        saved_run::pack(&self.record.case, &saved, states.into_iter().flatten())
     }
 
     fn resume(&mut self, bytes: &[u8]) -> Result<(), ResumeError> {
-        let reason = |reason: &str| kept::refusal(reason.to_owned());
-        let (saved, states): (Saved, _) = kept::unpack_any(&self.record.case, bytes)?;
+        let reason = |reason: &str| saved_run::refusal(reason.to_owned());
+        let (saved, states): (Saved, _) = saved_run::unpack_any(&self.record.case, bytes)?;
         let mut states = states.into_iter();
         let mut next = || states.next().ok_or_else(|| reason("a state is missing"));
         let state = next()?;
-        kept::of_one_scene(&state, self.state())?;
+        saved_run::of_one_scene(&state, self.state())?;
         self.settled = saved.has_settled.then(&mut next).transpose()?;
         self.inserted = saved.has_inserted.then(&mut next).transpose()?;
         self.place = saved.place;

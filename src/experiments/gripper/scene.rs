@@ -4,11 +4,12 @@
 use crate::{
     base::{Real, Vec3},
     scene::{
-        self, Scene, Shape, blank,
+        self, Scene, Shape,
         quantity::{LENGTH, PRESSURE, SPEED, TIME},
         schema,
         text::Keys,
-        walk::{Quantity, Range, Walk},
+        unset,
+        visit::{Quantity, Range, Walk},
     },
 };
 
@@ -91,7 +92,7 @@ impl GripperScene {
     /// A scene before it is read.
     pub(super) fn blank() -> Self {
         let nan = Real::NAN;
-        let mut gripper = blank::scene();
+        let mut gripper = unset::scene();
         gripper.table = scene::Table { height: nan, friction: 0.0 };
         "object".clone_into(&mut gripper.objects[0].name);
         gripper.objects[0].shape = Shape::Sphere { radius: nan };

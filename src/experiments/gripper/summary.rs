@@ -1,6 +1,6 @@
 //! What a grip amounts to: its end, and its numbers, read from the rows of the record.
 
-use super::{phase::Phase, probe, ready::Ready, scene::GripperScene};
+use super::{build::Ready, measure, phase::Phase, scene::GripperScene};
 use crate::{base::Real, experiments::record::Record, physics::measure::real};
 
 /// Share of the penetration without any pull after which none is to come: without vacuum, the bag
@@ -63,7 +63,7 @@ pub(super) fn summarise(record: &mut Record, grip: usize, ready: &Ready) {
         ("force_held", last(record, Phase::Hold, "force"), "N"),
         ("normal_force", normal, "N"),
         ("contact_angle", angle, "rad"),
-        ("pinch_force", probe::pinch(normal, angle, friction), "N"),
+        ("pinch_force", measure::pinch(normal, angle, friction), "N"),
         ("volume", last(record, Phase::Hold, "volume"), "m^3"),
         ("coordination", last(record, Phase::Hold, "coordination"), "1"),
         ("force_at_end", pull.last().copied().unwrap_or(Real::NAN), "N"),

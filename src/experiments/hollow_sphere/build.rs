@@ -2,7 +2,7 @@
 
 use super::{
     cases::{Case, Kind},
-    keys::Scene,
+    scene::Scene,
 };
 use crate::{
     base::{

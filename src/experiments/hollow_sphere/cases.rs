@@ -1,6 +1,6 @@
 //! The cases: one packing of one kind of grain each.
 
-use super::keys::Scene;
+use super::scene::Scene;
 use crate::base::Real;
 
 /// One packing.

@@ -2,14 +2,14 @@
 //! gripper of Götz (2024), sections 4.3 and 4.4.
 
 mod build; // the system
-mod cases; // which packings
-mod found; // what the records show
-mod keys; // the scene
-mod run; // a packing on its way
+mod cases; // the list of packings
+mod evaluate; // verdicts from the records
+mod run; // one case
+mod scene; // scene keys
 
 use super::{Experiment, Plan, Run, SceneText, StartError, findings::Findings, record::Record};
 use crate::scene::{SceneError, text::fill};
-use keys::Scene;
+use scene::Scene;
 
 /// The experiment.
 pub struct HollowSphere;
@@ -63,6 +63,6 @@ impl Plan for Shells {
     }
 
     fn evaluate(&self, records: &[Record]) -> Findings {
-        found::findings(&self.scene, records)
+        evaluate::findings(&self.scene, records)
     }
 }

@@ -5,13 +5,14 @@ use serde::{Deserialize, Serialize};
 use super::{
     build::{self, Parts},
     cases::Case,
-    keys::{Protocol, Scene},
+    scene::{Protocol, Scene},
 };
 use crate::{
     base::{Real, real::count},
     experiments::{
-        Progress, ResumeError, Run, StartError, kept,
+        Progress, ResumeError, Run, StartError,
         record::{Column, Record},
+        saved_run,
     },
     physics::{
         Scratch, System,
@@ -150,7 +151,7 @@ impl Shell {
                 self.now.stage = Stage::Evacuating(level + 1);
                 if level == self.scene.protocol.n_levels {
                     self.now.stage = Stage::Done;
-                    self.now.record.digest = kept::digest(&self.system.state);
+                    self.now.record.digest = saved_run::digest(&self.system.state);
                 }
             }
             Stage::Done => {}
@@ -255,12 +256,12 @@ impl Run for Shell {
     }
 
     fn save(&self) -> Vec<u8> {
-        kept::pack(&self.case.name, &self.now, [&self.system.state])
+        saved_run::pack(&self.case.name, &self.now, [&self.system.state])
     }
 
     fn resume(&mut self, bytes: &[u8]) -> Result<(), ResumeError> {
-        let (now, [state]): (Progressed, _) = kept::unpack(&self.case.name, bytes)?;
-        kept::of_one_scene(&state, &self.system.state)?;
+        let (now, [state]): (Progressed, _) = saved_run::unpack(&self.case.name, bytes)?;
+        saved_run::of_one_scene(&state, &self.system.state)?;
         self.system.scratch = Scratch::new(&self.system.model);
         self.system.controls.gauge_setpoint = state.gauge;
         self.system.state = state;

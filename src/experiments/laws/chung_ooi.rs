@@ -6,7 +6,7 @@
 
 use super::{
     Law, Line,
-    bench::{Encounter, Flight, elastic},
+    build::{Encounter, Flight, elastic},
     judge, push,
     scene::Scene,
     worst,

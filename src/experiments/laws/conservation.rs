@@ -3,7 +3,7 @@
 
 use super::{
     Law, Line,
-    bench::{Bench, Encounter, G, elastic},
+    build::{Bench, Encounter, G, elastic},
     judge,
     scene::Scene,
 };

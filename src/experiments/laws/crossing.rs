@@ -7,7 +7,7 @@
 
 use super::{
     Law, Line,
-    bench::{Bench, elastic},
+    build::{Bench, elastic},
     judge, push,
     scene::Scene,
     worst,

@@ -3,7 +3,7 @@
 
 use super::{
     Law, Line,
-    bench::{Encounter, elastic},
+    build::{Encounter, elastic},
     judge, push,
     scene::Scene,
     worst,

@@ -4,25 +4,25 @@
 //! Each law is a case. A case is a list of points, collisions or pieces of sheet, each done in a
 //! moment; what is saved of a case are the points that are done.
 
-mod bench; // one or two grains and a sheet by hand
-mod chung_ooi; // benchmarks of others
-mod conservation; // what no law may change
+mod build; // one or two grains, a flat membrane
+mod chung_ooi; // published benchmark impacts
+mod conservation; // momentum and energy
 mod crossing; // a grain over edges and vertices
 mod impact; // head-on collisions
-mod inflation; // the sheet under air
+mod inflation; // the membrane under pressure
 mod oblique; // collisions at an angle
-mod plate; // the sheet bent
+mod plate; // bending of the membrane
 mod rolling; // sliding, rolling, sticking
-mod scene; // materials and set-ups
-mod stretching; // the sheet in its plane
+mod scene; // scene keys
+mod stretching; // in-plane stretching of the membrane
 #[cfg(test)]
 mod tests;
 
 use super::{
     Experiment, Plan, Progress, ResumeError, Run, SceneText, StartError,
     findings::{Expected, Findings, Row, Told},
-    kept,
     record::{Column, Record},
+    saved_run,
 };
 use crate::{
     base::digest::Digest,
@@ -137,14 +137,16 @@ impl Run for Pages {
     }
 
     fn save(&self) -> Vec<u8> {
-        kept::pack(&self.record.case, &(self.n_done, &self.record), [])
+        saved_run::pack(&self.record.case, &(self.n_done, &self.record), [])
     }
 
     fn resume(&mut self, bytes: &[u8]) -> Result<(), ResumeError> {
-        let ((n_done, record), []) = kept::unpack(&self.record.case, bytes)?;
+        let ((n_done, record), []) = saved_run::unpack(&self.record.case, bytes)?;
         let n_points = self.law.n_points(&self.scene);
         if n_done > n_points {
-            return Err(kept::refusal(format!("it has {n_done} points, the scene {n_points}")));
+            return Err(saved_run::refusal(format!(
+                "it has {n_done} points, the scene {n_points}"
+            )));
         }
         (self.n_done, self.record) = (n_done, record);
         Ok(())

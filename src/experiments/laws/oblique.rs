@@ -3,7 +3,7 @@
 
 use super::{
     Law, Line,
-    bench::{Flight, elastic},
+    build::{Flight, elastic},
     judge, push,
     scene::Scene,
     worst,

@@ -3,7 +3,7 @@
 
 use super::{
     Law, Line,
-    bench::{Bench, G, mass},
+    build::{Bench, G, mass},
     judge, push,
     scene::Scene,
 };

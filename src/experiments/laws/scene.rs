@@ -2,14 +2,13 @@
 
 use crate::{
     base::{Real, Vec3},
-    physics::contact::law,
-    physics::membrane::Sheet,
+    physics::{contact::law, membrane::Sheet},
     scene::{
         Material,
         quantity::{ANGLE, DENSITY, IMPULSE, LENGTH, PRESSURE, SPEED, TIME, TORQUE},
         schema,
         text::Keys,
-        walk::{Quantity, Range, Walk},
+        visit::{Quantity, Range, Walk},
     },
 };
 

@@ -15,14 +15,15 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     super::{
-        Progress, ResumeError, Run, StartError, kept,
+        Progress, ResumeError, Run, StartError,
         record::{Column, Record},
     },
     Case,
+    build::{self, SLICE, Settling, Unrest},
     moduli::Probe,
-    sample::{self, SLICE, Settling, Unrest},
     scene::Scene,
 };
+use crate::experiments::saved_run;
 use crate::{
     base::{
         Real, Vec3,
@@ -136,7 +137,7 @@ impl Boxed {
         let is_smooth = friction(scene, case) == 0.0;
         let grains = &scene.grains;
         let count = if is_mono && is_smooth { grains.count_smooth } else { grains.count };
-        let final_radii = sample::final_radii(scene, count, is_mono);
+        let final_radii = build::final_radii(scene, count, is_mono);
         let solid: Real = final_radii.iter().map(|&r| sphere_volume(r)).sum();
         let volume = solid / FINAL_FRACTION;
         let period = period(volume, 1.0);
@@ -145,9 +146,9 @@ impl Boxed {
         let small: Vec<Real> = final_radii.iter().map(|r| scale * r).collect();
         let mut random = Random::new(scene.seed, Stream::Position);
         let places = scatter(&small, room.period(), &mut random, |it| room.place(0.0, it))?;
-        let grains = sample::grains(scene, places, &final_radii, scale);
+        let grains = build::grains(scene, places, &final_radii, scale);
         let friction = friction(scene, case);
-        let law = sample::grain_law(&scene.grains, friction);
+        let law = build::grain_law(&scene.grains, friction);
         let (mean, largest) = (scene.grains.radius_mean(), scene.grains.radius_max);
         let mut model = Model::of_grains(law, scene.compression.substep, largest, mean);
         model.period = Some(period);
@@ -212,7 +213,7 @@ impl Boxed {
             }
             Stage::Done => return,
         }
-        sample::drag(&mut self.system, self.scene.compression.drag_time);
+        build::drag(&mut self.system, self.scene.compression.drag_time);
     }
 
     /// Grown grains rest. Without friction they are let go a little first: under the full pressure
@@ -240,7 +241,7 @@ impl Boxed {
             return self.ramp(Changes::Sizes, more, Real::INFINITY);
         }
         let n_max = compression.rest_time_max / model.substep;
-        if !unrest.is_rest() && !sample::is_over(settling.n_done, n_max) {
+        if !unrest.is_rest() && !build::is_over(settling.n_done, n_max) {
             return;
         }
         let seen = self.write(&unrest);
@@ -374,7 +375,7 @@ impl Boxed {
         let spread = (radii.iter().map(|r| (r / mean - 1.0).powi(2)).sum::<Real>()
             / real(radii.len()))
         .sqrt();
-        let digest = kept::digest(state);
+        let digest = saved_run::digest(state);
         let record = &mut self.place.record;
         record.tables.insert("structure".to_owned(), table);
         record.set("radius_spread", spread, "1");
@@ -453,12 +454,12 @@ impl Run for Boxed {
     }
 
     fn save(&self) -> Vec<u8> {
-        kept::pack(&self.place.record.case, &self.place, [&self.system.state])
+        saved_run::pack(&self.place.record.case, &self.place, [&self.system.state])
     }
 
     fn resume(&mut self, bytes: &[u8]) -> Result<(), ResumeError> {
-        let (place, [state]): (Place, _) = kept::unpack(&self.place.record.case, bytes)?;
-        kept::of_one_scene(&state, &self.system.state)?;
+        let (place, [state]): (Place, _) = saved_run::unpack(&self.place.record.case, bytes)?;
+        saved_run::of_one_scene(&state, &self.system.state)?;
         let mut model = self.system.model.clone();
         model.radius_max = state.grains.radii.iter().copied().fold(model.radius_max, Real::max);
         model.period = Some(period(self.volume, place.stretch));

@@ -9,12 +9,13 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     super::{
-        Progress, ResumeError, Run, StartError, kept,
+        Progress, ResumeError, Run, StartError,
         record::{Column, Record},
     },
-    sample::{self, SLICE, Settling},
+    build::{self, SLICE, Settling},
     scene::{Confined as Keys, Scene},
 };
+use crate::experiments::saved_run;
 use crate::{
     base::{
         Pose, Real,
@@ -73,7 +74,7 @@ impl Confined {
     /// Scattered grains in the held membrane.
     pub(super) fn new(scene: &Scene) -> Result<Self, StartError> {
         let keys = &scene.confined;
-        let final_radii = sample::final_radii(scene, keys.count, false);
+        let final_radii = build::final_radii(scene, keys.count, false);
         let solid: Real = final_radii.iter().map(|&r| sphere_volume(r)).sum();
         let radius = (solid / FINAL_FRACTION / sphere_volume(1.0)).cbrt();
         let model = model(scene, radius)?;
@@ -83,7 +84,7 @@ impl Confined {
         let margin = scene.grains.radius_max;
         let mut random = Random::new(scene.seed, Stream::Position);
         let places = scatter(&small, None, &mut random, |it| room.place(margin, it))?;
-        let grains = sample::grains(scene, places, &final_radii, scale);
+        let grains = build::grains(scene, places, &final_radii, scale);
         let mean = scene.grains.radius_mean();
         let mass = scene.grains.material.density * sphere_volume(mean);
         let stop = scene.compression.pressure_first;
@@ -123,7 +124,7 @@ impl Confined {
             }
             Stage::Done => return,
         }
-        sample::drag(&mut self.system, self.scene.compression.drag_time);
+        build::drag(&mut self.system, self.scene.compression.drag_time);
     }
 
     /// The membrane is free and the pump draws.
@@ -140,12 +141,12 @@ impl Confined {
         let n_max = 2.0 * compression.rest_time_max / model.substep;
         let is_drawn = state.gauge <= -self.scene.confined.pressure;
         let is_at_rest = is_drawn && unrest.is_rest();
-        if !is_at_rest && !sample::is_over(settling.n_done, n_max) {
+        if !is_at_rest && !build::is_over(settling.n_done, n_max) {
             return;
         }
         let volume = enclosed_volume(model, state);
         let sigma = stress::contact_stress(model, state, scratch, volume);
-        let digest = kept::digest(state);
+        let digest = saved_run::digest(state);
         let packing = packing(state, scratch);
         let row = [-state.gauge, sigma[(0, 0)], sigma[(1, 1)], sigma[(2, 2)]];
         let shear = sigma[(0, 1)].hypot(sigma[(1, 2)]).hypot(sigma[(2, 0)]);
@@ -171,7 +172,7 @@ impl Confined {
 fn model(scene: &Scene, radius: Real) -> Result<Model, StartError> {
     let (grains, keys) = (&scene.grains, &scene.confined);
     let mesh = Mesh::icosphere(radius, keys.frequency)?;
-    let law = sample::grain_law(grains, keys.friction);
+    let law = build::grain_law(grains, keys.friction);
     let substep = scene.compression.substep;
     let mut model = Model::of_grains(law, substep, grains.radius_max, grains.radius_mean());
     let rubber = rubber(keys, grains.material.density);
@@ -217,12 +218,12 @@ impl Run for Confined {
     }
 
     fn save(&self) -> Vec<u8> {
-        kept::pack(&self.place.record.case, &self.place, [&self.system.state])
+        saved_run::pack(&self.place.record.case, &self.place, [&self.system.state])
     }
 
     fn resume(&mut self, bytes: &[u8]) -> Result<(), ResumeError> {
-        let (place, [state]): (Place, _) = kept::unpack(&self.place.record.case, bytes)?;
-        kept::of_one_scene(&state, &self.system.state)?;
+        let (place, [state]): (Place, _) = saved_run::unpack(&self.place.record.case, bytes)?;
+        saved_run::of_one_scene(&state, &self.system.state)?;
         let mut model = self.system.model.clone();
         model.radius_max = state.grains.radii.iter().copied().fold(model.radius_max, Real::max);
         self.growth = Growth::resumed(self.recipe, self.final_radii.clone(), place.growth);

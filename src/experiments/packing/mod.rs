@@ -7,14 +7,14 @@
 //! from Hertz' p ~ (φ − φ_J)^(3/2).
 
 mod boxed; // grains in a periodic box
+mod build; // grains, drag, rest
 mod confined; // grains in a closed membrane
-mod evaluate; // what the records show
+mod evaluate; // verdicts from the records
 mod fit; // straight lines
 mod moduli; // bulk and shear modulus of a packing at rest
-mod plots; // pictures
+mod plots; // plots for the report
 
-mod sample; // grains, drag, rest
-mod scene; // keys
+mod scene; // scene keys
 
 use super::{Experiment, Plan, Run, SceneText, StartError, findings::Findings, record::Record};
 use crate::{

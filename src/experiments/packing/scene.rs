@@ -8,7 +8,7 @@ use crate::{
         quantity::{IMPULSE, LENGTH, PRESSURE, TIME, TORQUE},
         schema,
         text::Keys,
-        walk::{Quantity, Range, Walk},
+        visit::{Quantity, Range, Walk},
     },
 };
 

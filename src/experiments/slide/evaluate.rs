@@ -1,10 +1,11 @@
 //! What the records show: rows beside their oracles, and the quantities behind them.
 
 use super::{
-    expected, pictures,
-    ride::Case,
+    expected,
+    measure::{Seen, deviations},
+    plots,
+    run::Case,
     scene::Scene,
-    seen::{Seen, deviations},
 };
 use crate::{
     base::Real,
@@ -38,7 +39,7 @@ pub(super) fn findings(scene: &Scene, cases: &[Case], records: &[Record]) -> Fin
     hard_spheres(scene, &seen, &mut findings.rows);
     spheres(scene, &seen, &mut findings.rows);
     framed(scene, &seen, &mut findings.rows);
-    pictures::draw(scene, &seen, &mut findings.plots);
+    plots::draw(scene, &seen, &mut findings.plots);
     findings
 }
 

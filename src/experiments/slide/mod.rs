@@ -3,20 +3,20 @@
 //! It shows what a membrane of triangles is good for: a constant friction force and a constant
 //! height, where the spheres of the classic mass-spring membrane make the ball go up and down.
 
-mod evaluate; // what the records show
-mod expected; // from geometry and from Hertz
-mod patch; // the lattice
-mod pictures; // for the report
-mod ride; // one case
-mod scene; // key by key
-mod seen; // a record, prepared
+mod build; // the lattice
+mod evaluate; // verdicts from the records
+mod expected; // predictions from geometry and Hertz contact
+mod measure; // quantities from a record
+mod plots; // plots for the report
+mod run; // one case
+mod scene; // scene keys
 #[cfg(test)]
 mod tests;
 
 use super::{Experiment, Plan, Run, SceneText, StartError, findings::Findings, record::Record};
 use crate::scene::{SceneError, text};
-use patch::Way;
-use ride::{Case, Ride};
+use build::Way;
+use run::{Case, Ride};
 use scene::Scene;
 
 /// The scene that comes with the program.

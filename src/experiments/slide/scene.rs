@@ -8,7 +8,7 @@ use crate::{
         quantity::{FORCE, IMPULSE, LENGTH, SPEED, TIME, TORQUE},
         schema,
         text::Keys,
-        walk::{Quantity, Range, Walk},
+        visit::{Quantity, Range, Walk},
     },
 };
 

@@ -1,10 +1,11 @@
 //! What the records of the triaxial tests show: rows of both sizes, curves, plots, run times.
 
 use super::{
-    CHECK, LOOSE, name,
+    CHECK, LOOSE,
+    build::{Choice, Kind},
+    name,
     plots::{curve, plots},
-    setup::Setup,
-    specimen::{Choice, Kind},
+    scene::Setup,
     timing_name,
 };
 use crate::{

@@ -2,20 +2,20 @@
 //! confining pressure, with both membrane models, two sizes and two initial states; and how long both
 //! models take.
 
-mod course; // from grown grains to the last strain
-mod evaluate; // what the records show
-mod gauges; // what is read off a specimen
-mod logbook; // what is recorded
-mod plots; // curves and pictures
-mod run; // a case
-mod setup; // the scene
-mod specimen; // grains, membrane, plates
+mod build; // grains, membrane, plates
+mod evaluate; // verdicts from the records
+mod measure; // measurements on a specimen
+mod plots; // plots for the report
+mod protocol; // from grown grains to the last strain
+mod run; // one case
+mod scene; // scene keys
+mod time_series; // the recorded series
 mod timing; // both models side by side
 
 use super::{Experiment, Plan, Run, SceneText, StartError, findings::Findings, record::Record};
 use crate::scene::{SceneError, text::fill};
-use setup::Setup;
-use specimen::{Choice, Kind};
+use build::{Choice, Kind};
+use scene::Setup;
 
 /// The experiment.
 pub struct Triaxial;
@@ -37,7 +37,7 @@ impl Experiment for Triaxial {
     }
 
     fn read(&self, scene: &SceneText<'_>) -> Result<Box<dyn Plan>, SceneError> {
-        Ok(Box::new(Triaxials { setup: fill(&scene.layers(false), setup::blank())? }))
+        Ok(Box::new(Triaxials { setup: fill(&scene.layers(false), scene::blank())? }))
     }
 }
 

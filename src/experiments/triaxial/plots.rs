@@ -1,6 +1,6 @@
 //! Curves and pictures of the triaxial tests.
 
-use super::{CHECK, setup::Setup};
+use super::{CHECK, scene::Setup};
 use crate::experiments::{
     findings::{Curve, Kind, Plot, Series},
     record::Record,

@@ -2,13 +2,13 @@
 
 use super::{
     Variant,
-    course::{Course, Stage, Test, keep_between_plates},
-    setup::Setup,
-    specimen::{Choice, Kind, Recipe},
+    build::{Choice, Kind, Recipe},
+    protocol::{Course, Stage, Test, keep_between_plates},
+    scene::Setup,
 };
 use crate::{
     base::Real,
-    experiments::{Progress, ResumeError, Run, Stepped, kept, record::Record},
+    experiments::{Progress, ResumeError, Run, Stepped, record::Record, saved_run},
     physics::{health::Diverged, measure::real, membrane::mesh::MeshFault, state::State},
 };
 
@@ -69,11 +69,11 @@ impl Run for Sheared {
     }
 
     fn save(&self) -> Vec<u8> {
-        kept::pack(&self.name, &self.test.course, [&self.test.system.state])
+        saved_run::pack(&self.name, &self.test.course, [&self.test.system.state])
     }
 
     fn resume(&mut self, bytes: &[u8]) -> Result<(), ResumeError> {
-        let (course, [state]) = kept::unpack(&self.name, bytes)?;
+        let (course, [state]) = saved_run::unpack(&self.name, bytes)?;
         take(&mut self.test, course, state)
     }
 
@@ -81,7 +81,7 @@ impl Run for Sheared {
         let initial = self.test.recipe.choice.initial;
         let seed = self.test.recipe.setup.seeds[initial];
         let mut record = self.test.course.logbook.record(&self.name, seed);
-        record.digest = kept::digest(&self.test.system.state);
+        record.digest = saved_run::digest(&self.test.system.state);
         record
     }
 
@@ -102,7 +102,7 @@ pub(super) fn slice(test: &Test) -> usize {
 
 /// Goes on from a course and its state, if they are of the same specimen.
 pub(super) fn take(test: &mut Test, course: Course, state: State) -> Result<(), ResumeError> {
-    kept::of_one_scene(&state, &test.system.state)?;
+    saved_run::of_one_scene(&state, &test.system.state)?;
     test.system.state = state;
     test.resume(course);
     Ok(())
@@ -121,7 +121,7 @@ fn whole(value: Real) -> usize {
 #[cfg(test)]
 mod tests {
     use super::{
-        super::{Triaxial, setup},
+        super::{Triaxial, scene},
         *,
     };
     use crate::{
@@ -141,7 +141,7 @@ mod tests {
         .map(str::to_owned);
         let (source, text) = Triaxial.scene();
         let scene = SceneText { text, source, overrides: &overrides, size: Size::Quick };
-        let setup = fill(&scene.layers(false), setup::blank()).unwrap();
+        let setup = fill(&scene.layers(false), scene::blank()).unwrap();
         let choice = Choice { size: 0, kind: Kind::Triangles, initial: 0 };
         Sheared::new(&setup, "small", choice, Variant::Plain).unwrap()
     }

@@ -4,14 +4,14 @@
 use serde::{Deserialize, Serialize};
 
 use super::{
-    course::{Course, Stage, Test},
+    build::{Choice, Kind, Recipe},
+    protocol::{Course, Stage, Test},
     run::{slice, take},
-    setup::Setup,
-    specimen::{Choice, Kind, Recipe},
+    scene::Setup,
 };
 use crate::{
     base::{Real, digest::Digest},
-    experiments::{Progress, ResumeError, Run, kept, record::Record},
+    experiments::{Progress, ResumeError, Run, record::Record, saved_run},
     physics::{
         State,
         health::Diverged,
@@ -114,11 +114,11 @@ impl Run for Timed {
             times: self.times,
             n_substeps: self.n_substeps,
         };
-        kept::pack(&self.name, &saved, [&first.system.state, &second.system.state])
+        saved_run::pack(&self.name, &saved, [&first.system.state, &second.system.state])
     }
 
     fn resume(&mut self, bytes: &[u8]) -> Result<(), ResumeError> {
-        let (saved, states): (Saved, [State; 2]) = kept::unpack(&self.name, bytes)?;
+        let (saved, states): (Saved, [State; 2]) = saved_run::unpack(&self.name, bytes)?;
         for ((test, course), state) in self.tests.iter_mut().zip(saved.courses).zip(states) {
             take(test, course, state)?;
         }

@@ -1,0 +1,203 @@
+//! The same packing in other codes, in alternation with ours: LAMMPS, LIGGGHTS and YADE, whichever is
+//! installed. They run as programs of their own and time themselves; what they print is read strictly.
+
+mod error; // what can go wrong
+mod input; // input files
+mod output; // parsed output
+mod tool; // where the programs are
+
+use std::{
+    fs, io,
+    path::{Path, PathBuf},
+    process::{Command, Stdio},
+};
+
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
+
+use super::{packing::Boxed, process::niceness, repetitions::Work, result::median, sanity::Limits};
+use crate::{
+    base::Real,
+    physics::{
+        System,
+        measure::{real, real_of},
+    },
+};
+pub use error::PeerError;
+use input::{numbers, packing};
+use output::{Lap, read, tail};
+use tool::{TOOLS, Tool, on_path};
+
+/// What solver threads of ours are nicer than the process.
+const NICE: i32 = 10;
+
+/// What is told of a peer.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PeerFigures {
+    /// Which.
+    pub peer: String,
+    /// What it says of its version.
+    pub version: String,
+    /// Contacts between grains times steps per second and thread, the median of all runs.
+    pub contact_steps_per_s_per_core: Real,
+    /// Slowest over fastest run, less one.
+    pub spread: Real,
+    /// Contacts at the end.
+    pub n_contacts: Real,
+    /// Kinetic energy at the end [J], without spins.
+    pub kinetic_energy_j: Real,
+    /// Our contact-steps per second over its own.
+    pub ratio: Real,
+}
+
+/// All peers that are installed, with the packing of a case.
+pub(super) struct Peers {
+    folder: Folder,
+    case: Value,
+    n_threads: usize,
+    work: Work,
+    n_contacts_min: Real,
+    found: Vec<(Tool, PathBuf, Vec<Lap>)>,
+    /// What is not installed, with the remedy.
+    pub(super) missing: Vec<String>,
+}
+
+impl Peers {
+    /// Looks for peers, and writes the packing of `boxed` as it is in `system` for them.
+    pub(super) fn new(
+        boxed: &Boxed,
+        system: &System,
+        (work, limits): (Work, &Limits),
+        n_threads: usize,
+    ) -> Result<Self, PeerError> {
+        let (mut found, mut missing) = (Vec::new(), Vec::new());
+        for tool in TOOLS {
+            match tool.program() {
+                Some(program) => found.push((tool, program, Vec::new())),
+                None => missing.push(format!("{}: not installed; {}", tool.name(), tool.remedy())),
+            }
+        }
+        let folder = Folder::new().map_err(|reason| PeerError::Io { peer: "peers", reason })?;
+        for (tool, ..) in &found {
+            let (name, text) = tool.script();
+            let write = || {
+                fs::write(folder.0.join(name), text)?;
+                fs::write(folder.0.join(tool.data()), packing(*tool, system, boxed))
+            };
+            write().map_err(|reason| PeerError::Io { peer: tool.name(), reason })?;
+        }
+        let n_contacts_min = limits.contacts_per_grain * real(system.state.grains.len());
+        let case = numbers(boxed, work);
+        Ok(Self { folder, case, n_threads, work, n_contacts_min, found, missing })
+    }
+
+    /// One run of each.
+    pub(super) fn lap(&mut self) -> Result<(), PeerError> {
+        for k in 0..self.found.len() {
+            let (tool, program, _) = &self.found[k];
+            let lap = self.run(*tool, program)?;
+            self.found[k].2.push(lap);
+        }
+        Ok(())
+    }
+
+    /// What came out, beside our own contact-steps per second and thread.
+    pub(super) fn figures(&self, ours: Real) -> Vec<PeerFigures> {
+        let of_tool = |(tool, _, laps): &(Tool, PathBuf, Vec<Lap>)| {
+            let n_steps = real_of(self.work.n_steps);
+            let speed = |lap: &Lap| {
+                let [before, after] = lap.n_contacts;
+                0.5 * (before + after) * n_steps / lap.wall_s / real(self.n_threads)
+            };
+            let mut speeds: Vec<Real> = laps.iter().map(speed).collect();
+            speeds.sort_by(Real::total_cmp);
+            let last = laps.last()?;
+            let theirs = median(&speeds);
+            Some(PeerFigures {
+                peer: tool.name().to_owned(),
+                version: last.version.clone(),
+                contact_steps_per_s_per_core: theirs,
+                spread: speeds[speeds.len() - 1] / speeds[0] - 1.0,
+                n_contacts: last.n_contacts[1],
+                kinetic_energy_j: last.kinetic_energy,
+                ratio: ours / theirs,
+            })
+        };
+        self.found.iter().filter_map(of_tool).collect()
+    }
+
+    fn run(&self, tool: Tool, program: &Path) -> Result<Lap, PeerError> {
+        let peer = tool.name();
+        let mut command = self.command(tool, program)?;
+        command.current_dir(&self.folder.0).stdin(Stdio::null());
+        let output = command.output().map_err(|reason| PeerError::Io { peer, reason })?;
+        let said = String::from_utf8_lossy(&output.stdout).into_owned();
+        let fault = String::from_utf8_lossy(&output.stderr).into_owned();
+        if !output.status.success() {
+            let tail = tail(&format!("{said}\n{fault}"));
+            return Err(PeerError::Failed { peer, status: output.status, tail });
+        }
+        let lap = read(tool, &said)?;
+        let fewest = lap.n_contacts[0].min(lap.n_contacts[1]);
+        if fewest >= self.n_contacts_min {
+            return Ok(lap);
+        }
+        Err(PeerError::Empty { peer, found: fewest, expected: self.n_contacts_min })
+    }
+
+    /// The command line of a peer, as nice as our solver's threads are.
+    fn command(&self, tool: Tool, program: &Path) -> Result<Command, PeerError> {
+        let mut command = Command::new("nice");
+        command.arg("-n").arg((NICE - niceness()).to_string());
+        let n_threads = self.n_threads.to_string();
+        let script = tool.script().0;
+        if tool == Tool::Yade {
+            let mut case = self.case.clone();
+            case["data"] = json!(tool.data());
+            command.arg(program).arg(format!("-j{n_threads}")).args(["-n", "-x", script]);
+            command.env("JAMGRIP_CASE", case.to_string());
+            return Ok(command);
+        }
+        let home = program.parent().and_then(Path::parent);
+        if 1 < self.n_threads {
+            // MPI of the same environment: programs and launchers of different ones do not meet.
+            let own = home.map(|it| it.join("bin/mpiexec")).filter(|it| it.is_file());
+            let launcher = own.or_else(|| on_path("mpirun"));
+            let launcher = launcher.ok_or(PeerError::NoMpi { peer: tool.name() })?;
+            command.arg(launcher).args(["-n", &n_threads]);
+            command.env("OMPI_ALLOW_RUN_AS_ROOT", "1").env("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1");
+            command.env("OMPI_MCA_hwloc_base_binding_policy", "none");
+        }
+        if let Some(library) =
+            home.map(|it| it.join("lib")).filter(|it| it.join("libmpi.so.12").is_file())
+        {
+            command.env("LD_LIBRARY_PATH", library);
+        }
+        command.env("OMP_NUM_THREADS", "1");
+        command.arg(program).args(["-in", script, "-log", "none", "-var", "data", tool.data()]);
+        let law = if tool == Tool::LammpsHistory { "history" } else { "mindlin" };
+        command.args(["-var", "law", law]);
+        for (name, value) in self.case.as_object().into_iter().flatten() {
+            command.args(["-var", name, &value.to_string()]);
+        }
+        Ok(command)
+    }
+}
+
+/// A folder for the time of the runs.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new() -> io::Result<Self> {
+        let path = std::env::temp_dir().join(format!("jamgrip-peers-{}", std::process::id()));
+        fs::create_dir_all(&path)?;
+        Ok(Self(path))
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        // What cannot be removed only takes room.
+        drop(fs::remove_dir_all(&self.0));
+    }
+}

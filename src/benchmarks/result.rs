@@ -1,0 +1,292 @@
+//! What is told of a case: for machines, and for people.
+
+use std::{collections::BTreeMap, fmt::Write};
+
+use serde::{Deserialize, Serialize};
+
+#[cfg(all(feature = "ros", feature = "shm"))]
+use super::Latency;
+use super::{
+    PeerFigures,
+    repetitions::{Lap, Work},
+    sanity::Seen,
+};
+use crate::{
+    base::Real,
+    physics::measure::{real, real_of},
+};
+
+/// Stages below this share are not shown to people.
+const SHARE_SHOWN: Real = 5e-4;
+
+/// Share of the processors below which others were at work.
+const SHARE_OWN: Real = 0.9;
+
+/// One case, measured.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Figures {
+    /// The case.
+    pub case: String,
+    /// Grains.
+    pub n_grains: usize,
+    /// Vertices of the membrane.
+    pub n_vertices: usize,
+    /// Solver threads.
+    pub threads: usize,
+    /// Numbers computed side by side, at most.
+    pub lanes: u8,
+    /// Length of a substep [s].
+    pub substep_s: Real,
+    /// Substeps per second, the median of all laps.
+    pub steps_per_s: Real,
+    /// The fastest lap's.
+    pub steps_per_s_best: Real,
+    /// Slowest over fastest lap, less one.
+    pub spread: Real,
+    /// Processor time over wall time and threads: below one, others had the processors; null where the
+    /// system does not tell.
+    pub processor_share: Option<Real>,
+    /// Contacts between grains times substeps per second and thread.
+    pub contact_steps_per_s_per_core: Real,
+    /// Its inverse [ns].
+    pub ns_per_contact_step: Real,
+    /// Simulated over wall time.
+    pub real_time_factor: Real,
+    /// Digest of the state after so many steps from the start.
+    pub digest: String,
+    /// After how many steps.
+    pub digest_after_steps: u64,
+    /// Digest of the state at the start: digests of runs with other starts say nothing.
+    pub start_digest: String,
+    /// Steps of a lap before the clock starts.
+    pub n_warm_steps: u64,
+    /// Steps of a lap that are measured.
+    pub n_lap_steps: u64,
+    /// Laps.
+    pub n_laps: usize,
+    /// How often a lap built the lists of neighbours.
+    pub n_builds_per_lap: u64,
+    /// Contacts between grains; all contacts are counted at the end of a lap.
+    pub n_contacts: usize,
+    /// Of grains with walls.
+    pub n_wall_contacts: usize,
+    /// Of grains with the membrane.
+    pub n_membrane_contacts: usize,
+    /// Of the membrane with bodies.
+    pub n_body_contacts: usize,
+    /// Largest overlap of two grains [m].
+    pub overlap_max_m: Real,
+    /// The same over the mean radius.
+    pub overlap_ratio_max: Real,
+    /// Kinetic energy [J].
+    pub kinetic_energy_j: Real,
+    /// Largest resident set while the laps were run [bytes]; null where the system does not tell.
+    pub peak_rss_bytes: Option<u64>,
+    /// Where the time of a substep goes.
+    pub stages: Vec<Stage>,
+    /// Real-time factor of each phase of a session.
+    pub phases: BTreeMap<String, Real>,
+    /// Latencies of the loop.
+    #[cfg(all(feature = "ros", feature = "shm"))]
+    pub latencies: Vec<Latency>,
+    /// Other codes on the same packing.
+    pub peers: Vec<PeerFigures>,
+    /// Other codes that are not installed, with the remedy.
+    pub peers_missing: Vec<String>,
+}
+
+/// The time of one stage.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Stage {
+    /// Its name.
+    pub name: String,
+    /// Share of the whole.
+    pub share: Real,
+    /// Time in each substep [ns].
+    pub ns_per_step: Real,
+}
+
+impl Figures {
+    /// Speeds, from laps.
+    pub(super) fn of_laps(laps: &[Lap], work: Work, n_threads: usize) -> Self {
+        let mut times: Vec<Real> = laps.iter().map(|lap| lap.wall_s).collect();
+        times.sort_by(Real::total_cmp);
+        let (Some(best), Some(worst)) = (times.first(), times.last()) else {
+            return Self::default();
+        };
+        let n_steps = real_of(work.n_steps);
+        let steps_per_s = n_steps / median(&times);
+        let n_contacts = laps.iter().map(|lap| lap.n_contacts).sum::<Real>() / real(laps.len());
+        let contact_steps = n_contacts * steps_per_s / real(n_threads);
+        Self {
+            steps_per_s,
+            steps_per_s_best: n_steps / best,
+            spread: worst / best - 1.0,
+            processor_share: processor_share(
+                laps.iter().map(|lap| (lap.wall_s, lap.processor_s)),
+                n_threads,
+            ),
+            contact_steps_per_s_per_core: contact_steps,
+            ns_per_contact_step: 1e9 / contact_steps,
+            n_laps: laps.len(),
+            n_builds_per_lap: laps[0].n_builds,
+            ..Self::default()
+        }
+    }
+
+    /// With the real-time factor that follows from the speed.
+    pub(super) fn with_speed_of_time(mut self) -> Self {
+        self.real_time_factor = self.steps_per_s * self.substep_s;
+        self
+    }
+
+    /// With what was seen of the state.
+    pub(super) fn seeing(mut self, seen: &Seen) -> Self {
+        self.n_contacts = seen.n_grain_contacts;
+        self.n_wall_contacts = seen.n_wall_contacts;
+        self.n_membrane_contacts = seen.n_membrane_contacts;
+        self.n_body_contacts = seen.n_body_contacts;
+        self.overlap_max_m = seen.overlap_max;
+        self.overlap_ratio_max = seen.overlap_ratio_max;
+        self.kinetic_energy_j = seen.kinetic_energy;
+        self
+    }
+
+    /// For people, several lines.
+    pub fn to_text(&self) -> String {
+        let mut text = String::new();
+        self.write(&mut text).expect("a String takes everything");
+        text
+    }
+
+    #[cfg(all(feature = "ros", feature = "shm"))]
+    fn write_latencies(&self, text: &mut String) -> std::fmt::Result {
+        for it in &self.latencies {
+            writeln!(
+                text,
+                "  {}: p50 {:.0} us, p99 {:.0} us, p99.9 {:.0} us, at most {:.0} us, {} samples, {} lost",
+                it.path, it.p50_us, it.p99_us, it.p999_us, it.max_us, it.n, it.n_lost
+            )?;
+        }
+        Ok(())
+    }
+
+    fn write(&self, text: &mut String) -> std::fmt::Result {
+        #[cfg(all(feature = "ros", feature = "shm"))]
+        if !self.latencies.is_empty() {
+            let Self { case, threads, real_time_factor, .. } = self;
+            writeln!(
+                text,
+                "{case}: a loop of 1 kHz, {threads} solver threads, real-time factor {real_time_factor:.4}"
+            )?;
+            return self.write_latencies(text);
+        }
+        let Self { case, n_grains, n_vertices, threads, lanes, n_laps, n_lap_steps, .. } = self;
+        writeln!(
+            text,
+            "{case}: {n_grains} grains, {n_vertices} vertices, threads: {threads}, lanes: {lanes}"
+        )?;
+        let processors = or_unknown(self.processor_share, |it| format!("{:.0} %", 100.0 * it));
+        writeln!(
+            text,
+            "  {:.1} steps/s (best {:.1}, spread {:.1} %, {n_laps} laps of {n_lap_steps} steps, processors \
+             {processors}), step {:.3e} s, real-time factor {:.4}",
+            self.steps_per_s,
+            self.steps_per_s_best,
+            100.0 * self.spread,
+            self.substep_s,
+            self.real_time_factor
+        )?;
+        writeln!(
+            text,
+            "  {:.2} M contact-steps/s per core ({:.1} ns), contacts: {} grains, {} walls, {} membrane, \
+             {} bodies; lists built {} times a lap",
+            self.contact_steps_per_s_per_core / 1e6,
+            self.ns_per_contact_step,
+            self.n_contacts,
+            self.n_wall_contacts,
+            self.n_membrane_contacts,
+            self.n_body_contacts,
+            self.n_builds_per_lap
+        )?;
+        self.write_shares(text)?;
+        self.write_peers(text)?;
+        if self.processor_share.is_some_and(|it| it < SHARE_OWN) {
+            writeln!(
+                text,
+                "  others had the processors: speeds and ratios say little; measure on a quiet machine"
+            )?;
+        }
+        let memory = |bytes| format!("{:.0} MiB", real_of(bytes) / 1_048_576.0);
+        writeln!(
+            text,
+            "  digest {} after {} steps from {}; overlap at most {:.4} radii, kinetic energy {:.3e} J; \
+             memory {}",
+            self.digest,
+            self.digest_after_steps,
+            self.start_digest,
+            self.overlap_ratio_max,
+            self.kinetic_energy_j,
+            or_unknown(self.peak_rss_bytes, memory)
+        )
+    }
+
+    fn write_shares(&self, text: &mut String) -> std::fmt::Result {
+        let shown = self.stages.iter().filter(|stage| SHARE_SHOWN <= stage.share);
+        let stage = |it: &Stage| {
+            format!("{} {:.1} % ({:.1} us)", it.name, 100.0 * it.share, it.ns_per_step / 1e3)
+        };
+        let stages: Vec<String> = shown.map(stage).collect();
+        writeln!(text, "  {}", stages.join(", "))?;
+        if self.phases.is_empty() {
+            return Ok(());
+        }
+        let phase = |(name, factor): (&String, &Real)| format!("{name} {factor:.3}");
+        let phases: Vec<String> = self.phases.iter().map(phase).collect();
+        writeln!(text, "  real-time factor by phase: {}", phases.join(", "))
+    }
+
+    fn write_peers(&self, text: &mut String) -> std::fmt::Result {
+        for it in &self.peers {
+            writeln!(
+                text,
+                "  {:.2} x {}: {:.2} M contact-steps/s per core (spread {:.1} %), {:.0} contacts, kinetic \
+                 energy {:.3e} J; {}",
+                it.ratio,
+                it.peer,
+                it.contact_steps_per_s_per_core / 1e6,
+                100.0 * it.spread,
+                it.n_contacts,
+                it.kinetic_energy_j,
+                it.version
+            )?;
+        }
+        for line in &self.peers_missing {
+            writeln!(text, "  {line}")?;
+        }
+        Ok(())
+    }
+}
+
+fn or_unknown<T>(value: Option<T>, text: impl FnOnce(T) -> String) -> String {
+    value.map_or_else(|| "unknown".to_owned(), text)
+}
+
+/// Processor time over wall time [s] and threads.
+pub(super) fn processor_share(
+    laps: impl Iterator<Item = (Real, Option<Real>)>,
+    n_threads: usize,
+) -> Option<Real> {
+    let (mut wall, mut processor) = (0.0, 0.0);
+    for (wall_s, processor_s) in laps {
+        wall += wall_s;
+        processor += processor_s?;
+    }
+    Some(processor / (wall * real(n_threads)))
+}
+
+/// The middle of sorted values.
+pub(super) fn median(sorted: &[Real]) -> Real {
+    let n = sorted.len();
+    if n % 2 == 1 { sorted[n / 2] } else { 0.5 * (sorted[n / 2 - 1] + sorted[n / 2]) }
+}

@@ -1,0 +1,299 @@
+//! Command line to recordings.
+
+use std::{
+    error::Error,
+    io::{self, BufRead, Write},
+    path::Path,
+    process::ExitCode,
+    sync::mpsc,
+    time::Duration,
+};
+
+use jamgrip::{
+    bag::{check, info::Info, recover, source::Script},
+    host::{cache::Cache, progress_bar::Progress, shutdown::Shutdown},
+    node::launch::{Finished, Options, launch_by},
+    replay::{
+        branch::{self, Branch},
+        page,
+        play::{self, Played},
+        player_command::{Asked, Cue},
+        recorded_run::Again,
+        segment::{Difference, Kind},
+        verify::{self, Verdict},
+    },
+    scene::Scene,
+    wire::{from_ros::CommandCodec, topics::topics},
+};
+
+use crate::args_bag::{Bag, Look, Replay};
+
+/// A digest differs, something is damaged, or it could not be done.
+const FAILED: u8 = 1;
+/// The command line is wrong, as clap says it.
+const WRONG: u8 = 2;
+/// Someone asked it to end: 128 and the number of SIGINT.
+const INTERRUPTED: u8 = 130;
+
+pub(crate) fn replay(args: &Replay) -> Result<ExitCode, Box<dyn Error>> {
+    match args.from {
+        _ if args.verify => verify(args),
+        Some(from) => branch(args, from),
+        None => play(args),
+    }
+}
+
+pub(crate) fn bag(action: &Bag) -> Result<ExitCode, Box<dyn Error>> {
+    match action {
+        Bag::Info(look) => info(look),
+        Bag::Check(look) => check(look),
+        Bag::Plot { bag, output } => plot(bag, output.as_deref()),
+        Bag::Recover { bag, output } => recover(bag, output.as_deref()),
+    }
+}
+
+/// Runs a scene under the commands of a recording.
+pub(crate) fn run_by(
+    commands: &Path,
+    scene: &Scene,
+    options: &Options,
+) -> Result<Finished, Box<dyn Error>> {
+    let topics = topics(scene);
+    let objects = scene.objects.iter().map(|it| it.name.clone()).collect();
+    let codec = CommandCodec::new(topics.clone(), objects);
+    let tick_ns = scene.time.tick_ns;
+    let script = Script::read(commands, &topics, &codec, tick_ns)?;
+    // Without another end the run ends a second after the last command.
+    let end = Duration::from_nanos(script.last_tick().saturating_mul(tick_ns)).as_secs_f64() + 1.0;
+    let duration = Some(options.duration.unwrap_or(end));
+    Ok(launch_by(scene, &Options { duration, ..options.clone() }, script)?)
+}
+
+fn verify(args: &Replay) -> Result<ExitCode, Box<dyn Error>> {
+    let shutdown = Shutdown::listen()?;
+    let progress = Progress::new(args.json);
+    let again = Again::open(&args.bag)?;
+    let verdict = verify::verify(
+        &again,
+        &verify::Options {
+            hands: args.hands(),
+            settles: args.settle,
+            from_ns: nanoseconds(args.start.unwrap_or(0.0)),
+            to_ns: args.end.map(nanoseconds),
+            cache: args.cache.clone().map_or_else(Cache::of_user, Cache::new),
+            progress: &progress,
+            shutdown: &shutdown,
+        },
+    )?;
+    let mut stdout = io::stdout().lock();
+    if args.json {
+        writeln!(stdout, "{}", verdict.to_json())?;
+    } else {
+        tell(&mut stdout, &verdict)?;
+    }
+    Ok(match &verdict {
+        it if it.is_interrupted => ExitCode::from(INTERRUPTED),
+        it if it.is_equal() => ExitCode::SUCCESS,
+        _ => ExitCode::from(FAILED),
+    })
+}
+
+fn tell(out: &mut impl Write, verdict: &Verdict) -> io::Result<()> {
+    for remark in &verdict.remarks {
+        writeln!(out, "{remark}")?;
+    }
+    let Verdict { n_ticks, n_compared, start_tick, real_time_factor, .. } = verdict;
+    let ((n_jobs, n_threads), n_checkpoints) = (verdict.shared_out, verdict.n_checkpoints);
+    writeln!(
+        out,
+        "{n_ticks} ticks simulated from tick {start_tick} on at {real_time_factor:.3} x real time \
+         ({n_jobs} parts at a time, {n_threads} threads each); \
+         {n_compared} digests and {n_checkpoints} checkpoints compared"
+    )?;
+    match &verdict.first_difference {
+        Some(Difference { tick, kind: Kind::Digest { recorded, simulated } }) => writeln!(
+            out,
+            "tick {tick} differs: {recorded:016x} is recorded, {simulated:016x} was simulated"
+        ),
+        Some(Difference { tick, kind: Kind::Checkpoint(part) }) => {
+            writeln!(out, "checkpoint at tick {tick} differs, although the digests do not: {part}")
+        }
+        None if verdict.is_interrupted => writeln!(out, "interrupted; all equal so far"),
+        None if *n_compared == 0 => writeln!(out, "nothing to compare"),
+        None => writeln!(out, "all equal"),
+    }
+}
+
+fn branch(args: &Replay, from: f64) -> Result<ExitCode, Box<dyn Error>> {
+    let again = Again::open(&args.bag)?;
+    let options = Options {
+        n_threads: args.n_threads(),
+        duration: args.end,
+        scene_file: args.bag.clone(),
+        cache: args.cache.clone().map_or_else(Cache::of_user, Cache::new),
+        is_quiet: args.json,
+        facts: Vec::new(),
+    };
+    let wanted = Branch { from_ns: nanoseconds(from), overrides: args.overrides() };
+    let finished = match branch::branch(&again, &wanted, &options) {
+        Err(error) if error.is_of_command_line() => {
+            writeln!(io::stderr().lock(), "{error}")?;
+            return Ok(ExitCode::from(WRONG));
+        }
+        other => other?,
+    };
+    finished.summary.print(args.json)?;
+    match finished.fault {
+        Some(fault) => Err(fault.into()),
+        None => Ok(ExitCode::SUCCESS),
+    }
+}
+
+fn play(args: &Replay) -> Result<ExitCode, Box<dyn Error>> {
+    let shutdown = Shutdown::listen()?;
+    let files = jamgrip::bag::files(&args.bag)?;
+    let options = play::Options {
+        rate: args.rate,
+        start_ns: nanoseconds(args.start.unwrap_or(0.0)),
+        end_ns: args.end.map(nanoseconds),
+        is_paused: args.start_paused,
+        is_loop: args.is_loop,
+        topics: args.topics.clone(),
+        exclude: args.exclude.clone(),
+        delay: Duration::from_secs_f64(args.delay),
+        clock_rate: args.clock,
+    };
+    let (teller, cues) = mpsc::channel();
+    if args.cues {
+        let teller = teller.clone();
+        std::thread::Builder::new().name("cues".to_owned()).spawn(move || listen(&teller))?;
+    }
+    let perform =
+        |stage: &mut dyn play::Stage| play::play(&files, &options, stage, &cues, &shutdown);
+    let (played, fault) = on_stage(&options, teller, perform)?;
+    let mut stderr = io::stderr().lock();
+    for topic in &played.refused {
+        writeln!(
+            stderr,
+            "{topic}: not played: its messages are no CDR, or its name is not ROS 2's"
+        )?;
+    }
+    if 0 < played.n_damages {
+        let n = played.n_damages;
+        writeln!(stderr, "{n} damages in the recording; `jamgrip bag check` tells them")?;
+    }
+    if let Some(fault) = fault {
+        writeln!(stderr, "some messages were not taken, the last: {fault}")?;
+    }
+    let mut stdout = io::stdout().lock();
+    if args.json {
+        let (n, refused) = (played.n_published, &played.refused);
+        writeln!(stdout, "{}", serde_json::json!({"published": n, "refused": refused}))?;
+    } else {
+        writeln!(stdout, "{} messages published", played.n_published)?;
+    }
+    let is_interrupted = shutdown.is_requested();
+    Ok(if is_interrupted { ExitCode::from(INTERRUPTED) } else { ExitCode::SUCCESS })
+}
+
+/// What was played, and what went wrong on the stage.
+type Performance = (Played, Option<String>);
+
+#[cfg(feature = "ros")]
+fn on_stage(
+    options: &play::Options,
+    teller: mpsc::Sender<Asked>,
+    perform: impl FnOnce(&mut dyn play::Stage) -> io::Result<Played>,
+) -> Result<Performance, Box<dyn Error>> {
+    use jamgrip::{replay::player_node::RosStage, ros::discovery::Reach, scene::Ros};
+
+    let anywhere = Ros { enabled: true, ..Ros::OFF };
+    let reach = Reach::choose(&anywhere, |name| std::env::var(name).ok())?;
+    let mut stage = RosStage::join(&reach, options.clock_rate.is_some())?;
+    let _prompter = stage.prompted(teller)?;
+    let played = perform(&mut stage)?;
+    Ok((played, stage.faults.1))
+}
+
+#[cfg(not(feature = "ros"))]
+fn on_stage(
+    _: &play::Options,
+    _: mpsc::Sender<Asked>,
+    _: impl FnOnce(&mut dyn play::Stage) -> io::Result<Played>,
+) -> Result<Performance, Box<dyn Error>> {
+    Err("this jamgrip was built without ROS 2 (feature `ros`): there is nowhere to play to".into())
+}
+
+/// Reads cues until standard input ends or nobody listens.
+fn listen(teller: &mpsc::Sender<Asked>) {
+    for line in io::stdin().lock().lines().map_while(Result::ok) {
+        match Cue::parse(&line) {
+            Ok(cue) => {
+                if teller.send(cue.into()).is_err() {
+                    return;
+                }
+            }
+            // If standard error is gone there is nobody to tell.
+            Err(fault) => drop(writeln!(io::stderr().lock(), "{fault}")),
+        }
+    }
+}
+
+fn info(look: &Look) -> Result<ExitCode, Box<dyn Error>> {
+    let info = Info::read(&look.bag)?;
+    let mut stdout = io::stdout().lock();
+    if look.json { writeln!(stdout, "{}", info.to_json()) } else { write!(stdout, "{info}") }?;
+    Ok(ExitCode::SUCCESS)
+}
+
+fn check(look: &Look) -> Result<ExitCode, Box<dyn Error>> {
+    let findings = check::check(&look.bag)?;
+    let mut stdout = io::stdout().lock();
+    let n_errors = findings.iter().filter(|it| it.is_error).count();
+    if look.json {
+        let line = |it: &check::Finding| {
+            let path = it.path.display().to_string();
+            serde_json::json!({"error": it.is_error, "path": path, "text": it.text})
+        };
+        let findings: Vec<_> = findings.iter().map(line).collect();
+        writeln!(stdout, "{}", serde_json::json!({"errors": n_errors, "findings": findings}))?;
+    } else {
+        for it in &findings {
+            let kind = if it.is_error { "error" } else { "note" };
+            writeln!(stdout, "{kind}: {}: {}", it.path.display(), it.text)?;
+        }
+        writeln!(stdout, "{n_errors} errors, {} notes", findings.len() - n_errors)?;
+    }
+    Ok(if n_errors == 0 { ExitCode::SUCCESS } else { ExitCode::from(FAILED) })
+}
+
+fn plot(path: &Path, output: Option<&Path>) -> Result<ExitCode, Box<dyn Error>> {
+    let beside = || match path.is_dir() {
+        true => path.join("report.html"),
+        false => path.with_extension("html"),
+    };
+    let output = output.map_or_else(beside, Path::to_owned);
+    let page = page::html(path)?;
+    let fault =
+        |error| format!("{}: {error}; choose another place with --output", output.display());
+    std::fs::write(&output, page).map_err(fault)?;
+    writeln!(io::stdout().lock(), "{}", output.display())?;
+    Ok(ExitCode::SUCCESS)
+}
+
+fn recover(path: &Path, output: Option<&Path>) -> Result<ExitCode, Box<dyn Error>> {
+    let output = output.map_or_else(|| recover::default_output(path), Path::to_owned);
+    let recovered = recover::recover(path, &output)?;
+    let mut stdout = io::stdout().lock();
+    for (file, damage) in &recovered.damages {
+        writeln!(stdout, "{}: {damage}", file.display())?;
+    }
+    let (n_messages, n_attachments) = (recovered.n_messages, recovered.n_attachments);
+    let place = recovered.output.display();
+    writeln!(stdout, "{n_messages} messages and {n_attachments} attachments saved in {place}")?;
+    Ok(ExitCode::SUCCESS)
+}
+
+fn nanoseconds(seconds: f64) -> u64 {
+    u64::try_from(Duration::from_secs_f64(seconds).as_nanos()).unwrap_or(u64::MAX)
+}

@@ -1,0 +1,277 @@
+//! The specimen: grains in a tube of membrane between two plates, and what of it changes between the
+//! stages of the test.
+//!
+//! A frame holds the whole membrane straight while the grains grow; afterwards its end rings are fixed
+//! to the plates and the rest is free. Grains touch the plates and the membrane. They are softer while
+//! they grow; stiffness and dissipation climb to their true values by equal factors.
+
+use super::scene::{Setup, Size};
+use crate::{
+    base::{
+        Pose, Real, Vec3,
+        random::{Random, Stream},
+        real::Twist,
+    },
+    physics::{
+        Model, System,
+        boundary::{
+            body::BodyMotion,
+            wall::{WallModel, WallShape},
+        },
+        contact::{
+            law::{PairLaw, Surface},
+            stiffness_at_vertex,
+        },
+        critical_step::{RAYLEIGH_SHARE, rayleigh_time},
+        membrane::{
+            FREE, MembraneModel, SheetContact,
+            critical_step::critical_step_at,
+            mesh::{Mesh, MeshFault},
+        },
+        model::ChamberModel,
+        packing::{Room, first_scale, scatter, sphere_volume},
+        state::Grains,
+    },
+    scene::Material,
+};
+
+/// The wall that holds the membrane while grains grow. It is first, so that the lists of neighbours
+/// are told from the middle of the specimen.
+pub(super) const FRAME: u32 = 0;
+/// The lower plate.
+pub(super) const BOTTOM: u32 = 1;
+/// The upper plate.
+pub(super) const TOP: u32 = 2;
+/// Neighbours are listed this share of the largest radius beyond contact.
+const SKIN_SHARE: Real = 0.2;
+
+/// What grains touch of the membrane.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// Triangles, the wall model.
+    Triangles,
+    /// Spheres around the vertices, the particle model.
+    Spheres,
+}
+
+impl Kind {
+    /// Its name in cases and stages.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Triangles => "triangles",
+            Self::Spheres => "spheres",
+        }
+    }
+}
+
+/// Which specimen.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Choice {
+    /// 0 or 1: the source's case 1 or 2.
+    pub(super) size: usize,
+    /// What grains touch of the membrane.
+    pub(super) kind: Kind,
+    /// 0 or 1: initial state A or B.
+    pub(super) initial: usize,
+}
+
+/// How the specimen is made, whatever its state.
+#[derive(Clone)]
+pub(super) struct Recipe {
+    pub(super) setup: Setup,
+    pub(super) choice: Choice,
+    pub(super) final_radii: Vec<Real>,
+    /// Common factor of the radii when they are scattered.
+    pub(super) first_scale: Real,
+    /// Substep while grains grow [s].
+    pub(super) growth_step: Real,
+    /// Substep of the free membrane in its first shape [s].
+    pub(super) first_step: Real,
+    /// Stiffness of the grains at a vertex [N/m] that the sheet's substep reckons with.
+    contact_stiffness: Real,
+}
+
+impl Recipe {
+    /// Of the chosen specimen, and its system before the grains grow.
+    ///
+    /// # Errors
+    /// If the membrane cannot be meshed.
+    pub(super) fn new(setup: &Setup, choice: Choice) -> Result<(Self, System), MeshFault> {
+        let Size { radius, height, .. } = setup.cases[choice.size];
+        let model = model(setup, choice)?;
+        let mut random = Random::new(setup.seeds[choice.initial], Stream::Radius);
+        let (low, high) = (setup.grains.radius_min, setup.grains.radius_max);
+        let n_grains = net(setup, choice).n_grains[choice.initial];
+        let final_radii: Vec<Real> = (0..n_grains).map(|_| random.between(low, high)).collect();
+        let room = Room::Tube { radius, bottom: -0.5 * height, top: 0.5 * height };
+        let thin = setup.growth.first_solid_fraction;
+        let (membrane, law) = (&model.membrane, &model.membrane_law);
+        let pressure = setup.confining.pressure;
+        let mut recipe = Self {
+            setup: setup.clone(),
+            choice,
+            first_scale: first_scale(&final_radii, thin, room.volume()),
+            final_radii,
+            growth_step: growth_step(setup),
+            first_step: Real::NAN,
+            contact_stiffness: stiffness_at_vertex(membrane, law, high, pressure),
+        };
+        recipe.first_step = recipe.step(membrane, &membrane.mesh.positions);
+        let system = recipe.scattered(model, &room);
+        Ok((recipe, system))
+    }
+
+    /// Size of the specimen as it is built.
+    pub(super) fn size(&self) -> &Size {
+        &self.setup.cases[self.choice.size]
+    }
+
+    /// Thin grains at rest in the straight membrane.
+    fn scattered(&self, model: Model, room: &Room) -> System {
+        let small: Vec<Real> = self.final_radii.iter().map(|r| self.first_scale * r).collect();
+        let mut random = Random::new(self.setup.seeds[self.choice.initial], Stream::Position);
+        let margin = model.radius_max;
+        let positions = scatter(&small, None, &mut random, |it| room.place(margin, it))
+            .expect("the first solid fraction is limited to what always finds a place");
+        let density = self.setup.grains.material.density;
+        let masses = self.final_radii.iter().map(|&r| sphere_volume(r) * density).collect();
+        let half = 0.5 * self.size().height;
+        let at =
+            |z: Real| BodyMotion { pose: Pose::translation(0.0, 0.0, z), twist: Twist::zero() };
+        let walls = vec![at(0.0), at(-half), at(half)];
+        System::at_rest(model, walls, Grains::at_rest(positions, small, masses))
+    }
+
+    /// The frame holds the whole membrane; grains are soft.
+    pub(super) fn hold(&self, model: &mut Model) {
+        model.membrane.holders.fill(FRAME);
+        model.held_positions.clone_from(&model.membrane.mesh.positions);
+        model.substep = self.growth_step;
+        self.soften(model, 1.0);
+    }
+
+    /// The end rings are fixed to the plates, the rest of the membrane is free; grains are stiff.
+    pub(super) fn release(&self, model: &mut Model) {
+        fix_rings(model);
+        model.substep = self.first_step;
+        self.soften(model, 0.0);
+    }
+
+    /// Substep of the free membrane [s] with its vertices at `positions`.
+    ///
+    /// Hinges with their first areas are damped as the cube of their edges' lengths: the sheet that
+    /// grains stretch by a third bears half the substep of the straight one.
+    ///
+    /// A packing rings where ω dt nears 2, and ω² ~ √(ξ/R): at 0.4 of the Rayleigh time for overlaps
+    /// of a tenth of a diameter, far later for those of stiff grains.
+    pub(super) fn step(&self, membrane: &MembraneModel, positions: &[Vec3]) -> Real {
+        let Setup { grains, time, .. } = &self.setup;
+        let packing = time.rayleigh_share * rayleigh_time(grains.radius_min, &grains.material);
+        let sheet = critical_step_at(membrane, positions, self.contact_stiffness);
+        time.safety * packing.min(sheet)
+    }
+
+    /// Laws of grains that are softer: 1 as while they grow, 0 as they are.
+    pub(super) fn soften(&self, model: &mut Model, share: Real) {
+        set_laws(&self.setup, model, share);
+    }
+}
+
+/// Mesh and numbers of grains of a specimen.
+fn net(setup: &Setup, choice: Choice) -> super::scene::Net {
+    let size = &setup.cases[choice.size];
+    match choice.kind {
+        Kind::Triangles => size.triangles,
+        Kind::Spheres => size.spheres,
+    }
+}
+
+/// The model as it is sheared.
+fn model(setup: &Setup, choice: Choice) -> Result<Model, MeshFault> {
+    let size = &setup.cases[choice.size];
+    let net = net(setup, choice);
+    let mesh = Mesh::tube(size.radius, size.height, net.n_around, net.n_rows)?;
+    let damping = match choice.kind {
+        Kind::Triangles => setup.membrane.bending_damping,
+        Kind::Spheres => setup.membrane.bending_damping_spheres,
+    };
+    let mut membrane = MembraneModel::new(mesh, setup.membrane.sheet(damping));
+    if setup.membrane.bends_by_first_areas {
+        membrane.bend_by_first_areas();
+    }
+    if choice.kind == Kind::Spheres {
+        membrane.contact = SheetContact::Spheres { radius: size.sphere_radius };
+    }
+    let [frame, grains, sheet] = laws(setup, 0.0);
+    let plate =
+        |sign: Real| WallModel { shape: WallShape::Plane { normal: Vec3::z() * sign }, law: frame };
+    let mut model = Model {
+        gravity: Vec3::zeros(),
+        substep: Real::NAN,
+        radius_max: setup.grains.radius_max,
+        radius_mean: 0.5 * (setup.grains.radius_min + setup.grains.radius_max),
+        skin: SKIN_SHARE * setup.grains.radius_max,
+        period: None,
+        density_scaling: 1.0,
+        grain_law: grains,
+        membrane_law: sheet,
+        held_positions: membrane.mesh.positions.clone(),
+        membrane,
+        walls: vec![WallModel { shape: WallShape::Frame, law: frame }, plate(1.0), plate(-1.0)],
+        chamber: ChamberModel { lag_factor: 0.0, change_max: Real::INFINITY },
+        table: Pose::identity(),
+        bodies: Vec::new(),
+    };
+    fix_rings(&mut model);
+    Ok(model)
+}
+
+/// Lets the plates hold the membrane's end rings, and nobody the rest.
+fn fix_rings(model: &mut Model) {
+    let mesh = &model.membrane.mesh;
+    model.membrane.holders.fill(FREE);
+    model.held_positions.clone_from(&mesh.positions);
+    for &v in mesh.rims.iter().flatten() {
+        let position = &mut model.held_positions[v as usize];
+        model.membrane.holders[v as usize] = if position.z < 0.0 { BOTTOM } else { TOP };
+        position.z = 0.0;
+    }
+}
+
+/// Laws of grains with plates, grains and membrane; `softness` 1 as while they grow, 0 as they are.
+fn laws(setup: &Setup, softness: Real) -> [PairLaw; 3] {
+    let Setup { grains, growth, membrane, .. } = setup;
+    let between = |hard: Real, soft: Real| hard * (soft / hard).powf(softness);
+    let material = Material {
+        youngs_modulus: between(grains.material.youngs_modulus, growth.youngs_modulus),
+        ..grains.material
+    };
+    let surface = |friction: Real| Surface {
+        friction,
+        dissipation_time: between(grains.dissipation_time, growth.dissipation_time),
+        tangential_damping: grains.tangential_damping,
+    };
+    let on_sheet = Surface {
+        friction: membrane.friction,
+        dissipation_time: membrane.dissipation_time,
+        tangential_damping: membrane.tangential_damping,
+    };
+    [
+        PairLaw::against_rigid(&material, surface(setup.plate_friction)),
+        PairLaw::between(&material, &material, surface(grains.friction)),
+        PairLaw::between(&material, &membrane.material, on_sheet),
+    ]
+}
+
+fn set_laws(setup: &Setup, model: &mut Model, softness: Real) {
+    let [plates, grains, sheet] = laws(setup, softness);
+    model.walls.iter_mut().for_each(|wall| wall.law = plates);
+    (model.grain_law, model.membrane_law) = (grains, sheet);
+}
+
+/// Substep while grains grow in the held membrane [s].
+fn growth_step(setup: &Setup) -> Real {
+    let Setup { grains, growth, time, .. } = setup;
+    let soft = Material { youngs_modulus: growth.youngs_modulus, ..grains.material };
+    time.safety * RAYLEIGH_SHARE * rayleigh_time(grains.radius_min, &soft)
+}

@@ -1,0 +1,239 @@
+//! What is read off the specimen.
+//!
+//! ```text
+//! p_plate = F/A,  A = V/h            σ_d = p_plate − p_c,   ε = ln(h_0/h)
+//! σ_zz = 1/V_m Σ_c f_z l_z,   σ_rr = 1/2V_m Σ_c (f_x l_x + f_y l_y)
+//! ```
+//!
+//! F is what grains put on a plate, V the volume inside membrane and plates, h their distance. Stresses
+//! are those in the middle half of the height, away from the end rings, on which the membrane hangs:
+//! V_m is its volume; f and l are force and branch of each contact, of l the part that lies in it. On
+//! the membrane l goes from the contact point to the centre.
+
+use super::build::{BOTTOM, TOP};
+use crate::{
+    base::{Real, Vec3},
+    physics::{
+        System,
+        contact::sums,
+        measure::{self, real},
+        membrane::{pressure, stretch},
+    },
+};
+
+/// Forces of the grains on the lower and the upper plate, outward along the axis [N].
+pub(super) fn plate_forces(system: &System) -> [Real; 2] {
+    let n_grains = system.state.grains.len();
+    let on = |wall: u32, sign: Real| {
+        let first = wall as usize * n_grains;
+        let forces = &system.scratch.wall_forces;
+        let pushed: Real = forces[first..first + n_grains].iter().map(|it| it.force.z).sum();
+        sign * pushed
+    };
+    [on(BOTTOM, 1.0), on(TOP, -1.0)]
+}
+
+/// Distance of the plates [m].
+pub(super) fn height(system: &System) -> Real {
+    let z = |wall: u32| system.state.walls[wall as usize].pose.translation.z;
+    z(TOP) - z(BOTTOM)
+}
+
+/// Volume inside membrane and plates [m³].
+pub(super) fn volume(system: &System) -> Real {
+    pressure::volume(&system.model.membrane.mesh, &system.state.membrane.positions)
+}
+
+/// Mean distance of the membrane from the axis in the middle half of the height and at the ends [m].
+pub(super) fn radii(system: &System) -> [Real; 2] {
+    let mesh = &system.model.membrane.mesh;
+    let top = mesh.positions.iter().map(|p| p.z).fold(0.0, Real::max);
+    let mean = |is_in: &dyn Fn(Real) -> bool| {
+        let (mut sum, mut n) = (0.0, 0);
+        for (reference, position) in mesh.positions.iter().zip(&system.state.membrane.positions) {
+            if is_in(reference.z.abs() / top) {
+                sum += position.xy().norm();
+                n += 1;
+            }
+        }
+        sum / real(n)
+    };
+    [mean(&|z| z <= 0.25), mean(&|z| z >= 0.75)]
+}
+
+/// What the springs of the membrane add to the confining pressure in the middle half [Pa]; below zero
+/// where the grains have drawn together. It is their lateral virial over twice the volume,
+/// Σ F (Δx² + Δy²)/L / 2V, from the means over edges around and across, of which there are twice as many.
+pub(super) fn hoop_pressure(system: &System) -> Real {
+    let membrane = &system.model.membrane;
+    let (mesh, sheet) = (&membrane.mesh, &membrane.sheet);
+    let stiffness = stretch::stiffness(sheet.youngs_modulus, sheet.thickness);
+    let top = mesh.positions.iter().map(|p| p.z).fold(0.0, Real::max);
+    let (mut sums, mut n) = ([0.0; 2], [0; 2]);
+    for ends in &mesh.edges {
+        let edge = |all: &[Vec3]| all[ends[0] as usize] - all[ends[1] as usize];
+        let (first, now) = (edge(&mesh.positions), edge(&system.state.membrane.positions));
+        let [low, high] = ends.map(|v| mesh.positions[v as usize].z.abs());
+        if low.max(high) <= 0.5 * top {
+            let kind = usize::from(first.z.abs() > 1e-6 * top);
+            let tension = stiffness * (now.norm() - first.norm());
+            sums[kind] += tension * now.xy().norm_squared() / now.norm();
+            n[kind] += 1;
+        }
+    }
+    let [around, across] = [0, 1].map(|kind| sums[kind] / real(n[kind].max(1)));
+    // A row of triangles has as many vertices as half its triangles: one edge around, two across.
+    let n_vertices = real(mesh.triangles.len()) / 2.0;
+    let volume = middle_section(system) * height(system);
+    n_vertices * (around + 2.0 * across) / (2.0 * volume)
+}
+
+/// Kinetic energy of the grains [J]. The membrane's is left out: here and there a vertex of some
+/// milligrams swings for ever between two patches, without anything else moving.
+pub(super) fn grain_energy(system: &System) -> Real {
+    let grains = &system.state.grains;
+    let twice = |i: usize| {
+        let gyration = 0.4 * grains.radii[i] * grains.radii[i];
+        let (v, w) = (grains.velocities[i].norm_squared(), grains.spins[i].norm_squared());
+        grains.masses[i] * (v + gyration * w)
+    };
+    0.5 * (0..grains.len()).map(twice).sum::<Real>()
+}
+
+/// What the contacts carry.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Carried {
+    /// Axial and mean lateral stress of the grains in the middle half of the height [Pa].
+    pub(super) stress: [Real; 2],
+    /// Elastic energy of contacts between grains and with plates and membrane [J].
+    pub(super) elastic_energy: Real,
+    /// Largest overlap of two grains over their mean diameter.
+    pub(super) overlap_over_diameter: Real,
+    /// Mean unbalanced force of a grain over the mean contact force.
+    pub(super) unbalanced: Real,
+    /// Contacts per grain.
+    pub(super) coordination: Real,
+}
+
+/// Looks at every contact of the last substep.
+pub(super) fn carried(system: &System) -> Carried {
+    let z = |wall: u32| system.state.walls[wall as usize].pose.translation.z;
+    let mut sum = Sum {
+        centre: 0.5 * (z(BOTTOM) + z(TOP)),
+        reach: 0.25 * (z(TOP) - z(BOTTOM)),
+        ..Sum::default()
+    };
+    of_grains(system, &mut sum);
+    of_membrane(system, &mut sum);
+    for contact in system.scratch.wall_forces.iter().filter(|it| it.normal > 0.0) {
+        sum.n += 1;
+        sum.force += contact.force.norm();
+        sum.normal_overlap += contact.normal * contact.overlap;
+    }
+    let n_grains = system.state.grains.len();
+    let volume = middle_section(system) * 2.0 * sum.reach;
+    let unbalanced: Real = (0..n_grains)
+        .map(|i| sums::on_grain(&system.state.grains, &system.scratch, i).0.norm())
+        .sum();
+    let mean_force = sum.force / real(sum.n.max(1));
+    Carried {
+        stress: [sum.axial / volume, sum.lateral / (2.0 * volume)],
+        elastic_energy: 0.4 * sum.normal_overlap,
+        overlap_over_diameter: sum.overlap_over_diameter,
+        unbalanced: unbalanced / real(n_grains) / mean_force.max(Real::MIN_POSITIVE),
+        coordination: measure::packing(&system.state, &system.scratch).coordination_number,
+    }
+}
+
+/// Mean cross-section inside the membrane in the middle half of the height [m²].
+fn middle_section(system: &System) -> Real {
+    let mesh = &system.model.membrane.mesh;
+    let top = mesh.positions.iter().map(|p| p.z).fold(0.0, Real::max);
+    let (mut squares, mut n) = (0.0, 0);
+    for (reference, position) in mesh.positions.iter().zip(&system.state.membrane.positions) {
+        if reference.z.abs() <= 0.5 * top {
+            squares += position.xy().norm_squared();
+            n += 1;
+        }
+    }
+    // A ring of vertices is a polygon, smaller than its circle.
+    let turn = 2.0 * std::f64::consts::PI / real(mesh.rims[0].len());
+    std::f64::consts::PI * (turn.sin() / turn) * squares / real(n)
+}
+
+#[derive(Default)]
+struct Sum {
+    /// Height of the specimen's middle, and what above and below it belongs to its middle half [m].
+    centre: Real,
+    reach: Real,
+    axial: Real,
+    lateral: Real,
+    /// Σ F ξ [J]; of a Hertz contact 2/5 of it are stored.
+    normal_overlap: Real,
+    overlap_over_diameter: Real,
+    force: Real,
+    n: usize,
+}
+
+impl Sum {
+    /// Adds a contact: its force on what is at `end` [m], its branch up to there, and F ξ.
+    fn add(&mut self, force: &Vec3, end: &Vec3, branch: &Vec3, normal_overlap: Real) {
+        let share = self.share(end.z - branch.z, end.z);
+        self.axial += share * force.z * branch.z;
+        self.lateral += share * (force.x * branch.x + force.y * branch.y);
+        self.normal_overlap += normal_overlap;
+        self.force += force.norm();
+        self.n += 1;
+    }
+
+    /// Share of a line from one height to another that is in the middle half.
+    fn share(&self, from: Real, to: Real) -> Real {
+        let (low, high) = (from.min(to) - self.centre, from.max(to) - self.centre);
+        let inside = high.min(self.reach) - low.max(-self.reach);
+        // Lines within a nanometre of the horizontal are in or out.
+        if high - low < 1e-9 {
+            return if low.abs() < self.reach { 1.0 } else { 0.0 };
+        }
+        (inside / (high - low)).clamp(0.0, 1.0)
+    }
+}
+
+fn of_grains(system: &System, sum: &mut Sum) {
+    let grains = &system.state.grains;
+    for (pair, ids) in system.scratch.pair_forces.iter().zip(&system.state.pair_ids) {
+        if pair.overlap > 0.0 {
+            let [i, j] = ids.map(|id| id as usize);
+            let branch = grains.positions[i] - grains.positions[j];
+            sum.add(
+                &pair.force,
+                &grains.positions[i],
+                &branch,
+                pair.signed_normal.abs() * pair.overlap,
+            );
+            let diameter = grains.radii[i] + grains.radii[j];
+            sum.overlap_over_diameter = sum.overlap_over_diameter.max(pair.overlap / diameter);
+        }
+    }
+}
+
+fn of_membrane(system: &System, sum: &mut Sum) {
+    let (grains, sheet) = (&system.state.grains, &system.state.membrane);
+    let triangles = &system.model.membrane.mesh.triangles;
+    for (patches, centre) in system.scratch.patch_forces.iter().zip(&grains.positions) {
+        for patch in &patches.contacts[..patches.n] {
+            let corners = triangles[patch.triangle as usize].map(|v| sheet.positions[v as usize]);
+            let point: Vec3 = corners.iter().zip(patch.weights).map(|(r, w)| r * w).sum();
+            sum.add(&patch.force, centre, &(centre - point), patch.normal * patch.overlap);
+        }
+    }
+    let ids = &system.state.springs.spheres.ids;
+    for (contact, [grain, vertex]) in system.scratch.sphere_forces.iter().zip(ids) {
+        if contact.overlap > 0.0 {
+            let grain = *grain as usize;
+            let centre = &grains.positions[grain];
+            let apart = centre - sheet.positions[*vertex as usize];
+            let branch = apart.normalize() * (grains.radii[grain] - 0.5 * contact.overlap);
+            sum.add(&contact.force, centre, &branch, contact.normal * contact.overlap);
+        }
+    }
+}

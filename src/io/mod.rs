@@ -1,0 +1,12 @@
+//! Inputs and outputs, whatever carries them: traits, queues, threads.
+//!
+//! A sink runs on its own thread behind a bounded queue, so a slow or dead reader never slows the
+//! physics. A source never waits: what arrives during a tick is kept for the next one.
+
+pub mod fanout; // one thread and one queue per sink
+pub mod inbox; // a bounded queue of commands
+pub mod published; // how far packets have been published
+pub mod request_queue; // a bounded queue of requests
+pub mod server; // serves requests
+pub mod sink; // receives snapshots
+pub mod source; // yields commands

@@ -1,0 +1,281 @@
+//! The doors to the outside that a scene asks for: recording, streams, ROS 2. A door whose feature
+//! was not built says so when it is asked for.
+
+#[cfg(feature = "bag")]
+use std::time::Duration;
+use std::{
+    path::Path,
+    sync::{Arc, atomic::AtomicU64},
+};
+
+use super::{launch::RunError, outputs::Outlets, server::Front};
+use crate::host::progress_bar::Progress;
+#[cfg(feature = "bag")]
+use crate::{bag::recording::INPUTS, cosim::compile::PHYSICS_VERSION, scene::Shape};
+use crate::{
+    io::source::Source,
+    scene::{Controller, OnError, Scene},
+    wire::to_ros::Encoder,
+};
+
+/// Lengths of the lists that are streamed.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sizes {
+    /// Number of grains.
+    pub(super) n_grains: usize,
+    /// Number of vertices of the membrane.
+    pub(super) n_vertices: usize,
+}
+
+/// Opens what the scene asks for. What cannot be opened is said and left out, unless the run
+/// would be pointless without it.
+pub(super) struct Doors<'a> {
+    /// What is asked for.
+    pub(super) scene: &'a Scene,
+    /// Where it is from.
+    #[cfg_attr(
+        not(feature = "ros"),
+        expect(dead_code, reason = "without ROS 2 nobody asks for others beside it")
+    )]
+    pub(super) scene_file: &'a Path,
+    /// Makes messages for all who carry them.
+    #[cfg_attr(
+        not(any(feature = "ros", feature = "bag")),
+        expect(dead_code, reason = "without them nobody carries messages")
+    )]
+    pub(super) encoder: &'a Arc<Encoder>,
+    /// Where faults are said.
+    pub(super) progress: &'a Progress,
+    /// Length of a substep [s].
+    #[cfg_attr(not(feature = "bag"), expect(dead_code, reason = "only recordings tell it"))]
+    pub(super) substep_s: f64,
+    /// What the recording says of the run besides what it always says.
+    #[cfg_attr(not(feature = "bag"), expect(dead_code, reason = "only recordings tell it"))]
+    pub(super) facts: &'a [(&'static str, String)],
+}
+
+/// Those who may command and ask from outside.
+#[derive(Default)]
+pub struct Outside {
+    /// Those who command.
+    pub sources: Vec<Box<dyn Source>>,
+    /// Those who ask.
+    pub front: Option<Front>,
+    /// Another simulator's time [ns], if it is followed.
+    pub clock: Option<Arc<AtomicU64>>,
+}
+
+impl Doors<'_> {
+    /// Opens all of them.
+    ///
+    /// # Errors
+    /// If the run would be pointless.
+    pub(super) fn open(&self, sizes: Sizes) -> Result<(Outlets, Outside), RunError> {
+        let mut outlets = Outlets::default();
+        if self.scene.outputs.bag.enabled {
+            self.open_bag(&mut outlets)?;
+        }
+        if self.scene.outputs.stream {
+            self.open_stream(&mut outlets, sizes);
+        }
+        let mut outside = Outside::default();
+        let opened = if self.scene.outputs.ros.enabled {
+            self.open_ros(&mut outlets, &mut outside)
+        } else {
+            Err("outputs.ros.enabled is false".to_owned())
+        };
+        match opened {
+            Err(reason) if matches!(self.scene.controller, Controller::Topics { .. }) => {
+                return Err(RunError::NoTopics(reason));
+            }
+            Err(reason) if self.scene.outputs.ros.enabled => {
+                self.progress.say(&format!("{reason}; the run goes on without ROS 2"));
+            }
+            _ => {}
+        }
+        Ok((outlets, outside))
+    }
+
+    #[cfg(feature = "bag")]
+    fn open_bag(&self, outlets: &mut Outlets) -> Result<(), RunError> {
+        use crate::bag::sink::Bag;
+
+        let subject = self.subject();
+        let folder = self.bag_folder();
+        let opened = Bag::create(&folder, Arc::clone(self.encoder), subject)
+            .map_err(|error| error.to_string())
+            .and_then(|bag| {
+                let added = outlets.fanout.add(Box::new(bag), self.bag_delivery());
+                added.map_err(|error| error.to_string())
+            });
+        match (opened, self.scene.outputs.bag.on_error) {
+            (Ok(()), on_error) => {
+                outlets.bag = Some(folder);
+                outlets.stops_with_bag = on_error == OnError::Stop;
+            }
+            (Err(reason), OnError::Stop) => return Err(RunError::Recording(reason)),
+            (Err(reason), OnError::Continue) => {
+                self.progress.say(&format!("{reason}; the run goes on without a recording"));
+            }
+        }
+        Ok(())
+    }
+
+    #[cfg(not(feature = "bag"))]
+    fn open_bag(&self, _outlets: &mut Outlets) -> Result<(), RunError> {
+        let reason = "this jamgrip was built without recordings (feature `bag`)".to_owned();
+        if self.scene.outputs.bag.on_error == OnError::Stop {
+            return Err(RunError::Recording(reason));
+        }
+        self.progress.say(&reason);
+        Ok(())
+    }
+
+    /// What the recording says about the run, so that it can be run again.
+    #[cfg(feature = "bag")]
+    fn subject(&self) -> crate::bag::Subject {
+        let bag = &self.scene.outputs.bag;
+        let whole_ns = |time: f64| Duration::from_secs_f64(time).as_nanos();
+        let format = crate::bag::Format {
+            compression: bag.compression,
+            split_bytes: bag.split_size.map(|mebibytes| mebibytes << 20),
+            split_ns: bag.split_duration.map(|it| u64::try_from(whole_ns(it)).unwrap_or(u64::MAX)),
+        };
+        let mut facts = vec![
+            ("seed", self.scene.seed.to_string()),
+            ("version", env!("CARGO_PKG_VERSION").to_owned()),
+            ("commit", option_env!("JAMGRIP_COMMIT").unwrap_or("unknown").to_owned()),
+            ("physics", PHYSICS_VERSION.to_string()),
+            ("tick_ns", self.scene.time.tick_ns.to_string()),
+            ("substep_s", format!("{:e}", self.substep_s)),
+            ("machine", format!("{} {}", std::env::consts::OS, std::env::consts::ARCH)),
+        ];
+        let inputs = self.encoder.topics().iter().filter(|it| it.is_input);
+        let inputs: Vec<&str> = inputs.map(|it| it.name.as_str()).collect();
+        facts.push((INPUTS, serde_json::json!(inputs).to_string()));
+        facts.extend_from_slice(self.facts);
+        let scene_text = crate::scene::to_yaml(self.scene);
+        crate::bag::Subject { scene_text, scene_files: self.scene_files(), facts, format }
+    }
+
+    /// The mesh files of the scene. One that has gone since it was read is said and left out.
+    #[cfg(feature = "bag")]
+    fn scene_files(&self) -> Vec<(String, Vec<u8>)> {
+        let mut files = Vec::new();
+        for object in &self.scene.objects {
+            let Shape::Mesh { file, .. } = &object.shape else { continue };
+            match std::fs::read(file) {
+                Ok(bytes) => {
+                    let name = file.file_name().unwrap_or_default().to_string_lossy();
+                    files.push((name.into_owned(), bytes));
+                }
+                Err(error) => {
+                    let path = file.display();
+                    self.progress.say(&format!("{path}: not kept in the recording: {error}"));
+                }
+            }
+        }
+        files
+    }
+
+    #[cfg(feature = "bag")]
+    fn bag_folder(&self) -> std::path::PathBuf {
+        let chosen = self.scene.outputs.bag.folder.clone();
+        chosen.unwrap_or_else(|| {
+            let name = format!("{}_{}", self.scene.name, crate::host::clock::utc_stamp());
+            std::path::PathBuf::from("bags").join(name)
+        })
+    }
+
+    #[cfg(feature = "bag")]
+    fn bag_delivery(&self) -> crate::io::fanout::Delivery {
+        use crate::{io::fanout::Delivery, scene::OnFull};
+
+        // A second of ticks: long enough for a disk to catch its breath.
+        let depth = 1000;
+        match self.scene.outputs.bag.on_full {
+            OnFull::Wait => Delivery::Every { depth },
+            OnFull::DropOldest => Delivery::Latest { depth },
+        }
+    }
+
+    #[cfg(feature = "shm")]
+    fn open_stream(&self, outlets: &mut Outlets, sizes: Sizes) {
+        use crate::shm::stream::{Stream, prefix};
+
+        match Stream::open(&prefix(), sizes.n_grains, sizes.n_vertices) {
+            Ok(stream) => outlets.stream = Some(stream),
+            Err(error) => self.progress.say(&format!("{error}; the run goes on without streams")),
+        }
+    }
+
+    #[cfg(not(feature = "shm"))]
+    fn open_stream(&self, _outlets: &mut Outlets, sizes: Sizes) {
+        let Sizes { n_grains, n_vertices } = sizes;
+        self.progress.say(&format!(
+            "this jamgrip was built without streams (feature `shm`): {n_grains} grains and \
+             {n_vertices} vertices stay inside"
+        ));
+    }
+
+    #[cfg(feature = "ros")]
+    fn open_ros(&self, outlets: &mut Outlets, outside: &mut Outside) -> Result<(), String> {
+        use crate::{
+            io::{fanout::Delivery, published::Announced},
+            ros::{
+                discovery::Reach,
+                node::{RosNode, RosSink},
+                service::RosBench,
+                subscribe::{RosClock, RosSource},
+            },
+            simulator::{Simulator, Version, services},
+            wire::topics::full_name,
+        };
+
+        let reach = Reach::choose(&self.scene.outputs.ros, |name| std::env::var(name).ok());
+        let reach = reach.map_err(|error| error.to_string())?;
+        let node = RosNode::join_as(&self.scene.outputs.ros.node, &reach);
+        let node = node.map_err(|error| error.to_string())?;
+        let log = Arc::clone(&node);
+        self.progress.tell_too(Box::new(move |text| log.say(text)));
+        let announced = Arc::new(Announced::default());
+        let sink = RosSink::new(&node, self.encoder).map_err(|error| error.to_string())?;
+        let sink = sink.announcing(&announced);
+        let source = RosSource::new(&node, self.encoder).map_err(|error| error.to_string())?;
+        // Old states are worth nothing to a controller, but half a second bridges a hiccup.
+        let delivery = Delivery::Latest { depth: 500 };
+        outlets.fanout.add(Box::new(sink), delivery).map_err(|error| error.to_string())?;
+        outside.sources.push(Box::new(source));
+        if self.encoder.follows_clock() {
+            let name = full_name(&self.scene.outputs.ros, "/clock");
+            let clock = RosClock::new(&node, &name).map_err(|error| error.to_string())?;
+            outside.clock = Some(clock.time_ns());
+            outside.sources.push(Box::new(clock));
+        }
+        let ros = &self.scene.outputs.ros;
+        let prefix = ros.interfaces_prefix.as_deref();
+        let (mut offers, asked) = services::asked(&ros.node, prefix);
+        let mut channels = services::channels(&ros.node, prefix);
+        offers.iter_mut().for_each(|it| it.name = full_name(ros, &it.name));
+        channels.iter_mut().for_each(|it| it.name = full_name(ros, &it.name));
+        let bench = RosBench::open(&node, &offers, &channels, &announced);
+        let bench = Box::new(bench.map_err(|error| error.to_string())?);
+        let is_stopped = matches!(self.scene.controller, Controller::Topics { .. });
+        let version = match self.scene.outputs.ros.interfaces_version {
+            Some(1) => Version::One,
+            Some(2) => Version::Two,
+            _ => Version::of_distribution(&std::env::var("ROS_DISTRO").unwrap_or_default()),
+        };
+        let simulator = Simulator::new(self.scene, asked, is_stopped)
+            .with_channels(channels.len())
+            .beside(self.scene_file)
+            .speaking(version);
+        outside.front = Some(Front::new(simulator, bench, announced));
+        Ok(())
+    }
+
+    #[cfg(not(feature = "ros"))]
+    fn open_ros(&self, _outlets: &mut Outlets, _outside: &mut Outside) -> Result<(), String> {
+        Err("this jamgrip was built without ROS 2 (feature `ros`)".to_owned())
+    }
+}

@@ -1,0 +1,269 @@
+//! What an experiment keeps on disk.
+//!
+//! ```text
+//! plan.json          all that decides what comes out; another plan is refused
+//! states/CASE.state  a case on its way
+//! cases/CASE.json    a case that has come to its end
+//! result.json        what came of it, with report.html and curves/CURVE.csv
+//! ```
+
+use std::{
+    collections::BTreeMap,
+    fs::{self, File, TryLockError},
+    io,
+    path::{Path, PathBuf},
+};
+
+use serde::{Deserialize, Serialize};
+
+use crate::runner::{error::LabError, experiment::Identity};
+use crate::{
+    base::digest::Digest,
+    experiments::{findings::Curve, record::Record},
+    host::atomic_file::{self, Opened},
+};
+
+const PLAN: &str = "plan.json";
+const LOCK: &str = "lock";
+const STATES: &str = "states";
+const CASES: &str = "cases";
+const CURVES: &str = "curves";
+
+/// What may be found in a folder.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Policy {
+    /// True begins anew, whatever is there.
+    pub is_fresh: bool,
+    /// True goes on with cases of another build of the program.
+    pub allows_mixed_builds: bool,
+}
+
+/// A case that has come to its end.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct KeptCase {
+    /// Digest of plan and case: a file under another's name is not taken for it.
+    key: u64,
+    /// Digests of the program files that ran it.
+    pub programs: Vec<String>,
+    /// What it left.
+    pub record: Record,
+}
+
+/// A case on its way.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct SavedCase {
+    /// Share of the work that is done.
+    pub(super) share: f64,
+    /// Time on the clock so far, stage by stage [s].
+    pub(super) wall_s: BTreeMap<String, f64>,
+    /// Digests of the program files that ran it.
+    pub(super) programs: Vec<String>,
+    /// The run.
+    #[serde(with = "serde_bytes")]
+    pub(super) run: Vec<u8>,
+}
+
+/// What is there of a case.
+#[derive(Debug)]
+pub(super) enum Found {
+    /// All.
+    Kept(Box<KeptCase>),
+    /// A beginning.
+    Saved(SavedCase),
+    /// A file that is cut off or changed.
+    Damaged(PathBuf),
+    /// Nothing.
+    Nothing,
+}
+
+/// The folder of one experiment; nobody else is at work in it meanwhile.
+#[derive(Debug)]
+pub struct Folder {
+    path: PathBuf,
+    key: u64,
+    _lock: File,
+}
+
+impl Folder {
+    /// Opens a new folder, an empty one, or one that holds cases of the same plan.
+    ///
+    /// # Errors
+    /// If it holds something else, is in use, or cannot be written.
+    pub fn open(path: &Path, wanted: &Identity, policy: Policy) -> Result<Self, LabError> {
+        let unwritable = |reason| LabError::Unwritable { path: path.to_owned(), reason };
+        let plan = path.join(PLAN);
+        if !plan.exists() && holds_files(path) {
+            return Err(LabError::Foreign { path: path.to_owned() });
+        }
+        fs::create_dir_all(path).map_err(unwritable)?;
+        let lock = lock(path)?;
+        let folder = Self { path: path.to_owned(), key: wanted.key(), _lock: lock };
+        if policy.is_fresh {
+            folder.clear().map_err(unwritable)?;
+        } else if let Ok(text) = fs::read_to_string(&plan) {
+            folder.compare(wanted, &text, policy)?;
+        }
+        for name in [STATES, CASES, CURVES] {
+            fs::create_dir_all(path.join(name)).map_err(unwritable)?;
+        }
+        let text = serde_json::to_string_pretty(wanted).expect("all keys are texts");
+        folder.write_text(PLAN, &(text + "\n"))?;
+        Ok(folder)
+    }
+
+    fn compare(&self, wanted: &Identity, plan: &str, policy: Policy) -> Result<(), LabError> {
+        let path = self.path.clone();
+        let Ok(there) = serde_json::from_str::<Identity>(plan) else {
+            let differences = vec![format!("{PLAN} is damaged")];
+            return Err(LabError::OtherPlan { path, differences, is_program_only: false });
+        };
+        let mut differences = wanted.differences(&there);
+        let is_program_only = differences.is_empty();
+        if wanted.program != there.program && !(is_program_only && policy.allows_mixed_builds) {
+            differences.push("they were run by another build of jamgrip".to_owned());
+        }
+        if differences.is_empty() {
+            return Ok(());
+        }
+        Err(LabError::OtherPlan { path, differences, is_program_only })
+    }
+
+    /// Removes what was written here; other files stay.
+    fn clear(&self) -> io::Result<()> {
+        let ours = [(STATES, "state"), (CASES, "json"), (CURVES, "csv")];
+        for (name, ending) in ours {
+            let Ok(entries) = fs::read_dir(self.path.join(name)) else { continue };
+            for entry in entries {
+                let file = entry?.path();
+                if file.extension().is_some_and(|it| it == ending) {
+                    fs::remove_file(file)?;
+                }
+            }
+        }
+        for name in ["result.json", "report.html"] {
+            remove(&self.path.join(name))?;
+        }
+        Ok(())
+    }
+
+    /// What is there of `case`.
+    pub(super) fn find(&self, case: &str) -> Found {
+        let (file, key) = (self.case_file(case), self.case_key(case));
+        if let Ok(text) = fs::read_to_string(&file) {
+            return match serde_json::from_str::<KeptCase>(&text) {
+                Ok(kept) if kept.key == key => Found::Kept(Box::new(kept)),
+                _ => Found::Damaged(file),
+            };
+        }
+        let file = self.state_file(case);
+        match atomic_file::open(&file, key) {
+            Opened::Nothing => Found::Nothing,
+            Opened::Damaged => Found::Damaged(file),
+            Opened::Whole(bytes) => match postcard::from_bytes(&bytes) {
+                Ok(saved) => Found::Saved(saved),
+                Err(_) => Found::Damaged(file),
+            },
+        }
+    }
+
+    /// Saves a case on its way.
+    pub(super) fn save(&self, case: &str, saved: &SavedCase) -> Result<(), LabError> {
+        let file = self.state_file(case);
+        let bytes = postcard::to_stdvec(saved).expect("memory is the only limit");
+        atomic_file::seal(&file, self.case_key(case), &bytes)
+            .map_err(|reason| LabError::Unwritable { path: file, reason })
+    }
+
+    /// Keeps a case that has come to its end; its saved state goes.
+    pub(super) fn keep(&self, case: &str, kept: &KeptCase) -> Result<(), LabError> {
+        let text = serde_json::to_string(kept).expect("all keys are texts");
+        self.write_text(&format!("{CASES}/{case}.json"), &(text + "\n"))?;
+        self.forget(case);
+        Ok(())
+    }
+
+    /// Removes the saved state of a case.
+    pub(super) fn forget(&self, case: &str) {
+        // A state that stays is found and left behind by the next run.
+        drop(remove(&self.state_file(case)));
+    }
+
+    /// Writes a file of this folder, whole or not at all.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub fn write_text(&self, name: &str, text: &str) -> Result<(), LabError> {
+        let path = self.path.join(name);
+        atomic_file::replace(&path, &[text.as_bytes()])
+            .map_err(|reason| LabError::Unwritable { path, reason })
+    }
+
+    /// Writes a curve as CSV: names with units above columns.
+    pub(super) fn write_curve(&self, curve: &Curve) -> Result<(), LabError> {
+        let name = format!("{CURVES}/{}.csv", curve.name);
+        let text = csv_text(curve).map_err(|error| LabError::Unwritable {
+            path: self.path.join(&name),
+            reason: io::Error::other(error),
+        })?;
+        self.write_text(&name, &text)
+    }
+
+    /// Digest of plan and case.
+    pub(super) fn case_key(&self, case: &str) -> u64 {
+        let mut digest = Digest::new();
+        digest.integer(self.key);
+        digest.bytes(case.as_bytes());
+        digest.finish()
+    }
+
+    fn case_file(&self, case: &str) -> PathBuf {
+        self.path.join(CASES).join(format!("{case}.json"))
+    }
+
+    fn state_file(&self, case: &str) -> PathBuf {
+        self.path.join(STATES).join(format!("{case}.state"))
+    }
+}
+
+impl KeptCase {
+    pub(super) fn new(key: u64, programs: Vec<String>, record: Record) -> Self {
+        Self { key, programs, record }
+    }
+}
+
+/// True if there is anything but a lock in `folder`.
+fn holds_files(folder: &Path) -> bool {
+    fs::read_dir(folder)
+        .is_ok_and(|entries| entries.flatten().any(|entry| entry.file_name() != LOCK))
+}
+
+fn lock(folder: &Path) -> Result<File, LabError> {
+    let path = folder.join(LOCK);
+    let unwritable = |reason| LabError::Unwritable { path: path.clone(), reason };
+    let file = File::create(&path).map_err(unwritable)?;
+    match file.try_lock() {
+        Ok(()) => Ok(file),
+        Err(TryLockError::WouldBlock) => Err(LabError::Busy { path: folder.to_owned() }),
+        Err(TryLockError::Error(reason)) => Err(unwritable(reason)),
+    }
+}
+
+fn remove(file: &Path) -> io::Result<()> {
+    match fs::remove_file(file) {
+        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),
+        _ => Ok(()),
+    }
+}
+
+/// A table with `name [unit]` in its head; columns that are too short leave cells empty.
+fn csv_text(curve: &Curve) -> Result<String, csv::Error> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(curve.columns.iter().map(|it| format!("{} [{}]", it.name, it.unit)))?;
+    let n_rows = curve.columns.iter().map(|it| it.values.len()).max().unwrap_or(0);
+    for i in 0..n_rows {
+        let cell = |values: &Vec<f64>| values.get(i).map_or_else(String::new, f64::to_string);
+        writer.write_record(curve.columns.iter().map(|it| cell(&it.values)))?;
+    }
+    let bytes = writer.into_inner().map_err(|error| error.into_error())?;
+    Ok(String::from_utf8(bytes).expect("written from texts"))
+}
