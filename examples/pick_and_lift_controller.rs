@@ -22,7 +22,7 @@ use jamgrip::{
     command::Command,
     controller::{Observation, Phase, PickAndLift},
     ros::{
-        discovery::Reach,
+        discovery::DiscoveryRange,
         node::{Body, LOG_FILTER, Publisher, RosError, RosNode, Subscription},
     },
     scene::{self, Controller, Scene},
@@ -38,7 +38,7 @@ use jamgrip::{
 };
 
 /// Wall time without a clock after which the simulation is taken for gone.
-const PATIENCE: Duration = Duration::from_secs(30);
+const TIMEOUT: Duration = Duration::from_secs(30);
 /// Wall time between two tries to begin the run.
 const CALL_PERIOD: Duration = Duration::from_millis(500);
 /// Wall time between two looks at the topics; the clock ticks once a millisecond at best.
@@ -50,7 +50,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let Controller::Builtin(parameters) = &scene.controller else {
         return Err("leave `controller: builtin` here: its parameters are ours".into());
     };
-    let reach = Reach::choose(&scene.outputs.ros, |name| std::env::var(name).ok())?;
+    let reach = DiscoveryRange::choose(&scene.outputs.ros, |name| std::env::var(name).ok())?;
     let node = RosNode::join_as("pick_and_lift_controller", &reach)?;
     let topics = topics(&scene);
     let mut eyes = Eyes::open(&node, &topics)?;
@@ -76,8 +76,8 @@ fn main() -> Result<(), Box<dyn Error>> {
             heard_at = now();
             hands.carry_out(&machine.decide(&seen))?;
             tale.go_on(machine.phase(), &seen, &mut out)?;
-        } else if PATIENCE < now() - heard_at {
-            return Err(format!("no news for {PATIENCE:?}: did the simulation end?").into());
+        } else if TIMEOUT < now() - heard_at {
+            return Err(format!("no news for {TIMEOUT:?}: did the simulation end?").into());
         }
     }
     writeln!(out, "lifted {:.1} mm, held for {:.2} s", tale.lifted * 1e3, tale.held_s)?;

@@ -6,8 +6,8 @@ use crate::{
     base::{Tick, Vec3, digest::Digest, parallel, real::Wrench},
     command::{
         Command, CommandRecord,
-        apply::{Desk, Frames},
-        change::{Change, ChangeRefused, Knob, Scope, SettledScene},
+        apply::{CommandProcessor, Frames},
+        change::{Change, ChangeRefused, Scope, SettledScene, TunableParameter},
     },
     cosim::{
         Coupled, FLANGE, Inputs, Means,
@@ -39,7 +39,7 @@ pub struct Session {
     scene: Scene,
     start: Start,
     coupled: Coupled,
-    desk: Desk,
+    processor: CommandProcessor,
     tick: Tick,
     /// Ticks since the start of the run, whatever became of simulated time.
     run_tick: Tick,
@@ -49,7 +49,7 @@ pub struct Session {
     /// True once another scene has taken the place of the first.
     is_loaded: bool,
     /// Properties that are not those of the scene any more.
-    turned: Vec<(Knob, f64)>,
+    parameters: Vec<(TunableParameter, f64)>,
     records: Vec<CommandRecord>,
     digest: u64,
     normal_forces: Vec<f64>,
@@ -63,10 +63,10 @@ struct Saved<'a> {
     run_tick: u64,
     state: &'a [u8],
     world: &'a [u8],
-    desk: &'a [u8],
+    processor: &'a [u8],
     /// Force and torque.
     sensor_zero: [[f64; 3]; 2],
-    turned: Vec<(Knob, f64)>,
+    parameters: Vec<(TunableParameter, f64)>,
 }
 
 impl<'a> Saved<'a> {
@@ -109,12 +109,15 @@ impl Session {
         let state = compiled.read_state(saved.state)?;
         let mut session = Self::assemble(compiled, state);
         session.coupled.world.restore(saved.world)?;
-        session.desk.restore(saved.desk)?;
+        session.processor.restore(saved.processor)?;
         session.tick = Tick(saved.tick);
         session.run_tick = Tick(saved.run_tick);
         let [force, torque] = saved.sensor_zero.map(Vec3::from);
         session.sensor_zero = Wrench { force, torque };
-        saved.turned.iter().for_each(|(knob, value)| session.turn(*knob, *value));
+        saved
+            .parameters
+            .iter()
+            .for_each(|(parameter, value)| session.set_parameter(*parameter, *value));
         if 0 < saved.run_tick {
             session.start.state = None;
         }
@@ -148,12 +151,13 @@ impl Session {
             return None;
         }
         let (state, world) = (saved_state::write(&self.coupled.state), self.coupled.world.save());
-        let desk = self.desk.save();
+        let processor = self.processor.save();
         let (tick, run_tick) = (self.tick.0, self.run_tick.0);
         let Wrench { force, torque } = self.sensor_zero;
         let sensor_zero = [force, torque].map(Into::into);
-        let (state, world, desk, turned) = (&state, &world, &desk, self.turned.clone());
-        let saved = Saved { tick, run_tick, state, world, desk, sensor_zero, turned };
+        let (state, world, processor, parameters) =
+            (&state, &world, &processor, self.parameters.clone());
+        let saved = Saved { tick, run_tick, state, world, processor, sensor_zero, parameters };
         Some(saved_state::sealed(postcard::to_stdvec(&saved).expect("bytes always serialise")))
     }
 
@@ -168,16 +172,16 @@ impl Session {
         let bits = |it: [[f64; 3]; 2]| it.map(|it| it.map(f64::to_bits));
         let Wrench { force, torque } = self.sensor_zero;
         let sensor_zero: [[f64; 3]; 2] = [force, torque].map(Into::into);
-        let knobs = |turned: &[(Knob, f64)]| -> Vec<(Knob, u64)> {
-            turned.iter().map(|(knob, value)| (*knob, value.to_bits())).collect()
+        let parameters = |parameters: &[(TunableParameter, f64)]| -> Vec<(TunableParameter, u64)> {
+            parameters.iter().map(|(parameter, value)| (*parameter, value.to_bits())).collect()
         };
         let parts = [
             ("time", [self.tick.0, self.run_tick.0] == [other.tick, other.run_tick]),
             ("grains and membrane", saved_state::is_same(self.coupled.state.clone(), state)),
             ("rigid world", self.coupled.world.save() == other.world),
-            ("what was commanded", self.desk.save() == other.desk),
+            ("what was commanded", self.processor.save() == other.processor),
             ("zero of the wrist sensor", bits(sensor_zero) == bits(other.sensor_zero)),
-            ("parameters", knobs(&self.turned) == knobs(&other.turned)),
+            ("parameters", parameters(&self.parameters) == parameters(&other.parameters)),
         ];
         Ok(parts.into_iter().find(|(_, is_same)| !is_same).map(|(part, _)| part))
     }
@@ -193,19 +197,19 @@ impl Session {
         let step = plan.tick / measure::real(plan.n_substeps / plan.n_per_exchange);
         let world = RapierWorld::new(&scene, &model, bulks, step);
         let (n_objects, n_grains) = (scene.objects.len(), state.grains.positions.len());
-        let desk = Desk::new(&scene);
+        let processor = CommandProcessor::new(&scene);
         let coupled = Coupled::new(model, plan, state, world, limits);
         let mut session = Self {
             scene,
             start,
             coupled,
-            desk,
+            processor,
             tick: Tick(0),
             run_tick: Tick(0),
             means: no_forces(n_objects),
             sensor_zero: Wrench::zero(),
             is_loaded: false,
-            turned: Vec::new(),
+            parameters: Vec::new(),
             records: Vec::new(),
             digest: 0,
             // Nothing is known of forces before the first tick.
@@ -223,7 +227,7 @@ impl Session {
     pub fn tick(&mut self, commands: &[Command]) -> Result<(), Diverged> {
         let now_ns = self.time_ns();
         let frames = self.frames();
-        let (inputs, records) = self.desk.take(commands, &frames, now_ns);
+        let (inputs, records) = self.processor.take(commands, &frames, now_ns);
         self.records = records;
         self.advance(&inputs);
         self.tick = self.tick.next();
@@ -245,19 +249,19 @@ impl Session {
                 let i = self.find(object)?;
                 let motion = BodyMotion { pose: *pose, twist: *twist };
                 self.coupled.place_object(&self.scene, i, &motion)?;
-                self.desk.release(i);
+                self.processor.release(i);
             }
             Change::PlaceFlange { pose } => {
                 self.coupled.place_flange(&self.scene, pose)?;
-                self.desk.place_flange(*pose, self.time_ns());
+                self.processor.place_flange(*pose, self.time_ns());
             }
             Change::ZeroForceSensor => {
                 self.sensor_zero = self.sensed();
                 self.records.clear();
                 return Ok(());
             }
-            Change::Turn { knob, value } => {
-                self.turn(*knob, *value);
+            Change::SetParameter { parameter, value } => {
+                self.set_parameter(*parameter, *value);
                 self.records.clear();
                 return Ok(());
             }
@@ -275,14 +279,14 @@ impl Session {
         Ok(())
     }
 
-    fn turn(&mut self, knob: Knob, value: f64) {
-        knob.set(&mut self.scene, value);
-        if knob == Knob::ObjectFriction {
+    fn set_parameter(&mut self, parameter: TunableParameter, value: f64) {
+        parameter.set(&mut self.scene, value);
+        if parameter == TunableParameter::ObjectFriction {
             self.start.objects.iter_mut().for_each(|it| it.friction = value);
         }
         retune(&self.scene, &mut self.coupled.model);
-        self.turned.retain(|(other, _)| *other != knob);
-        self.turned.push((knob, value));
+        self.parameters.retain(|(other, _)| *other != parameter);
+        self.parameters.push((parameter, value));
     }
 
     /// Begins another scene; ticks of the run and counts of commands go on.
@@ -299,10 +303,10 @@ impl Session {
             .map_err(|fault| ChangeRefused::Unusable(fault.to_string()))?;
         next.run_tick = self.run_tick;
         next.is_loaded = true;
-        next.desk.count_on(self.desk.counts());
+        next.processor.count_on(self.processor.counts());
         if *keeps_time {
             next.tick = self.tick;
-            next.desk.place_flange(scene.flange.pose, next.time_ns());
+            next.processor.place_flange(scene.flange.pose, next.time_ns());
         }
         next.digest = next.take_digest();
         *self = next;
@@ -316,7 +320,7 @@ impl Session {
             let added = self.scene.objects.iter().filter(|it| !scope.spawned && !is_own(it));
             self.scene.objects = self.start.objects.iter().chain(added).cloned().collect();
             self.coupled.start_anew(&self.scene, start);
-            self.desk.restart(&self.scene);
+            self.processor.restart(&self.scene);
             self.sensor_zero = Wrench::zero();
         } else if scope.spawned {
             let objects = self.scene.objects.iter().enumerate();
@@ -325,9 +329,9 @@ impl Session {
         }
         if scope.time {
             self.tick = Tick(0);
-            self.desk.restart_time();
+            self.processor.restart_time();
         } else if scope.state {
-            self.desk.place_flange(self.scene.flange.pose, self.time_ns());
+            self.processor.place_flange(self.scene.flange.pose, self.time_ns());
         }
         Ok(())
     }
@@ -339,14 +343,14 @@ impl Session {
         }
         self.coupled.insert(&self.scene, object)?;
         self.scene.objects.push(object.clone());
-        self.desk.insert(object);
+        self.processor.insert(object);
         Ok(())
     }
 
     fn remove(&mut self, i: usize) {
         self.coupled.remove(i);
         self.scene.objects.remove(i);
-        self.desk.remove(i);
+        self.processor.remove(i);
     }
 
     fn find(&self, object: &str) -> Result<usize, ChangeRefused> {
@@ -438,8 +442,8 @@ impl Session {
     }
 
     /// The desk, for its counts.
-    pub fn desk(&self) -> &Desk {
-        &self.desk
+    pub fn processor(&self) -> &CommandProcessor {
+        &self.processor
     }
 
     /// Sum of normal force magnitudes on each grain at the end of the last tick [N].

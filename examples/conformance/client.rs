@@ -7,7 +7,7 @@ use std::{
 };
 
 use jamgrip::{
-    io::server::Offer,
+    io::server::ServiceSpec,
     ros::{
         node::{RosNode, Subscription},
         service::RosClient,
@@ -15,7 +15,8 @@ use jamgrip::{
     wire::{
         cdr::Cdr,
         messages::{
-            RosService, ServiceType, rosgraph_msgs::Clock, simulation_interfaces::Result as Told,
+            RosService, ServiceType, rosgraph_msgs::Clock,
+            simulation_interfaces::Result as SimResult,
         },
         topics::{Qos, Topic},
     },
@@ -88,7 +89,7 @@ impl Client {
     ) -> Result<(), String> {
         let full = format!("{}/{name}", self.options.prefix);
         if !self.clients.contains_key(name) {
-            let offer = Offer { name: full.clone(), service_type: of };
+            let offer = ServiceSpec { name: full.clone(), service_type: of };
             let client = RosClient::open(&self.node, &offer, self.options.way);
             let mut client = client.map_err(|it| it.to_string())?;
             let deadline = now() + self.options.patience;
@@ -185,12 +186,12 @@ impl Client {
 }
 
 /// An answer that must be OK.
-pub(crate) fn must_be_ok(what: &str, told: &Told) -> Result<(), String> {
-    must_be(what, told, Told::RESULT_OK)
+pub(crate) fn must_be_ok(what: &str, told: &SimResult) -> Result<(), String> {
+    must_be(what, told, SimResult::RESULT_OK)
 }
 
 /// An answer that must have this code.
-pub(crate) fn must_be(what: &str, told: &Told, code: u8) -> Result<(), String> {
+pub(crate) fn must_be(what: &str, told: &SimResult, code: u8) -> Result<(), String> {
     if told.result == code {
         return Ok(());
     }
@@ -198,8 +199,8 @@ pub(crate) fn must_be(what: &str, told: &Told, code: u8) -> Result<(), String> {
 }
 
 /// An answer that must not be OK.
-pub(crate) fn must_fail(what: &str, told: &Told) -> Result<(), String> {
-    if told.result == Told::RESULT_OK { Err(format!("{what}: result OK")) } else { Ok(()) }
+pub(crate) fn must_fail(what: &str, told: &SimResult) -> Result<(), String> {
+    if told.result == SimResult::RESULT_OK { Err(format!("{what}: result OK")) } else { Ok(()) }
 }
 
 /// Something that must hold.

@@ -8,8 +8,8 @@ use jamgrip::wire::{
         simulation_interfaces::{
             Bounds, EntityCategory, EntityFilters, EntityInfo, EntityState, GetEntitiesRequest,
             GetEntitiesStatesRequest, GetEntityBoundsRequest, GetEntityInfoRequest,
-            GetEntityStateRequest, Result as Told, SetEntityInfoRequest, SetEntityStateRequest,
-            SetEntityStateResponse, SimulationState as S, TagsFilter, srv,
+            GetEntityStateRequest, Result as SimResult, SetEntityInfoRequest,
+            SetEntityStateRequest, SetEntityStateResponse, SimulationState as S, TagsFilter, srv,
         },
     },
 };
@@ -19,7 +19,10 @@ use crate::{
     running::{go_to, reset},
 };
 
-fn select(client: &mut Client, filters: &EntityFilters) -> Result<(Told, Vec<String>), String> {
+fn select(
+    client: &mut Client,
+    filters: &EntityFilters,
+) -> Result<(SimResult, Vec<String>), String> {
     let request = GetEntitiesRequest { filters: filters.clone() };
     let answer = client.ask::<srv::GetEntities>("get_entities", &request)?;
     Ok((answer.result, answer.entities))
@@ -123,7 +126,7 @@ pub(crate) fn filtered_by_category(client: &mut Client) -> Result<(), String> {
     ensure(counted == n, || format!("{counted} of {n} entities have a category"))
 }
 
-fn set_info(client: &mut Client, entity: &str, info: EntityInfo) -> Result<Told, String> {
+fn set_info(client: &mut Client, entity: &str, info: EntityInfo) -> Result<SimResult, String> {
     let request = SetEntityInfoRequest { entity: entity.to_owned(), info };
     Ok(client.ask::<srv::SetEntityInfo>("set_entity_info", &request)?.result)
 }
@@ -194,10 +197,10 @@ pub(crate) fn states_agree(client: &mut Client) -> Result<(), String> {
 pub(crate) fn unknown(client: &mut Client) -> Result<(), String> {
     let request = GetEntityStateRequest { entity: "no such entity".to_owned() };
     let answer = client.ask::<srv::GetEntityState>("get_entity_state", &request)?;
-    must_be("the state of nothing", &answer.result, Told::RESULT_NOT_FOUND)
+    must_be("the state of nothing", &answer.result, SimResult::RESULT_NOT_FOUND)
 }
 
-fn set_state(client: &mut Client, request: &SetEntityStateRequest) -> Result<Told, String> {
+fn set_state(client: &mut Client, request: &SetEntityStateRequest) -> Result<SimResult, String> {
     if client.version() == 2 {
         return Ok(client.ask::<srv::SetEntityState>("set_entity_state", request)?.result);
     }
@@ -275,7 +278,7 @@ pub(crate) fn senseless_states(client: &mut Client) -> Result<(), String> {
     must_fail("an unknown frame", &set_state(client, &wrong)?)?;
     let mut wrong = request;
     wrong.entity = "no such entity".to_owned();
-    must_be("the state of nothing", &set_state(client, &wrong)?, Told::RESULT_NOT_FOUND)?;
+    must_be("the state of nothing", &set_state(client, &wrong)?, SimResult::RESULT_NOT_FOUND)?;
     let after = state_of(client, &name)?;
     ensure(after.pose == before.pose, || format!("`{name}` has moved to {:?}", after.pose))
 }
@@ -292,7 +295,7 @@ pub(crate) fn info_is_set(client: &mut Client) -> Result<(), String> {
         must_be_ok("set_entity_info", &set_info(client, &name, before)?)?;
     }
     let told = set_info(client, "no such entity", EntityInfo::default())?;
-    must_be("information on nothing", &told, Told::RESULT_NOT_FOUND)
+    must_be("information on nothing", &told, SimResult::RESULT_NOT_FOUND)
 }
 
 pub(crate) fn bounds(client: &mut Client) -> Result<(), String> {
@@ -301,7 +304,7 @@ pub(crate) fn bounds(client: &mut Client) -> Result<(), String> {
         let request = GetEntityBoundsRequest { entity: name.to_owned() };
         let answer = client.ask::<srv::GetEntityBounds>("get_entity_bounds", &request)?;
         if !names.iter().any(|it| it == name) {
-            must_be("bounds of nothing", &answer.result, Told::RESULT_NOT_FOUND)?;
+            must_be("bounds of nothing", &answer.result, SimResult::RESULT_NOT_FOUND)?;
             continue;
         }
         must_be_ok(&format!("bounds of `{name}`"), &answer.result)?;

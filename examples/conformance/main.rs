@@ -24,7 +24,7 @@ use std::{
 use checks::{Outcome, Verdict};
 use client::Client;
 use jamgrip::{
-    ros::{discovery::Reach, node::RosNode, service::Way},
+    ros::{discovery::DiscoveryRange, node::RosNode, service::Way},
     scene::Ros,
 };
 
@@ -81,7 +81,7 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Options, Strin
 
 fn run(options: &Options) -> Result<Vec<Outcome>, String> {
     let scene = Ros { enabled: true, ..Ros::OFF };
-    let reach = Reach::choose(&scene, |name| std::env::var(name).ok());
+    let reach = DiscoveryRange::choose(&scene, |name| std::env::var(name).ok());
     let node = RosNode::join_as("conformance", &reach.map_err(|it| it.to_string())?);
     let mut client = Client::new(node.map_err(|it| it.to_string())?, options)?;
     checks::all(&mut client)

@@ -12,7 +12,7 @@ use jamgrip::wire::{
         },
         simulation_interfaces::{
             GetEntityStateRequest, GetSimulationStateRequest, ResetSimulationRequest,
-            Result as Told, SetSimulationStateRequest, SetSimulationStateResponse,
+            Result as SimResult, SetSimulationStateRequest, SetSimulationStateResponse,
             SimulateStepsGoal, SimulateStepsResult, SimulationState as S, StepSimulationRequest,
             StepSimulationResponse, action::SimulateSteps, srv,
         },
@@ -37,7 +37,7 @@ pub(crate) fn state(client: &mut Client) -> Result<u8, String> {
 }
 
 /// Asks for a state.
-pub(crate) fn set(client: &mut Client, state: u8) -> Result<Told, String> {
+pub(crate) fn set(client: &mut Client, state: u8) -> Result<SimResult, String> {
     let request = SetSimulationStateRequest { state: S { state } };
     Ok(client.ask::<srv::SetSimulationState>("set_simulation_state", &request)?.result)
 }
@@ -51,12 +51,12 @@ pub(crate) fn go_to(client: &mut Client, wanted: u8) -> Result<(), String> {
 }
 
 /// Steps, and what came of it.
-pub(crate) fn step(client: &mut Client, steps: u64) -> Result<Told, String> {
+pub(crate) fn step(client: &mut Client, steps: u64) -> Result<SimResult, String> {
     let request = StepSimulationRequest { steps };
     Ok(client.ask::<srv::StepSimulation>("step_simulation", &request)?.result)
 }
 
-pub(crate) fn reset(client: &mut Client, scope: u8) -> Result<Told, String> {
+pub(crate) fn reset(client: &mut Client, scope: u8) -> Result<SimResult, String> {
     let request = ResetSimulationRequest { scope };
     Ok(client.ask::<srv::ResetSimulation>("reset_simulation", &request)?.result)
 }
@@ -148,7 +148,7 @@ pub(crate) fn many_steps(client: &mut Client) -> Result<(), String> {
 pub(crate) fn steps_need_pause(client: &mut Client) -> Result<(), String> {
     go_to(client, S::STATE_PLAYING)?;
     let told = step(client, 1)?;
-    must_be("a step while playing", &told, Told::RESULT_OPERATION_FAILED)?;
+    must_be("a step while playing", &told, SimResult::RESULT_OPERATION_FAILED)?;
     go_to(client, S::STATE_PAUSED)
 }
 
@@ -214,7 +214,7 @@ pub(crate) fn action_is_refused(client: &mut Client) -> Result<(), String> {
         // The standard also allows to accept the goal and to fail it.
         ask_result(client, 3)?;
         let ended = result(client)?;
-        must_be("steps while playing", &ended.result.result, Told::RESULT_OPERATION_FAILED)?;
+        must_be("steps while playing", &ended.result.result, SimResult::RESULT_OPERATION_FAILED)?;
     }
     go_to(client, S::STATE_PAUSED)
 }

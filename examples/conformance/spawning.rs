@@ -8,7 +8,7 @@ use jamgrip::wire::{
         simulation_interfaces::{
             Bounds, DeleteEntityRequest, GetEntityBoundsRequest, GetNamedPoseBoundsRequest,
             GetNamedPosesRequest, GetSpawnablesRequest, GetSpawnablesResponse, Resource,
-            Result as Told, SimulationState as S, SpawnEntitiesRequest, SpawnEntitiesResponse,
+            Result as SimResult, SimulationState as S, SpawnEntitiesRequest, SpawnEntitiesResponse,
             SpawnEntity, SpawnEntityRequest, SpawnEntityResponse, SpawnResult, TagsFilter, srv,
         },
     },
@@ -52,7 +52,7 @@ fn spawn(client: &mut Client, request: &SpawnEntityRequest) -> Result<SpawnEntit
     client.ask::<srv::SpawnEntity>("spawn_entity", request)
 }
 
-fn delete(client: &mut Client, entity: &str) -> Result<Told, String> {
+fn delete(client: &mut Client, entity: &str) -> Result<SimResult, String> {
     let request = DeleteEntityRequest { entity: entity.to_owned() };
     Ok(client.ask::<srv::DeleteEntity>("delete_entity", &request)?.result)
 }
@@ -74,7 +74,7 @@ pub(crate) fn in_and_out(client: &mut Client) -> Result<(), String> {
     must_be_ok("delete_entity", &delete(client, &name)?)?;
     let after = all(client)?;
     ensure(before == after, || format!("{before:?} became {after:?}"))?;
-    must_be("deleting it again", &delete(client, &name)?, Told::RESULT_NOT_FOUND)
+    must_be("deleting it again", &delete(client, &name)?, SimResult::RESULT_NOT_FOUND)
 }
 
 pub(crate) fn refused(client: &mut Client) -> Result<(), String> {
@@ -134,7 +134,7 @@ pub(crate) fn many(client: &mut Client) -> Result<(), String> {
     let answer = client.ask::<srv::SpawnEntities>("spawn_entities", &request)?;
     must_be("two and a wrong one", &answer.result, SpawnEntitiesResponse::ENTITIES_SPAWN_FAILED)?;
     let codes: Vec<u8> = answer.results.iter().map(|it| it.result.result).collect();
-    let expected = [Told::RESULT_OK, SpawnResult::NO_RESOURCE, Told::RESULT_OK];
+    let expected = [SimResult::RESULT_OK, SpawnResult::NO_RESOURCE, SimResult::RESULT_OK];
     ensure(codes == expected, || format!("results {codes:?}"))?;
     for name in ["conformance_a", "conformance_b"] {
         must_be_ok("delete_entity", &delete(client, name)?)?;
@@ -150,7 +150,7 @@ pub(crate) fn spawnables(client: &mut Client) -> Result<(), String> {
         must_be_ok("get_spawnables", &answer.result)?;
         answer.spawnables.into_iter().map(|it| it.entity_resource.uri).collect()
     } else {
-        type Flat = (Told, Vec<(String, String, Bounds)>);
+        type Flat = (SimResult, Vec<(String, String, Bounds)>);
         let (told, list): Flat = answer.read().map_err(|it| it.to_string())?;
         must_be_ok("get_spawnables", &told)?;
         list.into_iter().map(|it| it.0).collect()
@@ -194,7 +194,7 @@ pub(crate) fn named_poses(client: &mut Client) -> Result<(), String> {
     }
     let request = GetNamedPoseBoundsRequest { name: "no such pose".to_owned() };
     let answer = client.ask::<srv::GetNamedPoseBounds>("get_named_pose_bounds", &request)?;
-    must_be("bounds of no pose", &answer.result, Told::RESULT_NOT_FOUND)
+    must_be("bounds of no pose", &answer.result, SimResult::RESULT_NOT_FOUND)
 }
 
 /// Corners of a regular tetrahedron [m], and its faces seen from outside.

@@ -2,7 +2,7 @@
 
 use jamgrip::wire::messages::simulation_interfaces::{
     GetAvailableWorldsRequest, GetCurrentWorldRequest, GetCurrentWorldResponse, LoadWorldRequest,
-    LoadWorldResponse as R, Resource, Result as Told, SimulationState as S, TagsFilter,
+    LoadWorldResponse as R, Resource, Result as SimResult, SimulationState as S, TagsFilter,
     UnloadWorldRequest, UnloadWorldResponse, WorldResource, srv,
 };
 
@@ -24,7 +24,7 @@ fn load(client: &mut Client, world_resource: Resource) -> Result<R, String> {
     client.ask::<srv::LoadWorld>("load_world", &request)
 }
 
-fn unload(client: &mut Client) -> Result<Told, String> {
+fn unload(client: &mut Client) -> Result<SimResult, String> {
     let request = UnloadWorldRequest::default();
     Ok(client.ask::<srv::UnloadWorld>("unload_world", &request)?.result)
 }

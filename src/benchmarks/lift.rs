@@ -12,8 +12,8 @@ use crate::{
     cosim::compile::Compiled,
     host::{clock::Stopwatch, progress_bar::Progress},
     node::{
-        command_sources::Orders,
-        lift_monitor::Judge,
+        command_sources::CommandSources,
+        lift_monitor::LiftMonitor,
         schedule::Schedule,
         start::{self, Started},
     },
@@ -31,7 +31,7 @@ const SCENE: (&str, &str) =
     ("launch_configs/pick_and_lift.yaml", include_str!("../../launch_configs/pick_and_lift.yaml"));
 
 /// One session from its first tick to its last.
-struct Lap {
+struct Repetition {
     session: Session,
     /// Time on the clock [s].
     wall_s: Real,
@@ -42,7 +42,7 @@ struct Lap {
     /// Wall and simulated time of each phase [s].
     phases: BTreeMap<String, [Real; 2]>,
     /// What came of it.
-    judge: Judge,
+    lift_monitor: LiftMonitor,
     /// Sum over all ticks of the contacts between grains.
     n_contact_ticks: Real,
 }
@@ -50,23 +50,26 @@ struct Lap {
 /// Runs whole sessions, one at least.
 pub(super) fn run(case: &Case, options: &Options) -> Result<Figures, BenchError> {
     let scene = scene(&[])?;
-    let mut laps: Vec<Lap> = Vec::new();
+    let mut repetitions: Vec<Repetition> = Vec::new();
     let mut start_digest = 0;
-    while laps.is_empty() || laps.iter().map(|lap| lap.wall_s).sum::<Real>() < options.seconds {
+    while repetitions.is_empty()
+        || repetitions.iter().map(|repetition| repetition.wall_s).sum::<Real>() < options.seconds
+    {
         let session = session(&scene, options)?;
         start_digest = session.digest();
         process::forget_peak();
-        let lap = lap(case, &scene, session)?;
-        let digests = (laps.first().map(|first| first.session.digest()), lap.session.digest());
+        let repetition = repetition(case, &scene, session)?;
+        let digests =
+            (repetitions.first().map(|first| first.session.digest()), repetition.session.digest());
         if let (Some(expected), found) = digests
             && expected != found
         {
-            let (case, lap) = (case.name.to_owned(), laps.len() + 1);
-            return Err(BenchError::Unequal { case, lap, found, expected });
+            let (case, repetition) = (case.name.to_owned(), repetitions.len() + 1);
+            return Err(BenchError::Unequal { case, repetition, found, expected });
         }
-        laps.push(lap);
+        repetitions.push(repetition);
     }
-    figures(case, options, &laps, start_digest)
+    figures(case, options, &repetitions, start_digest)
 }
 
 /// The default scene with these changes.
@@ -85,52 +88,60 @@ pub(super) fn session(scene: &Scene, options: &Options) -> Result<Session, Bench
 }
 
 /// The loop of `node::run`, with nobody outside.
-fn lap(case: &Case, scene: &Scene, mut session: Session) -> Result<Lap, BenchError> {
-    let mut orders = Orders::new(scene, Vec::new());
+fn repetition(case: &Case, scene: &Scene, mut session: Session) -> Result<Repetition, BenchError> {
+    let mut command_sources = CommandSources::new(scene, Vec::new());
     let schedule = Schedule::new(&scene.outputs, scene.time.tick_ns);
     let tick_s = std::time::Duration::from_nanos(scene.time.tick_ns).as_secs_f64();
     let mut seen = take::snapshot(&session, schedule.parts(0));
     let (mut parts, mut phases) = ([0.0; 3], BTreeMap::<String, [Real; 2]>::new());
-    let (mut judge, mut n_contact_ticks) = (Judge::default(), 0.0);
+    let (mut lift_monitor, mut n_contact_ticks) = (LiftMonitor::default(), 0.0);
     let processor = process::processor_s();
     let whole = Stopwatch::start();
     let mut watch = Stopwatch::start();
-    while !orders.is_done() {
-        let commands = orders.drain(&seen);
+    while !command_sources.is_done() {
+        let commands = command_sources.drain(&seen);
         let drained = watch.lap_s();
         session
             .tick(&commands)
             .map_err(|fault| BenchError::Diverged { case: case.name.to_owned(), fault })?;
         let ticked = watch.lap_s();
         seen = take::snapshot(&session, schedule.parts(seen.time_ns + scene.time.tick_ns));
-        judge.look(&seen, tick_s);
+        lift_monitor.look(&seen, tick_s);
         n_contact_ticks += real(seen.jamming.n_grain_contacts);
         let taken = watch.lap_s();
         for (sum, time) in parts.iter_mut().zip([drained, ticked, taken]) {
             *sum += time;
         }
-        let name = orders.phase().map_or("none", |phase| phase.name());
+        let name = command_sources.phase().map_or("none", |phase| phase.name());
         let phase = phases.entry(name.to_owned()).or_default();
         phase[0] += drained + ticked + taken;
         phase[1] += tick_s;
     }
     let processor_s = process::processor_s().zip(processor).map(|(after, before)| after - before);
-    Ok(Lap { session, wall_s: whole.total_s(), processor_s, parts, phases, judge, n_contact_ticks })
+    Ok(Repetition {
+        session,
+        wall_s: whole.total_s(),
+        processor_s,
+        parts,
+        phases,
+        lift_monitor,
+        n_contact_ticks,
+    })
 }
 
 fn figures(
     case: &Case,
     options: &Options,
-    laps: &[Lap],
+    repetitions: &[Repetition],
     start_digest: u64,
 ) -> Result<Figures, BenchError> {
-    let last = laps.last().expect("there is one lap at least");
+    let last = repetitions.last().expect("there is one lap at least");
     let coupled = last.session.coupled();
     let seen = Seen::of(&coupled.model, &coupled.state, &coupled.scratch);
     seen.check(&case.limits)
-        .and_then(|()| check_lift(&last.judge.verdict()))
+        .and_then(|()| check_lift(&last.lift_monitor.verdict()))
         .map_err(|fault| BenchError::Unsound { case: case.name.to_owned(), fault })?;
-    let mut times: Vec<Real> = laps.iter().map(|lap| lap.wall_s).collect();
+    let mut times: Vec<Real> = repetitions.iter().map(|repetition| repetition.wall_s).collect();
     times.sort_by(Real::total_cmp);
     let n_ticks = last.session.now().0;
     let n_steps = n_ticks * coupled.plan.n_substeps as u64;
@@ -155,7 +166,7 @@ fn figures(
         steps_per_s_best: real_of(n_steps) / times[0],
         spread: times[times.len() - 1] / times[0] - 1.0,
         processor_share: share(
-            laps.iter().map(|lap| (lap.wall_s, lap.processor_s)),
+            repetitions.iter().map(|repetition| (repetition.wall_s, repetition.processor_s)),
             options.n_threads,
         ),
         contact_steps_per_s_per_core: contact_steps,
@@ -164,7 +175,7 @@ fn figures(
         digest_after_steps: n_steps,
         start_digest: format!("{start_digest:016x}"),
         n_lap_steps: n_steps,
-        n_laps: laps.len(),
+        n_laps: repetitions.len(),
         n_builds_per_lap: coupled.scratch.neighbours.n_builds,
         peak_rss_bytes: process::peak(),
         stages: ["commands", "ticks", "snapshots"]

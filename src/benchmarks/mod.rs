@@ -29,7 +29,7 @@ pub use result::Figures;
 pub use sanity::Unsound;
 
 use crate::{
-    experiments, host::cache::Cache, node, physics::health::Diverged, runner::error::LabError,
+    experiments, host::cache::Cache, node, physics::health::Diverged, runner::error::RunnerError,
     scene::SceneError,
 };
 
@@ -67,14 +67,14 @@ pub enum BenchError {
     },
     /// Two laps did not end in the same state.
     #[error(
-        "{case}: lap {lap} ended with digest {found:016x}, the first with {expected:016x}; the same work \
+        "{case}: lap {repetition} ended with digest {found:016x}, the first with {expected:016x}; the same work \
          must give the same bits"
     )]
     Unequal {
         /// The case.
         case: String,
         /// Number of the lap.
-        lap: usize,
+        repetition: usize,
         /// Its digest.
         found: u64,
         /// That of the first.
@@ -99,7 +99,7 @@ pub enum BenchError {
     Experiment(#[from] experiments::StartError),
     /// There is no such experiment.
     #[error(transparent)]
-    Lab(#[from] LabError),
+    Lab(#[from] RunnerError),
     /// Its scene is wrong.
     #[error(transparent)]
     Scene(#[from] SceneError),
@@ -173,11 +173,11 @@ pub fn run(case: &Case, options: &Options) -> Result<Figures, BenchError> {
             let mut course = repetitions::Course::new(case, options)?;
             let mut peers = course.peers()?;
             while !course.is_over() {
-                course.lap()?;
+                course.repetition()?;
                 // In turns, so that a busy minute of the machine hits both.
                 if let Some(peers) = &mut peers {
                     peers
-                        .lap()
+                        .repetition()
                         .map_err(|fault| BenchError::Peer { case: case.name.to_owned(), fault })?;
                 }
             }

@@ -35,7 +35,7 @@ pub(super) struct Work {
 
 /// One lap.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Lap {
+pub(super) struct Repetition {
     /// Time on the clock for the measured substeps [s].
     pub(super) wall_s: Real,
     /// Processor time of all threads for them [s], if the system tells it.
@@ -56,7 +56,7 @@ pub(super) struct Course<'a> {
     options: &'a Options,
     pub(super) subject: Subject,
     pool: rayon::ThreadPool,
-    laps: Vec<Lap>,
+    repetitions: Vec<Repetition>,
 }
 
 impl<'a> Course<'a> {
@@ -65,7 +65,7 @@ impl<'a> Course<'a> {
         let pool = parallel::pool(options.n_threads)?;
         let subject = prepare::subject(case, options, &pool)?;
         process::forget_peak();
-        Ok(Self { case, options, subject, pool, laps: Vec::new() })
+        Ok(Self { case, options, subject, pool, repetitions: Vec::new() })
     }
 
     /// The other codes on the same packing, if they are wanted and it is one.
@@ -82,32 +82,33 @@ impl<'a> Course<'a> {
 
     /// True when there are enough laps.
     pub(super) fn is_over(&self) -> bool {
-        let measured: Real = self.laps.iter().map(|lap| lap.wall_s).sum();
-        N_LAPS_MIN <= self.laps.len() && self.options.seconds <= measured
+        let measured: Real = self.repetitions.iter().map(|repetition| repetition.wall_s).sum();
+        N_LAPS_MIN <= self.repetitions.len() && self.options.seconds <= measured
     }
 
     /// One more lap, which must end as the first did.
-    pub(super) fn lap(&mut self) -> Result<Lap, BenchError> {
+    pub(super) fn repetition(&mut self) -> Result<Repetition, BenchError> {
         let Self { case, subject, pool, .. } = &*self;
-        let (lap, end) = parallel::lead(pool, || lap(subject, case.work, None));
-        self.accept(&lap, &end)?;
-        self.laps.push(lap);
-        Ok(lap)
+        let (repetition, end) = parallel::lead(pool, || repetition(subject, case.work, None));
+        self.accept(&repetition, &end)?;
+        self.repetitions.push(repetition);
+        Ok(repetition)
     }
 
     /// Sound, and the same as the first.
-    fn accept(&self, lap: &Lap, end: &System) -> Result<(), BenchError> {
+    fn accept(&self, repetition: &Repetition, end: &System) -> Result<(), BenchError> {
         let case = || self.case.name.to_owned();
         end.check(self.case.work.n_warm + self.case.work.n_steps)
             .map_err(|fault| BenchError::Diverged { case: case(), fault })?;
-        lap.seen
+        repetition
+            .seen
             .check(&self.case.limits)
             .map_err(|fault| BenchError::Unsound { case: case(), fault })?;
-        match self.laps.first() {
-            Some(first) if first.digest != lap.digest => Err(BenchError::Unequal {
+        match self.repetitions.first() {
+            Some(first) if first.digest != repetition.digest => Err(BenchError::Unequal {
                 case: case(),
-                lap: self.laps.len() + 1,
-                found: lap.digest,
+                repetition: self.repetitions.len() + 1,
+                found: repetition.digest,
                 expected: first.digest,
             }),
             _ => Ok(()),
@@ -119,7 +120,7 @@ impl<'a> Course<'a> {
         let work = self.case.work;
         let mut times = vec![0.0; STAGES.len()];
         let (by_stages, end) =
-            parallel::lead(&self.pool, || lap(&self.subject, work, Some(&mut times)));
+            parallel::lead(&self.pool, || repetition(&self.subject, work, Some(&mut times)));
         self.accept(&by_stages, &end)?;
         let whole: Real = times.iter().sum();
         let stages: Vec<Stage> = (STAGES.iter().zip(&times))
@@ -130,7 +131,7 @@ impl<'a> Course<'a> {
             })
             .collect();
         let system = &self.subject.system;
-        let speeds = Figures::of_laps(&self.laps, work, self.options.n_threads);
+        let speeds = Figures::of_laps(&self.repetitions, work, self.options.n_threads);
         let ours = speeds.contact_steps_per_s_per_core;
         Ok(Figures {
             case: self.case.name.to_owned(),
@@ -157,7 +158,11 @@ impl<'a> Course<'a> {
 }
 
 /// A lap from the start; into `times` goes the time of each stage, if that is wanted.
-fn lap(subject: &Subject, work: Work, times: Option<&mut Vec<Real>>) -> (Lap, System) {
+fn repetition(
+    subject: &Subject,
+    work: Work,
+    times: Option<&mut Vec<Real>>,
+) -> (Repetition, System) {
     let mut system = subject.system.clone();
     let after = subject.after;
     for _ in 0..work.n_warm {
@@ -183,7 +188,7 @@ fn lap(subject: &Subject, work: Work, times: Option<&mut Vec<Real>>) -> (Lap, Sy
     let wall_s = watch.total_s();
     let processor_s = process::processor_s().zip(processor).map(|(after, before)| after - before);
     let seen = look(&system);
-    let lap = Lap {
+    let repetition = Repetition {
         wall_s,
         processor_s,
         n_contacts: 0.5 * (real(before.n_grain_contacts) + real(seen.n_grain_contacts)),
@@ -191,7 +196,7 @@ fn lap(subject: &Subject, work: Work, times: Option<&mut Vec<Real>>) -> (Lap, Sy
         digest: digest(&system),
         seen,
     };
-    (lap, system)
+    (repetition, system)
 }
 
 fn look(system: &System) -> Seen {

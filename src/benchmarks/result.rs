@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::Latency;
 use super::{
     PeerFigures,
-    repetitions::{Lap, Work},
+    repetitions::{Repetition, Work},
     sanity::Seen,
 };
 use crate::{
@@ -108,28 +108,29 @@ pub struct Stage {
 
 impl Figures {
     /// Speeds, from laps.
-    pub(super) fn of_laps(laps: &[Lap], work: Work, n_threads: usize) -> Self {
-        let mut times: Vec<Real> = laps.iter().map(|lap| lap.wall_s).collect();
+    pub(super) fn of_laps(repetitions: &[Repetition], work: Work, n_threads: usize) -> Self {
+        let mut times: Vec<Real> = repetitions.iter().map(|repetition| repetition.wall_s).collect();
         times.sort_by(Real::total_cmp);
         let (Some(best), Some(worst)) = (times.first(), times.last()) else {
             return Self::default();
         };
         let n_steps = real_of(work.n_steps);
         let steps_per_s = n_steps / median(&times);
-        let n_contacts = laps.iter().map(|lap| lap.n_contacts).sum::<Real>() / real(laps.len());
+        let n_contacts = repetitions.iter().map(|repetition| repetition.n_contacts).sum::<Real>()
+            / real(repetitions.len());
         let contact_steps = n_contacts * steps_per_s / real(n_threads);
         Self {
             steps_per_s,
             steps_per_s_best: n_steps / best,
             spread: worst / best - 1.0,
             processor_share: processor_share(
-                laps.iter().map(|lap| (lap.wall_s, lap.processor_s)),
+                repetitions.iter().map(|repetition| (repetition.wall_s, repetition.processor_s)),
                 n_threads,
             ),
             contact_steps_per_s_per_core: contact_steps,
             ns_per_contact_step: 1e9 / contact_steps,
-            n_laps: laps.len(),
-            n_builds_per_lap: laps[0].n_builds,
+            n_laps: repetitions.len(),
+            n_builds_per_lap: repetitions[0].n_builds,
             ..Self::default()
         }
     }
@@ -274,11 +275,11 @@ fn or_unknown<T>(value: Option<T>, text: impl FnOnce(T) -> String) -> String {
 
 /// Processor time over wall time [s] and threads.
 pub(super) fn processor_share(
-    laps: impl Iterator<Item = (Real, Option<Real>)>,
+    repetitions: impl Iterator<Item = (Real, Option<Real>)>,
     n_threads: usize,
 ) -> Option<Real> {
     let (mut wall, mut processor) = (0.0, 0.0);
-    for (wall_s, processor_s) in laps {
+    for (wall_s, processor_s) in repetitions {
         wall += wall_s;
         processor += processor_s?;
     }

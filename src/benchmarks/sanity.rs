@@ -3,7 +3,7 @@
 
 use crate::{
     base::Real,
-    node::lift_monitor::Verdict,
+    node::lift_monitor::LiftMetrics,
     physics::{
         Model, Scratch, State,
         measure::{kinetic_energy, packing, real},
@@ -155,7 +155,7 @@ impl Seen {
 ///
 /// # Errors
 /// If it was not.
-pub(super) fn check_lift(verdict: &Verdict) -> Result<(), Unsound> {
+pub(super) fn check_lift(verdict: &LiftMetrics) -> Result<(), Unsound> {
     if verdict.is_held() {
         return Ok(());
     }

@@ -28,7 +28,7 @@ pub struct Frames {
 }
 
 /// What was commanded, and what has become of it.
-pub struct Desk {
+pub struct CommandProcessor {
     names: Vec<String>,
     gauge_range: [Real; 2],
     speed_max: Real,
@@ -46,7 +46,7 @@ pub(super) struct Target {
     pub(super) time_ns: u64,
 }
 
-impl Desk {
+impl CommandProcessor {
     /// A desk for `scene`: the flange shall stay where it is.
     pub fn new(scene: &Scene) -> Self {
         Self {

@@ -32,9 +32,9 @@ pub enum Change {
     /// What the wrist sensor reads now is zero from here on.
     ZeroForceSensor,
     /// Changes a property of materials or pump.
-    Turn {
+    SetParameter {
         /// Which.
-        knob: Knob,
+        parameter: TunableParameter,
         /// Its new value, SI.
         value: f64,
     },
@@ -76,7 +76,7 @@ impl fmt::Display for Change {
             Self::Insert(object) => write!(f, "object `{}` added", object.name),
             Self::Remove { object } => write!(f, "object `{object}` taken away"),
             Self::ZeroForceSensor => f.write_str("wrist sensor set to zero"),
-            Self::Turn { knob, value } => write!(f, "{knob:?} set to {value}"),
+            Self::SetParameter { parameter, value } => write!(f, "{parameter:?} set to {value}"),
             Self::LoadScene(it) => write!(f, "scene `{}` loaded", it.scene.name),
         }
     }
@@ -84,7 +84,7 @@ impl fmt::Display for Change {
 
 /// A property that may change while time goes on. New ones come last: recordings hold their places.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Knob {
+pub enum TunableParameter {
     /// Time constant of pump and line [s].
     ChamberLag,
     /// Largest rate of the pressure [Pa/s].
@@ -99,7 +99,7 @@ pub enum Knob {
     ObjectFriction,
 }
 
-impl Knob {
+impl TunableParameter {
     /// Its value in a scene, SI.
     pub fn get(self, scene: &Scene) -> f64 {
         match self {

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::change::{Change, Knob, Scope, SettledScene};
+use super::change::{Change, Scope, SettledScene, TunableParameter};
 use crate::{
     base::{Pose, Real, Vec3, real::Twist},
     cosim::saved_state::{pose, pose_row},
@@ -29,7 +29,7 @@ enum Saved {
     Insert(SavedObject),
     Remove { object: String },
     ZeroForceSensor,
-    Turn { knob: Knob, value: Real },
+    SetParameter { parameter: TunableParameter, value: Real },
     LoadScene { text: String, objects: Vec<SavedObject>, start: Vec<u8>, keeps_time: bool },
 }
 
@@ -70,7 +70,9 @@ impl Change {
             Self::Insert(object) => Saved::Insert(saved_object(object)),
             Self::Remove { object } => Saved::Remove { object: object.clone() },
             Self::ZeroForceSensor => Saved::ZeroForceSensor,
-            Self::Turn { knob, value } => Saved::Turn { knob: *knob, value: *value },
+            Self::SetParameter { parameter, value } => {
+                Saved::SetParameter { parameter: *parameter, value: *value }
+            }
             Self::LoadScene(it) => Saved::LoadScene {
                 text: scene::to_yaml(&without_files(&it.scene)),
                 objects: it.scene.objects.iter().map(saved_object).collect(),
@@ -97,7 +99,7 @@ impl Change {
             Saved::Insert(object) => Self::Insert(Box::new(read_object(object))),
             Saved::Remove { object } => Self::Remove { object },
             Saved::ZeroForceSensor => Self::ZeroForceSensor,
-            Saved::Turn { knob, value } => Self::Turn { knob, value },
+            Saved::SetParameter { parameter, value } => Self::SetParameter { parameter, value },
             Saved::LoadScene { text, objects, start, keeps_time } => {
                 let scene = scene::parse(&text, "a loaded scene", Path::new(""), &[]);
                 let mut scene = scene.map_err(|_| unknown())?;
@@ -223,7 +225,10 @@ mod tests {
         changes.push(Change::PlaceFlange { pose });
         changes.push(Change::Remove { object: name() });
         changes.push(Change::ZeroForceSensor);
-        changes.push(Change::Turn { knob: Knob::ObjectFriction, value: 0.1 + 0.2 });
+        changes.push(Change::SetParameter {
+            parameter: TunableParameter::ObjectFriction,
+            value: 0.1 + 0.2,
+        });
         changes.push(Change::Reset(Scope { time: true, state: false, spawned: true }));
         let text = "name: x\nobject: { shape: { sphere: { radius: 10 mm } }, position: [0 m, 0 m, 10 mm] }";
         let mut scene = scene::parse(text, "x", Path::new(""), &["seed=7".to_owned()]).unwrap();

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     CommandCounts,
-    apply::{Desk, Target},
+    apply::{CommandProcessor, Target},
 };
 use crate::{
     base::Real,
@@ -23,7 +23,7 @@ struct Numbers {
     counts: [u64; 3],
 }
 
-impl Desk {
+impl CommandProcessor {
     /// The bytes of what was commanded.
     pub fn save(&self) -> Vec<u8> {
         let saved = |target: &Target| (pose_row(&target.pose), target.time_ns);

@@ -15,7 +15,7 @@ const WEIGHT: Real = 2.5;
 const LAG: Real = 0.05;
 
 /// The plant's state.
-pub(super) struct Toy {
+pub(super) struct MockPlant {
     n_ticks: u32,
     flange: Vec3,
     object: Vec3,
@@ -36,7 +36,7 @@ pub(super) struct Toy {
     pub(super) push_max: Real,
 }
 
-impl Toy {
+impl MockPlant {
     pub(super) fn new(flange: Vec3) -> Self {
         Self {
             n_ticks: 0,

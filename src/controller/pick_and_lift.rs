@@ -16,7 +16,7 @@ const PERIOD: Real = 0.01;
 /// Pose commands between two repetitions of the pressure command.
 const PRESSURE_EVERY: u64 = 10;
 /// How long to wait for the pressure before giving up [s].
-const PATIENCE: Real = 5.0;
+const TIMEOUT: Real = 5.0;
 /// How much lower than it stood the object may be put, searching for the table [m].
 const SEARCH_DEPTH: Real = 0.003;
 /// Speed of that search [m/s].
@@ -239,7 +239,7 @@ impl PickAndLift {
                 self.enter(Phase::Lift, run, seen, p.grip_pressure);
                 self.goal.z += p.lift_height;
             }
-            None if PATIENCE <= seen.time_s - self.since => {
+            None if TIMEOUT <= seen.time_s - self.since => {
                 self.enter(Phase::Vent, run, seen, p.vent_pressure);
             }
             _ => {}
@@ -299,7 +299,7 @@ fn pose_command(seen: &Observation, position: &Vec3) -> Command {
 
 #[cfg(test)]
 mod tests {
-    use super::{super::mock_plant::Toy, *};
+    use super::{super::mock_plant::MockPlant, *};
 
     fn parameters() -> scene::PickAndLift {
         scene::PickAndLift {
@@ -322,7 +322,7 @@ mod tests {
     }
 
     /// Runs to the end; returns the phases in the order they came.
-    fn play(toy: &mut Toy, parameters: &scene::PickAndLift) -> Vec<Phase> {
+    fn play(toy: &mut MockPlant, parameters: &scene::PickAndLift) -> Vec<Phase> {
         let mut controller = PickAndLift::new(parameters);
         let mut phases = vec![controller.phase()];
         for _ in 0..60_000 {
@@ -346,7 +346,7 @@ mod tests {
     /// the command period.
     #[test]
     fn lifts_holds_and_puts_back() {
-        let mut toy = Toy::new(start());
+        let mut toy = MockPlant::new(start());
         let phases = play(&mut toy, &parameters());
         assert!(phases.is_sorted(), "{phases:?}");
         assert_eq!(phases.len(), 11, "every phase once: {phases:?}");
@@ -357,7 +357,7 @@ mod tests {
 
     #[test]
     fn an_object_that_slips_is_put_down_on_the_table_not_above_it() {
-        let mut toy = Toy::new(start());
+        let mut toy = MockPlant::new(start());
         toy.slip = 0.002;
         let phases = play(&mut toy, &parameters());
         assert!(phases.contains(&Phase::Lower), "{phases:?}");
@@ -368,7 +368,7 @@ mod tests {
 
     #[test]
     fn without_vacuum_nothing_is_lifted_and_the_run_still_ends() {
-        let mut toy = Toy::new(start());
+        let mut toy = MockPlant::new(start());
         let phases = play(&mut toy, &scene::PickAndLift { grip_pressure: 0.0, ..parameters() });
         assert!(toy.lifted_max.abs() < 1e-12, "lifted {} m", toy.lifted_max);
         assert!(!phases.contains(&Phase::Lower), "nothing to put back: {phases:?}");
@@ -376,7 +376,7 @@ mod tests {
 
     #[test]
     fn a_pump_that_never_gets_there_is_given_up() {
-        let mut toy = Toy::new(start());
+        let mut toy = MockPlant::new(start());
         let phases =
             play(&mut toy, &scene::PickAndLift { grip_pressure_reached: 1.1, ..parameters() });
         assert!(!phases.contains(&Phase::Lift), "{phases:?}");
@@ -384,7 +384,7 @@ mod tests {
 
     #[test]
     fn the_push_stops_at_its_force_limit() {
-        let mut toy = Toy::new(start());
+        let mut toy = MockPlant::new(start());
         play(&mut toy, &scene::PickAndLift { push_force_max: 5.0, ..parameters() });
         // Tolerance: one period at push speed, 0.1 mm, times the toy's 500 N/m; and putting back
         // presses until the touch force of 0.1 N is felt, which adds as much and a period more.

@@ -24,7 +24,7 @@ use crate::{
 };
 
 /// Overlap that a body may have where it is put [m]: what rests on something sinks in a little.
-const GRACE: Real = 1e-4;
+const OVERLAP_TOLERANCE: Real = 1e-4;
 
 /// Who is in the way.
 enum InTheWay {
@@ -143,7 +143,7 @@ impl Coupled {
         let other = if reaches_into(surface, pose, &self.state, &self.model) {
             Some(InTheWay::Bag)
         } else {
-            let other = self.world.overlap(surface, pose, except, GRACE);
+            let other = self.world.overlap(surface, pose, except, OVERLAP_TOLERANCE);
             other.map(|it| it.map_or(InTheWay::Table, InTheWay::Object))
         };
         other.map_or(Ok(()), |other| Err(refused(scene, name, other)))
@@ -152,7 +152,7 @@ impl Coupled {
     fn in_the_bags_way(&self, state: &State) -> Option<InTheWay> {
         let table = self.model.table.translation.z;
         let lowest = |points: &[Vec3]| points.iter().map(|it| it.z).fold(Real::INFINITY, Real::min);
-        if lowest(&state.membrane.positions) < table - GRACE {
+        if lowest(&state.membrane.positions) < table - OVERLAP_TOLERANCE {
             return Some(InTheWay::Table);
         }
         (0..self.n_objects()).find_map(|i| match &self.model.bodies[i].surface {
@@ -185,7 +185,7 @@ fn reaches_into(
 ) -> bool {
     let is_inside = |point: &Vec3| {
         let local = pose.inverse_transform_point(&(*point).into()).coords;
-        surface.distance(&local).distance < -GRACE
+        surface.distance(&local).distance < -OVERLAP_TOLERANCE
     };
     let at = |v: u32| state.membrane.positions[v as usize];
     let centroids =

@@ -211,7 +211,7 @@ impl Expected {
 
 /// The words of a row.
 #[derive(Clone, Copy, Debug)]
-pub struct Told<'a> {
+pub struct Report<'a> {
     /// Stable name.
     pub id: &'a str,
     /// What is measured.
@@ -226,7 +226,7 @@ pub struct Told<'a> {
 
 impl Row {
     /// Judges `measured`.
-    pub fn new(told: &Told<'_>, expected: Expected, measured: f64) -> Self {
+    pub fn new(told: &Report<'_>, expected: Expected, measured: f64) -> Self {
         Self {
             id: told.id.to_owned(),
             quantity: told.quantity.to_owned(),

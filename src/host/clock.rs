@@ -51,7 +51,7 @@ impl Pacer {
     }
 
     /// Time stands still: the wall time since it last went on does not count.
-    pub fn stand_still(&mut self) {
+    pub fn wait_paused(&mut self) {
         let now = Instant::now();
         let stood = now - self.last;
         self.start += stood;
@@ -214,14 +214,14 @@ pub fn wall_ns() -> u64 {
 }
 
 /// How long the run waits for someone before it looks around.
-pub const PAUSE: Duration = Duration::from_millis(5);
+pub const IDLE_SLEEP: Duration = Duration::from_millis(5);
 
 /// The same while a tick waits for a command.
-pub const NAP: Duration = Duration::from_micros(50);
+pub const POLL_PERIOD: Duration = Duration::from_micros(50);
 
 /// A short pause while the run waits for someone.
 pub fn pause() {
-    thread::sleep(PAUSE);
+    thread::sleep(IDLE_SLEEP);
 }
 
 /// Wall time as a word for folder names, in UTC: `2026-11-22_15-43-50`.

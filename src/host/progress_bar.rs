@@ -22,11 +22,11 @@ const SETTLE_STEPS: u64 = 1000;
 pub struct Progress {
     bar: ProgressBar,
     /// Who is told the same.
-    others: Mutex<Vec<Teller>>,
+    others: Mutex<Vec<Listener>>,
 }
 
 /// Tells a text to someone else.
-type Teller = Box<dyn Fn(&str) + Send>;
+type Listener = Box<dyn Fn(&str) + Send>;
 
 impl Progress {
     /// A line for a terminal; `is_quiet` and pipes get none.
@@ -101,7 +101,7 @@ impl Progress {
     }
 
     /// From now on someone else is told what is said.
-    pub fn tell_too(&self, tell: Teller) {
+    pub fn add_listener(&self, tell: Listener) {
         self.others.lock().unwrap_or_else(PoisonError::into_inner).push(tell);
     }
 

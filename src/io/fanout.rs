@@ -144,7 +144,7 @@ impl Lane {
                 queue = ignore_poison(self.shared.for_run.wait_while(queue, is_full));
             }
             Delivery::Latest { .. } if is_full(&mut queue) => {
-                let oldest = queue.packets.iter().position(|it| !it.is_precious()).unwrap_or(0);
+                let oldest = queue.packets.iter().position(|it| !it.is_required()).unwrap_or(0);
                 queue.packets.remove(oldest);
                 queue.counters.n_dropped += 1;
             }
@@ -176,7 +176,7 @@ impl Lane {
                 patience.as_secs_f64(),
                 queue.packets.len()
             );
-            queue.complain(text);
+            queue.report_malformed(text);
         }
         let end = SinkEnd { counters: queue.counters.clone(), is_closed: queue.is_ended };
         drop(queue);
@@ -244,7 +244,7 @@ struct Queue {
 }
 
 impl Queue {
-    fn complain(&mut self, text: String) {
+    fn report_malformed(&mut self, text: String) {
         if self.fault_last.as_ref() != Some(&text) && self.faults.len() < FAULTS_MAX {
             self.faults.push(SinkFault { sink: self.counters.name, text: text.clone() });
             self.fault_last = Some(text);
@@ -294,14 +294,14 @@ impl Shared {
             Ok(()) => queue.counters.n_written += 1,
             Err(error) => {
                 queue.counters.n_failed += 1;
-                queue.complain(error.to_string());
+                queue.report_malformed(error.to_string());
             }
         }
     }
 
     fn complain_if_failed(&self, outcome: Result<(), Box<dyn Error + Send + Sync>>) {
         if let Err(error) = outcome {
-            self.lock().complain(error.to_string());
+            self.lock().report_malformed(error.to_string());
         }
     }
 
@@ -311,7 +311,9 @@ impl Shared {
         if let Some(text) = panic {
             queue.counters.n_failed += queue.in_hand + queue.packets.len() as u64;
             let name = queue.counters.name;
-            queue.complain(format!("{name}: broke off: {text}; nothing more is written there"));
+            queue.report_malformed(format!(
+                "{name}: broke off: {text}; nothing more is written there"
+            ));
         }
         queue.packets.clear();
         self.for_run.notify_all();

@@ -7,12 +7,12 @@ use std::{
 
 /// Number of the last packet that was published. Packets count from 1.
 #[derive(Debug, Default)]
-pub struct Announced {
+pub struct PublishedUpTo {
     last: Mutex<u64>,
     changed: Condvar,
 }
 
-impl Announced {
+impl PublishedUpTo {
     /// The packet of this number has been published.
     pub fn note(&self, number: u64) {
         let mut last = self.last.lock().unwrap_or_else(PoisonError::into_inner);

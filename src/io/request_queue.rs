@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use crate::io::server::{BenchCounters, Call};
+use crate::io::server::{ServerCounters, ServiceRequest};
 
 /// Questions that can wait. A client asks again; one that floods hurts itself.
 pub const DEPTH: usize = 256;
@@ -10,24 +10,24 @@ pub const DEPTH: usize = 256;
 /// Waiting questions and what was counted.
 #[derive(Debug, Default)]
 pub struct Queue {
-    calls: VecDeque<Call>,
-    counters: BenchCounters,
+    calls: VecDeque<ServiceRequest>,
+    counters: ServerCounters,
     last_fault: Option<String>,
 }
 
 impl Queue {
     /// Keeps a question if there is room.
-    pub fn offer(&mut self, call: Call) {
-        self.counters.n_asked += 1;
+    pub fn offer(&mut self, call: ServiceRequest) {
+        self.counters.n_received += 1;
         if self.calls.len() < DEPTH {
             self.calls.push_back(call);
         } else {
-            self.counters.n_refused += 1;
+            self.counters.n_rejected += 1;
         }
     }
 
     /// At most `most` questions, oldest first.
-    pub fn take(&mut self, most: usize) -> Vec<Call> {
+    pub fn take(&mut self, most: usize) -> Vec<ServiceRequest> {
         let n = most.min(self.calls.len());
         self.calls.drain(..n).collect()
     }
@@ -38,13 +38,13 @@ impl Queue {
     }
 
     /// Counts a question that could not be read.
-    pub fn complain(&mut self, fault: String) {
+    pub fn report_malformed(&mut self, fault: String) {
         self.counters.n_malformed += 1;
         self.last_fault = Some(fault);
     }
 
     /// What was counted so far.
-    pub fn counters(&self) -> BenchCounters {
+    pub fn counters(&self) -> ServerCounters {
         self.counters
     }
 
@@ -57,11 +57,11 @@ impl Queue {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{io::server::Asker, wire::cdr::Cdr};
+    use crate::{io::server::RequestId, wire::cdr::Cdr};
 
-    fn call(number: i64) -> Call {
-        let asker = Asker { offer: 0, writer: [0; 16], number, header: None };
-        Call { asker, body: Cdr::of(&number) }
+    fn call(number: i64) -> ServiceRequest {
+        let asker = RequestId { offer: 0, writer: [0; 16], number, header: None };
+        ServiceRequest { asker, body: Cdr::of(&number) }
     }
 
     /// Oracle: the contract. The first that came are answered, in order; the flood is counted.
@@ -73,6 +73,6 @@ mod tests {
         assert_eq!(first, [0, 1, 2]);
         assert_eq!(queue.take(usize::MAX).len(), DEPTH - 3);
         let counters = queue.counters();
-        assert_eq!((counters.n_asked, counters.n_refused), (10_000, 10_000 - DEPTH as u64));
+        assert_eq!((counters.n_received, counters.n_rejected), (10_000, 10_000 - DEPTH as u64));
     }
 }

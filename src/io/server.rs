@@ -10,7 +10,7 @@ use crate::wire::{cdr::Cdr, messages::ServiceType};
 
 /// A service that is offered.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Offer {
+pub struct ServiceSpec {
     /// Full name, such as `/jamgrip/step_simulation`.
     pub name: String,
     /// Its type.
@@ -19,7 +19,7 @@ pub struct Offer {
 
 /// A topic that answers may be published on, besides those of a scene.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Channel {
+pub struct TopicSpec {
     /// Full name, such as `/jamgrip/gripper_cmd/_action/feedback`.
     pub name: String,
     /// Name of its type on the DDS wire.
@@ -30,7 +30,7 @@ pub struct Channel {
 
 /// Who asked, so that the answer finds back.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Asker {
+pub struct RequestId {
     /// Which offer was used.
     pub offer: usize,
     /// The client's writer.
@@ -43,9 +43,9 @@ pub struct Asker {
 
 /// A question.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Call {
+pub struct ServiceRequest {
     /// Who asks.
-    pub asker: Asker,
+    pub asker: RequestId,
     /// What is asked.
     pub body: Cdr,
 }
@@ -54,26 +54,26 @@ pub struct Call {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Outgoing {
     /// An answer.
-    Answer(Asker, Cdr),
+    Response(RequestId, Cdr),
     /// A message on one of the channels.
     Message(usize, Cdr),
 }
 
 /// What became of the questions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct BenchCounters {
+pub struct ServerCounters {
     /// Questions that arrived.
-    pub n_asked: u64,
+    pub n_received: u64,
     /// Questions that found the queue full and are left without an answer.
-    pub n_refused: u64,
+    pub n_rejected: u64,
     /// Questions that could not be read.
     pub n_malformed: u64,
 }
 
 /// A place where others ask.
-pub trait Bench: Send {
+pub trait ServiceServer: Send {
     /// At most `most` questions that wait, oldest first. Never waits.
-    fn take(&mut self, most: usize) -> Vec<Call>;
+    fn take(&mut self, most: usize) -> Vec<ServiceRequest>;
 
     /// Waits until a question is there, at most this long.
     fn wait(&mut self, at_most: Duration);
@@ -82,8 +82,8 @@ pub trait Bench: Send {
     fn send(&mut self, outgoing: Outgoing, after_packet: u64);
 
     /// A question could not be read: it is counted, and now and then told.
-    fn complain(&mut self, fault: String);
+    fn report_malformed(&mut self, fault: String);
 
     /// What became of the questions so far.
-    fn counters(&self) -> BenchCounters;
+    fn counters(&self) -> ServerCounters;
 }

@@ -62,7 +62,7 @@ impl Packet {
     }
 
     /// True if nothing can be told without it of what comes after.
-    pub fn is_precious(&self) -> bool {
+    pub fn is_required(&self) -> bool {
         !self.changes.is_empty() || !self.checkpoints.is_empty()
     }
 
@@ -72,7 +72,7 @@ impl Packet {
     }
 
     /// The same packet, whose messages are made by `encoder`.
-    pub fn told_by(self, encoder: Option<Arc<Encoder>>) -> Self {
+    pub fn with_encoder(self, encoder: Option<Arc<Encoder>>) -> Self {
         Self { encoder, ..self }
     }
 

@@ -11,7 +11,7 @@ use crate::{
 };
 
 /// All sources of commands of a run.
-pub struct Orders {
+pub struct CommandSources {
     builtin: Option<Builtin>,
     outside: Vec<Box<dyn Source>>,
 }
@@ -21,7 +21,7 @@ struct Builtin {
     parameters: scene::PickAndLift,
 }
 
-impl Orders {
+impl CommandSources {
     /// The built-in controller, if `scene` asks for it, and `outside`.
     pub fn new(scene: &Scene, outside: Vec<Box<dyn Source>>) -> Self {
         let builtin = match &scene.controller {
@@ -53,7 +53,7 @@ impl Orders {
 
     /// Another scene has been loaded: what was commanded before is not for it. The built-in controller
     /// goes by its numbers, if it has some.
-    pub fn enter(&mut self, scene: &Scene, seen: &Snapshot) {
+    pub fn scene_loaded(&mut self, scene: &Scene, seen: &Snapshot) {
         for source in &mut self.outside {
             drop(source.drain(seen));
         }

@@ -8,7 +8,7 @@ use std::{
     sync::{Arc, atomic::AtomicU64},
 };
 
-use super::{launch::RunError, outputs::Outlets, server::Front};
+use super::{launch::RunError, outputs::OutputSinks, server::SimulationServer};
 use crate::host::progress_bar::Progress;
 #[cfg(feature = "bag")]
 use crate::{bag::recording::INPUTS, cosim::compile::PHYSICS_VERSION, scene::Shape};
@@ -29,7 +29,7 @@ pub(super) struct Sizes {
 
 /// Opens what the scene asks for. What cannot be opened is said and left out, unless the run
 /// would be pointless without it.
-pub(super) struct Doors<'a> {
+pub(super) struct Connections<'a> {
     /// What is asked for.
     pub(super) scene: &'a Scene,
     /// Where it is from.
@@ -56,31 +56,31 @@ pub(super) struct Doors<'a> {
 
 /// Those who may command and ask from outside.
 #[derive(Default)]
-pub struct Outside {
+pub struct ExternalInputs {
     /// Those who command.
     pub sources: Vec<Box<dyn Source>>,
     /// Those who ask.
-    pub front: Option<Front>,
+    pub front: Option<SimulationServer>,
     /// Another simulator's time [ns], if it is followed.
     pub clock: Option<Arc<AtomicU64>>,
 }
 
-impl Doors<'_> {
+impl Connections<'_> {
     /// Opens all of them.
     ///
     /// # Errors
     /// If the run would be pointless.
-    pub(super) fn open(&self, sizes: Sizes) -> Result<(Outlets, Outside), RunError> {
-        let mut outlets = Outlets::default();
+    pub(super) fn open(&self, sizes: Sizes) -> Result<(OutputSinks, ExternalInputs), RunError> {
+        let mut outputs = OutputSinks::default();
         if self.scene.outputs.bag.enabled {
-            self.open_bag(&mut outlets)?;
+            self.open_bag(&mut outputs)?;
         }
         if self.scene.outputs.stream {
-            self.open_stream(&mut outlets, sizes);
+            self.open_stream(&mut outputs, sizes);
         }
-        let mut outside = Outside::default();
+        let mut outside = ExternalInputs::default();
         let opened = if self.scene.outputs.ros.enabled {
-            self.open_ros(&mut outlets, &mut outside)
+            self.open_ros(&mut outputs, &mut outside)
         } else {
             Err("outputs.ros.enabled is false".to_owned())
         };
@@ -93,11 +93,11 @@ impl Doors<'_> {
             }
             _ => {}
         }
-        Ok((outlets, outside))
+        Ok((outputs, outside))
     }
 
     #[cfg(feature = "bag")]
-    fn open_bag(&self, outlets: &mut Outlets) -> Result<(), RunError> {
+    fn open_bag(&self, outputs: &mut OutputSinks) -> Result<(), RunError> {
         use crate::bag::sink::Bag;
 
         let subject = self.subject();
@@ -105,13 +105,13 @@ impl Doors<'_> {
         let opened = Bag::create(&folder, Arc::clone(self.encoder), subject)
             .map_err(|error| error.to_string())
             .and_then(|bag| {
-                let added = outlets.fanout.add(Box::new(bag), self.bag_delivery());
+                let added = outputs.fanout.add(Box::new(bag), self.bag_delivery());
                 added.map_err(|error| error.to_string())
             });
         match (opened, self.scene.outputs.bag.on_error) {
             (Ok(()), on_error) => {
-                outlets.bag = Some(folder);
-                outlets.stops_with_bag = on_error == OnError::Stop;
+                outputs.bag = Some(folder);
+                outputs.stops_with_bag = on_error == OnError::Stop;
             }
             (Err(reason), OnError::Stop) => return Err(RunError::Recording(reason)),
             (Err(reason), OnError::Continue) => {
@@ -122,7 +122,7 @@ impl Doors<'_> {
     }
 
     #[cfg(not(feature = "bag"))]
-    fn open_bag(&self, _outlets: &mut Outlets) -> Result<(), RunError> {
+    fn open_bag(&self, _outlets: &mut OutputSinks) -> Result<(), RunError> {
         let reason = "this jamgrip was built without recordings (feature `bag`)".to_owned();
         if self.scene.outputs.bag.on_error == OnError::Stop {
             return Err(RunError::Recording(reason));
@@ -200,17 +200,17 @@ impl Doors<'_> {
     }
 
     #[cfg(feature = "shm")]
-    fn open_stream(&self, outlets: &mut Outlets, sizes: Sizes) {
+    fn open_stream(&self, outputs: &mut OutputSinks, sizes: Sizes) {
         use crate::shm::stream::{Stream, prefix};
 
         match Stream::open(&prefix(), sizes.n_grains, sizes.n_vertices) {
-            Ok(stream) => outlets.stream = Some(stream),
+            Ok(stream) => outputs.stream = Some(stream),
             Err(error) => self.progress.say(&format!("{error}; the run goes on without streams")),
         }
     }
 
     #[cfg(not(feature = "shm"))]
-    fn open_stream(&self, _outlets: &mut Outlets, sizes: Sizes) {
+    fn open_stream(&self, _outlets: &mut OutputSinks, sizes: Sizes) {
         let Sizes { n_grains, n_vertices } = sizes;
         self.progress.say(&format!(
             "this jamgrip was built without streams (feature `shm`): {n_grains} grains and \
@@ -219,32 +219,37 @@ impl Doors<'_> {
     }
 
     #[cfg(feature = "ros")]
-    fn open_ros(&self, outlets: &mut Outlets, outside: &mut Outside) -> Result<(), String> {
+    fn open_ros(
+        &self,
+        outputs: &mut OutputSinks,
+        outside: &mut ExternalInputs,
+    ) -> Result<(), String> {
         use crate::{
-            io::{fanout::Delivery, published::Announced},
+            io::{fanout::Delivery, published::PublishedUpTo},
             ros::{
-                discovery::Reach,
+                discovery::DiscoveryRange,
                 node::{RosNode, RosSink},
-                service::RosBench,
+                service::RosServiceServer,
                 subscribe::{RosClock, RosSource},
             },
             simulator::{Simulator, Version, services},
             wire::topics::full_name,
         };
 
-        let reach = Reach::choose(&self.scene.outputs.ros, |name| std::env::var(name).ok());
+        let reach =
+            DiscoveryRange::choose(&self.scene.outputs.ros, |name| std::env::var(name).ok());
         let reach = reach.map_err(|error| error.to_string())?;
         let node = RosNode::join_as(&self.scene.outputs.ros.node, &reach);
         let node = node.map_err(|error| error.to_string())?;
         let log = Arc::clone(&node);
-        self.progress.tell_too(Box::new(move |text| log.say(text)));
-        let announced = Arc::new(Announced::default());
+        self.progress.add_listener(Box::new(move |text| log.say(text)));
+        let published = Arc::new(PublishedUpTo::default());
         let sink = RosSink::new(&node, self.encoder).map_err(|error| error.to_string())?;
-        let sink = sink.announcing(&announced);
+        let sink = sink.announcing(&published);
         let source = RosSource::new(&node, self.encoder).map_err(|error| error.to_string())?;
         // Old states are worth nothing to a controller, but half a second bridges a hiccup.
         let delivery = Delivery::Latest { depth: 500 };
-        outlets.fanout.add(Box::new(sink), delivery).map_err(|error| error.to_string())?;
+        outputs.fanout.add(Box::new(sink), delivery).map_err(|error| error.to_string())?;
         outside.sources.push(Box::new(source));
         if self.encoder.follows_clock() {
             let name = full_name(&self.scene.outputs.ros, "/clock");
@@ -258,7 +263,7 @@ impl Doors<'_> {
         let mut channels = services::channels(&ros.node, prefix);
         offers.iter_mut().for_each(|it| it.name = full_name(ros, &it.name));
         channels.iter_mut().for_each(|it| it.name = full_name(ros, &it.name));
-        let bench = RosBench::open(&node, &offers, &channels, &announced);
+        let bench = RosServiceServer::open(&node, &offers, &channels, &published);
         let bench = Box::new(bench.map_err(|error| error.to_string())?);
         let is_stopped = matches!(self.scene.controller, Controller::Topics { .. });
         let version = match self.scene.outputs.ros.interfaces_version {
@@ -270,12 +275,16 @@ impl Doors<'_> {
             .with_channels(channels.len())
             .beside(self.scene_file)
             .speaking(version);
-        outside.front = Some(Front::new(simulator, bench, announced));
+        outside.front = Some(SimulationServer::new(simulator, bench, published));
         Ok(())
     }
 
     #[cfg(not(feature = "ros"))]
-    fn open_ros(&self, _outlets: &mut Outlets, _outside: &mut Outside) -> Result<(), String> {
+    fn open_ros(
+        &self,
+        _outlets: &mut OutputSinks,
+        _outside: &mut ExternalInputs,
+    ) -> Result<(), String> {
         Err("this jamgrip was built without ROS 2 (feature `ros`)".to_owned())
     }
 }

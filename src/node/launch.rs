@@ -3,16 +3,16 @@
 use std::{path::PathBuf, sync::Arc, time::Duration};
 
 use super::{
-    Crew, Ending, Report,
-    command_sources::Orders,
-    connect::{Doors, Outside, Sizes},
-    lift_monitor::Judge,
+    Ending, Report, RunContext,
+    command_sources::CommandSources,
+    connect::{Connections, ExternalInputs, Sizes},
+    lift_monitor::LiftMonitor,
     loader::Loader,
     lockstep::Gate,
     outputs::Closed,
     plant::Plant,
     schedule::Schedule,
-    server::Front,
+    server::SimulationServer,
     start::{self, StartError, Started},
     summary::Summary,
 };
@@ -86,7 +86,7 @@ pub fn launch(scene: &Scene, options: &Options) -> Result<Finished, RunError> {
         Ok(start::start(compiled, options.n_threads, &options.cache, progress)?)
     };
     launch_with(scene, options, begin, |outside| {
-        (Orders::new(scene, outside.sources), outside.front)
+        (CommandSources::new(scene, outside.sources), outside.front)
     })
 }
 
@@ -103,7 +103,9 @@ pub fn launch_by(
     let begin = |compiled: Compiled, progress: &Progress| {
         Ok(start::start(compiled, options.n_threads, &options.cache, progress)?)
     };
-    launch_with(scene, options, begin, |_| (Orders::from_outside(vec![Box::new(script)]), None))
+    launch_with(scene, options, begin, |_| {
+        (CommandSources::from_outside(vec![Box::new(script)]), None)
+    })
 }
 
 /// Runs `scene` to its end from a session that `begin` makes of the compiled scene, under the
@@ -115,7 +117,7 @@ pub fn launch_with(
     scene: &Scene,
     options: &Options,
     begin: impl FnOnce(Compiled, &Progress) -> Result<Started, RunError>,
-    command: impl FnOnce(Outside) -> (Orders, Option<Front>),
+    command: impl FnOnce(ExternalInputs) -> (CommandSources, Option<SimulationServer>),
 ) -> Result<Finished, RunError> {
     let since_start = Pacer::start(false);
     let shutdown = Shutdown::listen()?;
@@ -126,31 +128,31 @@ pub fn launch_with(
     let encoder = Arc::new(Encoder::new(scene, &mesh.triangles, &mesh.positions));
     let sizes = Sizes { n_grains: scene.grains.count, n_vertices: mesh.n_vertices() };
     // Recording first: a folder that cannot be written is noticed before the bag is filled.
-    let (mut outlets, outside) = {
+    let (mut outputs, outside) = {
         let Options { scene_file, facts, .. } = options;
-        Doors { scene, scene_file, encoder: &encoder, progress: &progress, substep_s, facts }
+        Connections { scene, scene_file, encoder: &encoder, progress: &progress, substep_s, facts }
             .open(sizes)?
     };
     let Started { mut session, origin } = begin(compiled, &progress)?;
     let end_ns = end_ns(scene, options.duration);
     progress.running(end_ns);
     let clock = outside.clock.clone();
-    outlets.encoder = Some(Arc::clone(&encoder));
-    let (orders, front) = command(outside);
+    outputs.encoder = Some(Arc::clone(&encoder));
+    let (command_sources, front) = command(outside);
     let loader = || Loader::new(options.n_threads, options.cache.clone());
     let front = front.map(|it| it.with_loader(loader()));
     // Only who commands from outside can be waited for; a script knows its ticks.
     let in_step = if front.is_some() { lockstep(scene) } else { Lockstep::OFF };
     let gate = Gate::new(in_step);
     let gate = if front.is_some() { gate.following(clock, scene.time.tick_ns) } else { gate };
-    let mut crew = Crew {
-        orders,
+    let mut context = RunContext {
+        command_sources,
         gate,
         front,
         checkpoints: Vec::new(),
-        outlets,
+        outputs,
         schedule: Schedule::new(&scene.outputs, scene.time.tick_ns),
-        judge: Judge::default(),
+        lift_monitor: LiftMonitor::default(),
         progress,
         shutdown,
         tick_ns: scene.time.tick_ns,
@@ -161,11 +163,11 @@ pub fn launch_with(
         about: RunStatistics { substep_s, seed: scene.seed, ..RunStatistics::default() },
     };
     let start_time_s = since_start.wall_time_s();
-    let report = super::run(&mut session, &mut crew);
+    let report = super::run(&mut session, &mut context);
     let mesh = &session.coupled().model.membrane.mesh;
     let sizes = Sizes { n_grains: session.scene().grains.count, n_vertices: mesh.n_vertices() };
     let substep_s = session.substep_s();
-    Ok(finish(session.scene(), crew, report, Known { sizes, substep_s, origin, start_time_s }))
+    Ok(finish(session.scene(), context, report, Known { sizes, substep_s, origin, start_time_s }))
 }
 
 /// What is known besides what was seen of the run.
@@ -196,15 +198,15 @@ fn lockstep(scene: &Scene) -> Lockstep {
 
 fn finish(
     scene: &Scene,
-    crew: Crew,
+    context: RunContext,
     report: Report<<crate::session::Session as Plant>::Fault>,
     known: Known,
 ) -> Finished {
-    let Crew { orders, outlets, judge, progress, .. } = crew;
-    let bag = outlets.bag.as_ref().map(|folder| folder.display().to_string());
-    let sources = orders.counters();
-    drop(orders);
-    let Closed { counters, faults } = outlets.close();
+    let RunContext { command_sources, outputs, lift_monitor, progress, .. } = context;
+    let bag = outputs.bag.as_ref().map(|folder| folder.display().to_string());
+    let sources = command_sources.counters();
+    drop(command_sources);
+    let Closed { counters, faults } = outputs.close();
     faults.iter().for_each(|fault| progress.say(fault));
     let (ending, fault) = match report.ending {
         Ok(Ending::RecordingFailed) => {
@@ -219,7 +221,7 @@ fn finish(
         scene: scene.name.clone(),
         seed: scene.seed,
         ending,
-        verdict: judge.verdict(),
+        verdict: lift_monitor.verdict(),
         real_time_factor: report.real_time_factor,
         wall_time_s: report.wall_time_s,
         start_time_s: known.start_time_s,

@@ -21,16 +21,16 @@ const OVERLAP_LIMIT: Real = 0.1;
 
 /// Watches a run.
 #[derive(Clone, Debug)]
-pub struct Judge {
+pub struct LiftMonitor {
     object_lowest: Real,
     flange_lowest: Real,
     still_since: Option<Real>,
-    verdict: Verdict,
+    verdict: LiftMetrics,
 }
 
 /// What came of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Verdict {
+pub struct LiftMetrics {
     /// Greatest height of the object over its lowest place before [m].
     pub lift_height: Real,
     /// Time for which the flange held still, raised and under vacuum [s].
@@ -47,7 +47,7 @@ pub struct Verdict {
     pub membrane_overlap_ratio_max: Real,
 }
 
-impl Verdict {
+impl LiftMetrics {
     /// True if the object stayed up for as long as the flange held.
     pub fn is_held(&self) -> bool {
         0.0 < self.hold_time && HELD_SHARE <= self.hold_share_min
@@ -64,18 +64,18 @@ impl Verdict {
     }
 }
 
-impl Default for Judge {
+impl Default for LiftMonitor {
     fn default() -> Self {
         Self {
             object_lowest: Real::INFINITY,
             flange_lowest: Real::INFINITY,
             still_since: None,
-            verdict: Verdict::default(),
+            verdict: LiftMetrics::default(),
         }
     }
 }
 
-impl Judge {
+impl LiftMonitor {
     /// Looks at the end of a tick of `tick` seconds.
     pub fn look(&mut self, seen: &Snapshot, tick: Real) {
         let time = std::time::Duration::from_nanos(seen.time_ns).as_secs_f64();
@@ -112,7 +112,7 @@ impl Judge {
     }
 
     /// The verdict so far.
-    pub fn verdict(&self) -> Verdict {
+    pub fn verdict(&self) -> LiftMetrics {
         self.verdict
     }
 }

@@ -16,13 +16,13 @@ pub mod summary; // the summary of a run
 use std::{fmt, mem, sync::Arc, time::Duration};
 
 use self::{
-    command_sources::Orders,
-    lift_monitor::Judge,
+    command_sources::CommandSources,
+    lift_monitor::LiftMonitor,
     lockstep::{Gate, Missed},
-    outputs::Outlets,
+    outputs::OutputSinks,
     plant::Plant,
     schedule::{Parts, Schedule},
-    server::Front,
+    server::SimulationServer,
 };
 use crate::host::{clock::Pacer, progress_bar::Progress, shutdown::Shutdown};
 use crate::{
@@ -66,19 +66,19 @@ impl fmt::Display for Ending {
 }
 
 /// Everything around the plant.
-pub struct Crew {
+pub struct RunContext {
     /// Who commands.
-    pub orders: Orders,
+    pub command_sources: CommandSources,
     /// Whether ticks wait for commands.
     pub gate: Gate,
     /// Who may ask and change, if anybody.
-    pub front: Option<Front>,
+    pub front: Option<SimulationServer>,
     /// Where results go.
-    pub outlets: Outlets,
+    pub outputs: OutputSinks,
     /// What is due when.
     pub schedule: Schedule,
     /// What came of it.
-    pub judge: Judge,
+    pub lift_monitor: LiftMonitor,
     /// What a person sees.
     pub progress: Progress,
     /// Whether someone asked to end.
@@ -112,49 +112,49 @@ pub struct Report<Fault> {
 }
 
 /// What comes next.
-enum Turn {
+enum NextStep {
     /// A tick.
     Tick,
     /// Nothing yet; perhaps the run waits for its first command.
-    StandStill { is_waiting: bool },
+    Wait { is_waiting: bool },
 }
 
 /// Runs `plant` until there is a reason to end. What was recorded is still open afterwards.
-pub fn run<P: Plant>(plant: &mut P, crew: &mut Crew) -> Report<P::Fault> {
+pub fn run<P: Plant>(plant: &mut P, context: &mut RunContext) -> Report<P::Fault> {
     let mut seen = Arc::new(Packet::new(plant.snapshot(Parts::ALL), None));
-    let mut pacer = Pacer::start_at(crew.run_time_ns(&seen.snapshot), crew.is_real_time);
+    let mut pacer = Pacer::start_at(context.run_time_ns(&seen.snapshot), context.is_real_time);
     // The start is kept whatever the rate, at whatever time it is.
-    crew.keep(plant, true);
-    crew.greet();
+    context.save_checkpoint(plant, true);
+    context.announce_waiting();
     let ending = loop {
-        if let Some(ending) = crew.ending(&seen.snapshot) {
+        if let Some(ending) = context.ending(&seen.snapshot) {
             break Ok(ending);
         }
-        seen = crew.attend(plant, seen); // questions between two ticks
+        seen = context.handle_requests(plant, seen); // questions between two ticks
         // Outside to plain values.
-        if let Turn::StandStill { is_waiting } = crew.listen(&seen.snapshot) {
-            crew.stand_still(plant, &seen, &mut pacer, is_waiting);
+        if let NextStep::Wait { is_waiting } = context.next_step(&seen.snapshot) {
+            context.wait_paused(plant, &seen, &mut pacer, is_waiting);
             continue;
         }
-        if let Err(fault) = plant.tick(&crew.gate.pass()) {
+        if let Err(fault) = plant.tick(&context.gate.pass()) {
             break Err(fault); // the core cannot go on, nobody can
         }
-        let time_ns = seen.snapshot.time_ns + crew.tick_ns;
-        let snapshot = plant.snapshot(crew.schedule.parts(time_ns)); // a copy
-        let run_time_ns = crew.run_time_ns(&snapshot);
-        crew.pace(&mut pacer, run_time_ns); // the only clock
-        crew.keep(plant, crew.schedule.checkpoint(run_time_ns));
-        seen = Arc::new(crew.pack(snapshot, &pacer));
-        crew.outlets.publish(&plant.view(&seen.snapshot), &seen); // never fails the run
-        crew.ticked(&seen);
+        let time_ns = seen.snapshot.time_ns + context.tick_ns;
+        let snapshot = plant.snapshot(context.schedule.parts(time_ns)); // a copy
+        let run_time_ns = context.run_time_ns(&snapshot);
+        context.pace(&mut pacer, run_time_ns); // the only clock
+        context.save_checkpoint(plant, context.schedule.checkpoint(run_time_ns));
+        seen = Arc::new(context.pack(snapshot, &pacer));
+        context.outputs.publish(&plant.view(&seen.snapshot), &seen); // never fails the run
+        context.ticked(&seen);
     };
-    crew.progress.end();
+    context.progress.end();
     let (wall_time_s, real_time_factor) = (pacer.wall_time_s(), pacer.real_time_factor_mean());
     Report { ending, last: seen, wall_time_s, real_time_factor }
 }
 
-impl Crew {
-    fn greet(&self) {
+impl RunContext {
+    fn announce_waiting(&self) {
         if self.is_waiting() {
             self.progress.say(&"waiting for a first command");
         }
@@ -162,12 +162,14 @@ impl Crew {
 
     /// True until something sets a run going that shall begin by command.
     fn is_waiting(&self) -> bool {
-        self.front.as_ref().map_or(self.orders.is_waiting(), |it| it.simulator().is_waiting())
+        self.front
+            .as_ref()
+            .map_or(self.command_sources.is_waiting(), |it| it.simulator().is_waiting())
     }
 
     /// Takes the commands that have come, and says what is next. While time stands still they wait
     /// where they came in, where the oldest give way; a lockstep needs to see them.
-    fn listen(&mut self, seen: &Snapshot) -> Turn {
+    fn next_step(&mut self, seen: &Snapshot) -> NextStep {
         // Asked once: a first command that comes right after is for the next look.
         let is_waiting = self.is_waiting();
         let (is_playing, is_stepping) = match &self.front {
@@ -175,48 +177,48 @@ impl Crew {
             Some(front) => (front.simulator().may_tick(), front.simulator().is_stepping()),
         };
         if is_playing {
-            let mut commands = self.orders.drain(seen);
-            commands.extend(self.front.iter_mut().flat_map(Front::take_commands));
+            let mut commands = self.command_sources.drain(seen);
+            commands.extend(self.front.iter_mut().flat_map(SimulationServer::take_commands));
             self.gate.offer(commands, seen.time_ns);
         }
         let may_tick = is_playing && self.gate.is_open(is_stepping, seen.time_ns);
-        if may_tick { Turn::Tick } else { Turn::StandStill { is_waiting } }
+        if may_tick { NextStep::Tick } else { NextStep::Wait { is_waiting } }
     }
 
     /// Answers questions, and shows what they have changed.
-    fn attend<P: Plant>(&mut self, plant: &mut P, seen: Arc<Packet>) -> Arc<Packet> {
+    fn handle_requests<P: Plant>(&mut self, plant: &mut P, seen: Arc<Packet>) -> Arc<Packet> {
         let Some(front) = &mut self.front else { return seen };
-        if !self.orders.is_waiting() || front.has_commands() {
+        if !self.command_sources.is_waiting() || front.has_commands() {
             front.first_command();
         }
         let changed = {
             let mut world = World { subject: plant, seen: &seen.snapshot };
-            front.attend(&mut world, self.n_packets)
+            front.handle_requests(&mut world, self.n_packets)
         };
         if let Some(outputs) = &changed.outputs {
             self.schedule = Schedule::new(outputs, self.tick_ns);
-            let encoder = self.outlets.encoder.as_deref().map(|it| it.at_rates(outputs));
-            self.outlets.encoder = encoder.map(Arc::new);
+            let encoder = self.outputs.encoder.as_deref().map(|it| it.at_rates(outputs));
+            self.outputs.encoder = encoder.map(Arc::new);
         }
         if changed.changes.is_empty() {
             return seen;
         }
         if changed.is_state_reset || changed.is_time_reset {
-            self.orders.restart();
-            self.judge = Judge::default();
+            self.command_sources.restart();
+            self.lift_monitor = LiftMonitor::default();
         }
         if changed.is_scene_loaded {
-            self.enter(plant, &seen.snapshot);
+            self.scene_loaded(plant, &seen.snapshot);
         }
-        self.welcome(&changed.changes);
+        self.add_spawned_topics(&changed.changes);
         let packet = Packet::new(plant.snapshot(Parts::ALL), None).with_changes(changed.changes);
         let packet = Arc::new(self.number(packet));
-        self.outlets.publish(&plant.view(&packet.snapshot), &packet);
+        self.outputs.publish(&plant.view(&packet.snapshot), &packet);
         packet
     }
 
     /// Objects that have come get topics of their own.
-    fn welcome(&mut self, changes: &[Change]) {
+    fn add_spawned_topics(&mut self, changes: &[Change]) {
         let of_change = |it: &Change| -> Vec<String> {
             match it {
                 Change::Insert(object) => vec![object.name.clone()],
@@ -226,28 +228,28 @@ impl Crew {
                 _ => Vec::new(),
             }
         };
-        let guests: Vec<String> = changes.iter().flat_map(of_change).collect();
-        if let Some(before) = self.outlets.encoder.as_deref().filter(|_| !guests.is_empty()) {
-            let encoder = before.with_guests(guests.iter().map(String::as_str));
-            self.outlets.encoder = Some(Arc::new(encoder));
+        let spawned: Vec<String> = changes.iter().flat_map(of_change).collect();
+        if let Some(before) = self.outputs.encoder.as_deref().filter(|_| !spawned.is_empty()) {
+            let encoder = before.with_spawned(spawned.iter().map(String::as_str));
+            self.outputs.encoder = Some(Arc::new(encoder));
         }
     }
 
     /// Another scene has taken the place of the one before.
-    fn enter<P: Plant>(&mut self, plant: &P, seen: &Snapshot) {
-        let before = self.outlets.encoder.as_deref();
+    fn scene_loaded<P: Plant>(&mut self, plant: &P, seen: &Snapshot) {
+        let before = self.outputs.encoder.as_deref();
         let Some(encoder) = before.and_then(|it| plant.encoder(it)) else { return };
         self.gate.forget();
-        self.orders.enter(encoder.scene(), seen);
+        self.command_sources.scene_loaded(encoder.scene(), seen);
         self.about.seed = encoder.scene().seed;
         self.about.substep_s = plant.substep_s();
         self.progress.say(&format!("scene `{}` is loaded", encoder.scene().name));
-        self.outlets.encoder = Some(Arc::new(encoder));
+        self.outputs.encoder = Some(Arc::new(encoder));
     }
 
     /// Time stands still: waits a moment for someone to change that. Who waits for a first command
     /// is shown the start.
-    fn stand_still<P: Plant>(
+    fn wait_paused<P: Plant>(
         &mut self,
         plant: &P,
         seen: &Arc<Packet>,
@@ -255,18 +257,18 @@ impl Crew {
         is_waiting: bool,
     ) {
         if is_waiting && pacer.is_due(WAITING_RATE) {
-            self.outlets.publish(&plant.view(&seen.snapshot), seen);
+            self.outputs.publish(&plant.view(&seen.snapshot), seen);
         }
         let patience = if self.gate.is_lockstep() {
-            crate::host::clock::NAP
+            crate::host::clock::POLL_PERIOD
         } else {
-            crate::host::clock::PAUSE
+            crate::host::clock::IDLE_SLEEP
         };
         match &mut self.front {
             Some(front) => front.wait(patience),
             None => crate::host::clock::pause(),
         }
-        pacer.stand_still();
+        pacer.wait_paused();
         let is_playing = self.front.as_ref().is_none_or(|it| it.simulator().may_tick());
         let missed = if is_playing { self.gate.miss(pacer.stood_s()) } else { None };
         if let Some(missed) = missed {
@@ -282,7 +284,7 @@ impl Crew {
     /// Steps that someone waits for are not paced.
     fn pace(&self, pacer: &mut Pacer, run_time_ns: u64) {
         if self.front.as_ref().is_some_and(|it| it.simulator().is_stepping()) {
-            pacer.stand_still();
+            pacer.wait_paused();
         }
         pacer.wait_until(run_time_ns);
     }
@@ -295,13 +297,13 @@ impl Crew {
 
     fn number(&mut self, packet: Packet) -> Packet {
         self.n_packets += 1;
-        let packet = packet.told_by(self.outlets.encoder.clone());
+        let packet = packet.with_encoder(self.outputs.encoder.clone());
         packet.numbered(self.n_packets).with_checkpoints(mem::take(&mut self.checkpoints))
     }
 
     /// Takes all that is needed to go on, if it is due and someone keeps it, for the next packet.
-    fn keep<P: Plant>(&mut self, plant: &P, is_due: bool) {
-        if is_due && self.outlets.bag.is_some() {
+    fn save_checkpoint<P: Plant>(&mut self, plant: &P, is_due: bool) {
+        if is_due && self.outputs.bag.is_some() {
             self.checkpoints.extend(plant.checkpoint());
         }
     }
@@ -321,21 +323,21 @@ impl Crew {
         if self.has_missed {
             return Some(Ending::NoCommand);
         }
-        if self.orders.is_done() {
+        if self.command_sources.is_done() {
             return Some(Ending::Finished);
         }
         if self.end_ns.is_some_and(|end_ns| end_ns <= self.run_time_ns(seen)) {
             return Some(Ending::TimeUp);
         }
-        let (faults, must_stop) = self.outlets.take_faults();
+        let (faults, must_stop) = self.outputs.take_faults();
         faults.iter().for_each(|fault| self.progress.say(fault));
         must_stop.then_some(Ending::RecordingFailed)
     }
 
     /// Judges a snapshot, shows it, and adds statistics where they are due.
     fn pack(&mut self, snapshot: Snapshot, pacer: &Pacer) -> Packet {
-        self.judge.look(&snapshot, Duration::from_nanos(self.tick_ns).as_secs_f64());
-        let phase = self.orders.phase().map_or("", |phase| phase.name());
+        self.lift_monitor.look(&snapshot, Duration::from_nanos(self.tick_ns).as_secs_f64());
+        let phase = self.command_sources.phase().map_or("", |phase| phase.name());
         self.progress.tick(&snapshot, phase, pacer);
         let is_due = self.schedule.statistics(snapshot.time_ns);
         let run = is_due.then(|| RunStatistics {
@@ -343,7 +345,7 @@ impl Crew {
             real_time_factor: pacer.real_time_factor(),
             real_time_factor_mean: pacer.real_time_factor_mean(),
             phase: phase.to_owned(),
-            sinks: self.outlets.counters(),
+            sinks: self.outputs.counters(),
             ..self.about.clone()
         });
         self.number(Packet::new(snapshot, run))

@@ -13,11 +13,11 @@ use crate::{
 };
 
 /// How long a sink may take to complete its work at the end.
-const PATIENCE: Duration = Duration::from_secs(30);
+const TIMEOUT: Duration = Duration::from_secs(30);
 
 /// All outputs of a run.
 #[derive(Default)]
-pub struct Outlets {
+pub struct OutputSinks {
     /// Sinks with threads of their own.
     pub fanout: Fanout,
     /// Zero-copy streams.
@@ -40,7 +40,7 @@ pub struct Closed {
     pub faults: Vec<String>,
 }
 
-impl Outlets {
+impl OutputSinks {
     /// Gives out one tick. Waits only for a recording that was asked to miss nothing.
     pub fn publish(&mut self, view: &View<'_>, packet: &Arc<Packet>) {
         self.write_stream(view);
@@ -94,7 +94,7 @@ impl Outlets {
     pub fn close(mut self) -> Closed {
         let (mut faults, _) = self.take_faults();
         let mut counters = self.counters();
-        let (ends, late) = self.fanout.close(PATIENCE);
+        let (ends, late) = self.fanout.close(TIMEOUT);
         for end in ends {
             if let Some(before) = counters.iter_mut().find(|it| it.name == end.counters.name) {
                 *before = end.counters;

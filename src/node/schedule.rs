@@ -6,10 +6,10 @@ use crate::{scene::Outputs, snapshot::due};
 /// Rates in simulated time, cut to ticks.
 #[derive(Clone, Copy, Debug)]
 pub struct Schedule {
-    membrane: Rhythm,
-    grains: Rhythm,
-    contacts: Rhythm,
-    statistics: Rhythm,
+    membrane: Interval,
+    grains: Interval,
+    contacts: Interval,
+    statistics: Interval,
     /// Rate of checkpoints [Hz], and the length of a tick [ns].
     checkpoints: Option<(f64, u64)>,
 }
@@ -17,7 +17,7 @@ pub struct Schedule {
 impl Schedule {
     /// The rates of `outputs` for ticks of `tick_ns`.
     pub fn new(outputs: &Outputs, tick_ns: u64) -> Self {
-        let rhythm = |rate| Rhythm::new(rate, tick_ns);
+        let rhythm = |rate| Interval::new(rate, tick_ns);
         Self {
             membrane: rhythm(outputs.membrane_rate),
             grains: rhythm(outputs.grains_rate),
@@ -48,12 +48,12 @@ impl Schedule {
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Rhythm {
+struct Interval {
     period_ns: u64,
     tick_ns: u64,
 }
 
-impl Rhythm {
+impl Interval {
     fn new(rate: f64, tick_ns: u64) -> Self {
         #[expect(clippy::cast_possible_truncation, reason = "it saturates: slower than ever seen")]
         #[expect(clippy::cast_sign_loss, reason = "rates are checked to be positive")]
@@ -76,7 +76,7 @@ mod tests {
     #[test]
     fn rates_are_kept_on_average() {
         let count = |rate| {
-            let rhythm = Rhythm::new(rate, 1_000_000);
+            let rhythm = Interval::new(rate, 1_000_000);
             (1..=10_000_u64).filter(|tick| rhythm.is_due(tick * 1_000_000)).count()
         };
         assert_eq!(count(30.0), 300);

@@ -6,7 +6,7 @@ use std::{sync::Arc, time::Duration};
 use super::loader::Loader;
 use crate::{
     command::Command,
-    io::{published::Announced, server::Bench},
+    io::{published::PublishedUpTo, server::ServiceServer},
     simulator::{Changed, Simulator, World},
     snapshot::Snapshot,
 };
@@ -14,22 +14,26 @@ use crate::{
 /// Questions that are answered between two ticks while time goes on; more wait for the next.
 const PER_TICK: usize = 16;
 /// Packets that steps may run ahead of what is published.
-const AHEAD: u64 = 100;
+const LEAD_MAX: u64 = 100;
 /// How long is waited for a publisher that has fallen behind.
-const PATIENCE: Duration = Duration::from_secs(1);
+const TIMEOUT: Duration = Duration::from_secs(1);
 
 /// The simulator, and those who ask it.
-pub struct Front {
+pub struct SimulationServer {
     simulator: Simulator,
-    bench: Box<dyn Bench>,
-    announced: Arc<Announced>,
+    bench: Box<dyn ServiceServer>,
+    published: Arc<PublishedUpTo>,
     loader: Option<Loader>,
 }
 
-impl Front {
-    /// A simulator that is asked at `bench`; answers stay behind what `announced` counts.
-    pub fn new(simulator: Simulator, bench: Box<dyn Bench>, announced: Arc<Announced>) -> Self {
-        Self { simulator, bench, announced, loader: None }
+impl SimulationServer {
+    /// A simulator that is asked at `bench`; answers stay behind what `published` counts.
+    pub fn new(
+        simulator: Simulator,
+        bench: Box<dyn ServiceServer>,
+        published: Arc<PublishedUpTo>,
+    ) -> Self {
+        Self { simulator, bench, published, loader: None }
     }
 
     /// The same, which can load other scenes.
@@ -38,10 +42,10 @@ impl Front {
     }
 
     /// Answers what waits. `n_packets` is the number of the last packet given out.
-    pub fn attend(&mut self, world: &mut World<'_>, n_packets: u64) -> Changed {
+    pub fn handle_requests(&mut self, world: &mut World<'_>, n_packets: u64) -> Changed {
         for call in self.bench.take(PER_TICK) {
-            if let Err(fault) = self.simulator.attend(&call, world) {
-                self.bench.complain(fault);
+            if let Err(fault) = self.simulator.handle_requests(&call, world) {
+                self.bench.report_malformed(fault);
             }
         }
         self.load(world);
@@ -72,7 +76,7 @@ impl Front {
         self.simulator.ticked(seen);
         self.send(n_packets);
         if self.simulator.is_stepping() {
-            self.announced.wait_for(n_packets.saturating_sub(AHEAD), PATIENCE);
+            self.published.wait_for(n_packets.saturating_sub(LEAD_MAX), TIMEOUT);
         }
     }
 

@@ -8,7 +8,7 @@ use std::{
 use comfy_table::Table;
 use serde_json::{Map, Value, json};
 
-use super::lift_monitor::Verdict;
+use super::lift_monitor::LiftMetrics;
 use crate::{
     command::CommandCounts,
     io::{sink::SinkCounters, source::SourceCounters},
@@ -24,7 +24,7 @@ pub struct Summary {
     /// Why it ended.
     pub ending: String,
     /// What came of it.
-    pub verdict: Verdict,
+    pub verdict: LiftMetrics,
     /// Simulated over wall time.
     pub real_time_factor: f64,
     /// Wall time of all ticks [s].

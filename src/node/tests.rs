@@ -162,20 +162,20 @@ impl Sink for Memory {
 }
 
 /// A crew for commands over topics that ends at tick 100.
-fn crew(outside: Vec<Box<dyn Source>>) -> Crew {
+fn context(outside: Vec<Box<dyn Source>>) -> RunContext {
     let text = "{ name: x, controller: topics, object: { shape: { sphere: { radius: 1 mm } }, \
                 position: [0 m, 0 m, 1 mm] } }";
     let scene = scene::parse(text, "x", std::path::Path::new(""), &[]).unwrap();
-    Crew {
+    RunContext {
         front: None,
         checkpoints: Vec::new(),
         gate: Gate::new(scene::Lockstep::OFF),
         n_packets: 0,
         has_missed: false,
-        orders: Orders::new(&scene, outside),
-        outlets: Outlets::default(),
+        command_sources: CommandSources::new(&scene, outside),
+        outputs: OutputSinks::default(),
         schedule: Schedule::new(&scene.outputs, TICK_NS),
-        judge: Judge::default(),
+        lift_monitor: LiftMonitor::default(),
         progress: Progress::new(true),
         shutdown: Shutdown::default(),
         tick_ns: TICK_NS,
@@ -192,16 +192,16 @@ fn late() -> Vec<Box<dyn Source>> {
 
 #[test]
 fn a_run_waits_for_its_first_command_and_loses_no_tick() {
-    let mut crew = crew(late());
+    let mut context = context(late());
     let ticks = Arc::new(Mutex::new(Vec::new()));
     let memory = Memory { ticks: Arc::clone(&ticks), fails_at: None };
-    crew.outlets.fanout.add(Box::new(memory), Delivery::Every { depth: 10 }).unwrap();
+    context.outputs.fanout.add(Box::new(memory), Delivery::Every { depth: 10 }).unwrap();
     let mut plant = Counter::default();
-    let report = run(&mut plant, &mut crew);
+    let report = run(&mut plant, &mut context);
     assert_eq!(report.ending.unwrap(), Ending::TimeUp);
     assert_eq!(report.last.snapshot.tick.0, 100);
     assert_eq!(plant.commands, [(1, Command::Vacuum { gauge_pa: -5.0 })], "before the first tick");
-    let closed = crew.outlets.close();
+    let closed = context.outputs.close();
     assert!(closed.faults.is_empty(), "{:?}", closed.faults);
     let mut seen = ticks.lock().unwrap().clone();
     seen.dedup();
@@ -211,39 +211,39 @@ fn a_run_waits_for_its_first_command_and_loses_no_tick() {
 /// Oracle: counting. The time that a run was given is that of its ticks together.
 #[test]
 fn a_run_is_as_long_as_it_was_told_whatever_becomes_of_time() {
-    let mut crew = crew(late());
+    let mut context = context(late());
     let mut plant = Counter { restarts_at: Some(60), ..Counter::default() };
-    let report = run(&mut plant, &mut crew);
+    let report = run(&mut plant, &mut context);
     assert_eq!(report.ending.unwrap(), Ending::TimeUp);
     assert_eq!((plant.n_ticks, report.last.snapshot.time_ns), (100, 40 * TICK_NS));
 }
 
 #[test]
 fn a_run_ends_where_the_plant_cannot_go_on() {
-    let mut crew = crew(late());
+    let mut context = context(late());
     let mut plant = Counter { breaks_at: Some(7), ..Counter::default() };
-    let report = run(&mut plant, &mut crew);
+    let report = run(&mut plant, &mut context);
     assert!(report.ending.is_err());
     assert_eq!(report.last.snapshot.tick.0, 7, "the last whole tick is reported");
 }
 
 #[test]
 fn a_request_to_end_is_heard_even_while_waiting() {
-    let mut crew = crew(Vec::new());
-    crew.shutdown.request();
-    let report = run(&mut Counter::default(), &mut crew);
+    let mut context = context(Vec::new());
+    context.shutdown.request();
+    let report = run(&mut Counter::default(), &mut context);
     assert_eq!(report.ending.unwrap(), Ending::Interrupted);
 }
 
 #[test]
 fn a_failed_recording_ends_the_run_only_if_the_scene_says_so() {
     for (stops_with_bag, expected) in [(true, Ending::RecordingFailed), (false, Ending::TimeUp)] {
-        let mut crew = crew(late());
+        let mut context = context(late());
         let memory = Memory { ticks: Arc::default(), fails_at: Some(10) };
         // A queue of one: the sink is at most one tick behind.
-        crew.outlets.fanout.add(Box::new(memory), Delivery::Every { depth: 1 }).unwrap();
-        crew.outlets.stops_with_bag = stops_with_bag;
-        let report = run(&mut Counter::default(), &mut crew);
+        context.outputs.fanout.add(Box::new(memory), Delivery::Every { depth: 1 }).unwrap();
+        context.outputs.stops_with_bag = stops_with_bag;
+        let report = run(&mut Counter::default(), &mut context);
         assert_eq!(report.ending.unwrap(), expected);
     }
 }
@@ -252,7 +252,7 @@ fn a_failed_recording_ends_the_run_only_if_the_scene_says_so() {
 #[test]
 fn an_object_is_held_if_it_stays_above_nine_tenths() {
     for (sag, is_held) in [(0.005, true), (0.02, false)] {
-        let mut judge = Judge::default();
+        let mut lift_monitor = LiftMonitor::default();
         for tick in 0..1000 {
             let mut seen = snapshot(tick);
             let up = if tick < 100 { 0.0 } else { 0.1 };
@@ -264,9 +264,9 @@ fn an_object_is_held_if_it_stays_above_nine_tenths() {
             seen.objects[0].body.pose.translation.vector.z = 0.035 + up - sagged * up / 0.1;
             seen.chamber.gauge_setpoint = -90e3;
             seen.contact_wrench.force.z = if tick < 100 { 7.0 } else { -2.5 };
-            judge.look(&seen, 1e-3);
+            lift_monitor.look(&seen, 1e-3);
         }
-        let verdict = judge.verdict();
+        let verdict = lift_monitor.verdict();
         assert_eq!(verdict.is_held(), is_held, "{verdict:?}");
         assert!((verdict.lift_height - 0.1).abs() < 1e-12, "{verdict:?}");
         // 900 ticks up, of which the first 100 ms do not count as still.

@@ -2,7 +2,7 @@
 //! on, the recorded commands throughout.
 
 use super::{
-    recorded_run::{Again, ReplayError},
+    recorded_run::{RecordedRun, ReplayError},
     seconds,
 };
 use crate::{
@@ -10,7 +10,7 @@ use crate::{
     cosim::compile::Compiled,
     host::progress_bar::Progress,
     node::{
-        command_sources::Orders,
+        command_sources::CommandSources,
         launch::{self, Finished, RunError},
         start::Started,
     },
@@ -109,7 +109,7 @@ impl BranchError {
 /// # Errors
 /// If the moment is not in the recording, or a change is not possible.
 pub fn branch(
-    again: &Again,
+    again: &RecordedRun,
     branch: &Branch,
     options: &launch::Options,
 ) -> Result<Finished, BranchError> {
@@ -133,12 +133,12 @@ pub fn branch(
     let origin = format!("{} after tick {tick}", again.path.display());
     options.facts.push(("branched_from", origin));
     // Whoever is outside can only look: the commands are those of the recording.
-    let command = |_| (Orders::from_outside(vec![Box::new(script)]), None);
+    let command = |_| (CommandSources::from_outside(vec![Box::new(script)]), None);
     Ok(launch::launch_with(&scene, &options, begin, command)?)
 }
 
 /// Refuses to leave out what was done to the world from outside after `tick` and before `end_s`.
-fn refuse_changes(again: &Again, tick: u64, end_s: f64) -> Result<(), BranchError> {
+fn refuse_changes(again: &RecordedRun, tick: u64, end_s: f64) -> Result<(), BranchError> {
     let at_s = |it: &Alteration| seconds(it.tick * again.scene.time.tick_ns);
     let mut later = again.course.changes.iter().filter(|it| tick <= it.tick && at_s(it) < end_s);
     let refused = |it: &Alteration| BranchError::Changed { at_s: at_s(it), what: it.what.clone() };
@@ -146,7 +146,7 @@ fn refuse_changes(again: &Again, tick: u64, end_s: f64) -> Result<(), BranchErro
 }
 
 /// The recorded run after `tick`, as bytes.
-fn moment(again: &Again, tick: u64, n_threads: usize) -> Result<Vec<u8>, BranchError> {
+fn moment(again: &RecordedRun, tick: u64, n_threads: usize) -> Result<Vec<u8>, BranchError> {
     let tick_ns = again.scene.time.tick_ns;
     let (course, mut script) = (&again.course, again.script()?);
     let last = course.gap_after.unwrap_or(u64::MAX).min(course.last_tick());

@@ -17,7 +17,7 @@ use std::{
     time::Duration,
 };
 
-use super::player_command::{Answer, Asked, Cue};
+use super::player_command::{Answer, Asked, PlayerCommand};
 use crate::{
     bag::{
         index::Index,
@@ -30,7 +30,7 @@ use crate::{
 pub const CLOCK: &str = "/clock";
 
 /// Where messages go.
-pub trait Stage {
+pub trait PlayerOutput {
     /// A topic that messages will come on. False if it cannot be played.
     fn open(&mut self, channel: &Channel) -> bool;
 
@@ -82,7 +82,7 @@ pub struct Played {
 pub fn play(
     files: &[PathBuf],
     options: &Options,
-    stage: &mut dyn Stage,
+    stage: &mut dyn PlayerOutput,
     cues: &Receiver<Asked>,
     shutdown: &Shutdown,
 ) -> io::Result<Played> {
@@ -133,7 +133,7 @@ enum Ending {
 struct Player<'a> {
     files: &'a [PathBuf],
     options: &'a Options,
-    stage: &'a mut dyn Stage,
+    stage: &'a mut dyn PlayerOutput,
     cues: &'a Receiver<Asked>,
     shutdown: &'a Shutdown,
     head: Option<Playhead>,
@@ -272,31 +272,33 @@ impl Player<'_> {
         if self.shutdown.is_requested() {
             return Some(Ending::Quit);
         }
-        while let Ok(Asked { cue, reply }) = self.cues.try_recv() {
+        while let Ok(Asked { command, reply }) = self.cues.try_recv() {
             let head = self.head.as_mut()?;
             let is_paused = head.is_paused();
             let (mut is_done, mut ending) = (true, None);
-            match cue {
-                Cue::Pause => head.set_paused(true),
-                Cue::Resume => head.set_paused(false),
-                Cue::Toggle => head.set_paused(!is_paused),
-                Cue::Next | Cue::Burst(_) if is_paused || cue == Cue::Next => {
+            match command {
+                PlayerCommand::Pause => head.set_paused(true),
+                PlayerCommand::Resume => head.set_paused(false),
+                PlayerCommand::Toggle => head.set_paused(!is_paused),
+                PlayerCommand::Next | PlayerCommand::Burst(_)
+                    if is_paused || command == PlayerCommand::Next =>
+                {
                     head.set_paused(true);
-                    let n = if let Cue::Burst(n) = cue { n } else { 1 };
+                    let n = if let PlayerCommand::Burst(n) = command { n } else { 1 };
                     let n_left = if n == 0 { u64::MAX } else { n };
                     self.bursts.push_back(Burst { n_left, n_played: 0, reply });
                     continue;
                 }
-                Cue::Next | Cue::Burst(_) => is_done = false,
-                Cue::Rate(rate) => head.set_rate(rate),
-                Cue::Seek(to_ns) => ending = Some(Ending::Seek(to_ns)),
-                Cue::SeekTo(time_ns) => {
+                PlayerCommand::Next | PlayerCommand::Burst(_) => is_done = false,
+                PlayerCommand::Rate(rate) => head.set_rate(rate),
+                PlayerCommand::Seek(to_ns) => ending = Some(Ending::Seek(to_ns)),
+                PlayerCommand::SeekTo(time_ns) => {
                     is_done = self.last_ns().is_none_or(|last| time_ns <= last);
                     let to_ns = time_ns.saturating_sub(self.first_ns);
                     ending = is_done.then_some(Ending::Seek(to_ns));
                 }
-                Cue::Look => {}
-                Cue::Quit => ending = Some(Ending::Quit),
+                PlayerCommand::Look => {}
+                PlayerCommand::Quit => ending = Some(Ending::Quit),
             }
             self.answer(reply.as_ref(), is_done, 0);
             if let Some(Ending::Seek(to_ns)) = ending {

@@ -4,7 +4,7 @@ use std::sync::mpsc::Sender;
 
 /// What someone wants while it plays.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Cue {
+pub enum PlayerCommand {
     /// Stand still.
     Pause,
     /// Go on.
@@ -32,7 +32,7 @@ pub enum Cue {
 #[derive(Debug)]
 pub struct Asked {
     /// The cue.
-    pub cue: Cue,
+    pub command: PlayerCommand,
     /// Where the answer goes once it has been followed.
     pub reply: Option<Sender<Answer>>,
 }
@@ -50,13 +50,13 @@ pub struct Answer {
     pub n_played: u64,
 }
 
-impl From<Cue> for Asked {
-    fn from(cue: Cue) -> Self {
-        Self { cue, reply: None }
+impl From<PlayerCommand> for Asked {
+    fn from(command: PlayerCommand) -> Self {
+        Self { command, reply: None }
     }
 }
 
-impl Cue {
+impl PlayerCommand {
     /// A cue as a line of text, such as `seek 1.5s`.
     ///
     /// # Errors

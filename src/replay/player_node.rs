@@ -7,9 +7,9 @@ use std::{
 };
 
 use super::{
-    play::{CLOCK, Stage},
+    play::{CLOCK, PlayerOutput},
     player_command::Asked,
-    player_services::Prompter,
+    player_services::PlayerServices,
 };
 use crate::{
     bag::{
@@ -18,7 +18,7 @@ use crate::{
         writer::CDR_HEADER,
     },
     ros::{
-        discovery::Reach,
+        discovery::DiscoveryRange,
         node::{Body, Publisher, RosError, RosNode},
     },
     wire::{
@@ -33,7 +33,7 @@ pub const NODE_NAME: &str = "jamgrip_player";
 const DEPTH: u32 = 10;
 
 /// A node with the publishers of a recording.
-pub struct RosStage {
+pub struct RosPlayerNode {
     node: Arc<RosNode>,
     publishers: BTreeMap<String, Publisher<Body>>,
     clock: Option<Publisher<Body>>,
@@ -41,12 +41,12 @@ pub struct RosStage {
     pub faults: (u64, Option<String>),
 }
 
-impl RosStage {
+impl RosPlayerNode {
     /// Joins the graph; `tells_time` opens `/clock`.
     ///
     /// # Errors
     /// When there is no graph, or the topic cannot be opened.
-    pub fn join(reach: &Reach, tells_time: bool) -> Result<Self, RosError> {
+    pub fn join(reach: &DiscoveryRange, tells_time: bool) -> Result<Self, RosError> {
         let node = RosNode::join_as(NODE_NAME, reach)?;
         let topic = || Topic::output::<Clock>(CLOCK, Qos::reliable(1));
         let clock = tells_time.then(|| node.publisher(&topic())).transpose()?;
@@ -57,8 +57,8 @@ impl RosStage {
     ///
     /// # Errors
     /// When one cannot be opened.
-    pub fn prompted(&self, teller: Sender<Asked>) -> Result<Prompter, RosError> {
-        Prompter::open(&self.node, NODE_NAME, teller)
+    pub fn prompted(&self, teller: Sender<Asked>) -> Result<PlayerServices, RosError> {
+        PlayerServices::open(&self.node, NODE_NAME, teller)
     }
 
     fn fail(&mut self, fault: String) {
@@ -70,7 +70,7 @@ fn send(publisher: &Publisher<Body>, cdr: &[u8]) -> Result<(), String> {
     publisher.publish(Body::new(cdr.to_vec())).map_err(|error| error.to_string())
 }
 
-impl Stage for RosStage {
+impl PlayerOutput for RosPlayerNode {
     fn open(&mut self, channel: &Channel) -> bool {
         if channel.encoding != "cdr" {
             return false;

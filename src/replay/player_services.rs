@@ -13,15 +13,15 @@ use std::{
     time::Duration,
 };
 
-use super::player_command::{Answer, Asked, Cue};
+use super::player_command::{Answer, Asked, PlayerCommand};
 use crate::{
     io::{
-        published::Announced,
-        server::{Asker, Bench, Call, Offer, Outgoing},
+        published::PublishedUpTo,
+        server::{Outgoing, RequestId, ServiceRequest, ServiceServer, ServiceSpec},
     },
     ros::{
         node::{RosError, RosNode},
-        service::RosBench,
+        service::RosServiceServer,
     },
     wire::{
         cdr::Cdr,
@@ -41,7 +41,7 @@ use crate::{
 };
 
 /// Longest time until a question is seen, or an answer of the player.
-const NAP: Duration = Duration::from_millis(5);
+const POLL_PERIOD: Duration = Duration::from_millis(5);
 /// Questions that are taken at a time.
 const AT_ONCE: usize = 16;
 
@@ -60,44 +60,45 @@ pub const SERVICES: [(&str, ServiceType); 10] = [
 ];
 
 /// The services below a node.
-pub fn offers(node: &str) -> Vec<Offer> {
+pub fn offers(node: &str) -> Vec<ServiceSpec> {
     let offer = |(name, service_type): (&str, _)| {
         let name = format!("/{node}/{name}");
-        Offer { name, service_type }
+        ServiceSpec { name, service_type }
     };
     SERVICES.into_iter().map(offer).collect()
 }
 
 /// Serves until it is dropped.
-pub struct Prompter {
+pub struct PlayerServices {
     stop: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
 }
 
-impl Prompter {
+impl PlayerServices {
     /// Opens the services of a player below the node's name; cues go to `teller`.
     ///
     /// # Errors
     /// When one cannot be opened.
     pub fn open(node: &RosNode, name: &str, teller: Sender<Asked>) -> Result<Self, RosError> {
         // Answers follow no packets here: the player itself says when it is time.
-        let bench = RosBench::open(node, &offers(name), &[], &Arc::new(Announced::default()))?;
+        let bench =
+            RosServiceServer::open(node, &offers(name), &[], &Arc::new(PublishedUpTo::default()))?;
         let stop = Arc::new(AtomicBool::new(false));
-        let mut desk = Desk { bench, teller, open: Vec::new() };
+        let mut bridge = RequestBridge { bench, teller, open: Vec::new() };
         let stopped = Arc::clone(&stop);
         let builder = std::thread::Builder::new().name("prompter".to_owned());
         let thread = builder.spawn(move || {
             while !stopped.load(Ordering::SeqCst) {
-                desk.serve();
+                bridge.serve();
             }
-            desk.collect();
+            bridge.collect();
         });
         let thread = thread.map_err(|reason| RosError::Thread { reason })?;
         Ok(Self { stop, thread: Some(thread) })
     }
 }
 
-impl Drop for Prompter {
+impl Drop for PlayerServices {
     fn drop(&mut self) {
         self.stop.store(true, Ordering::SeqCst);
         if let Some(thread) = self.thread.take() {
@@ -108,26 +109,26 @@ impl Drop for Prompter {
 }
 
 /// Questions on their way to the player and back.
-struct Desk {
-    bench: RosBench,
+struct RequestBridge {
+    bench: RosServiceServer,
     teller: Sender<Asked>,
-    open: Vec<(Asker, Receiver<Answer>)>,
+    open: Vec<(RequestId, Receiver<Answer>)>,
 }
 
-impl Desk {
+impl RequestBridge {
     fn serve(&mut self) {
-        self.bench.wait(NAP);
-        for Call { asker, body } in self.bench.take(AT_ONCE) {
+        self.bench.wait(POLL_PERIOD);
+        for ServiceRequest { asker, body } in self.bench.take(AT_ONCE) {
             let (name, _) = SERVICES[asker.offer % SERVICES.len()];
-            match cue(name, &body) {
-                Ok(Some(cue)) => {
+            match command(name, &body) {
+                Ok(Some(command)) => {
                     let (reply, answer) = mpsc::channel();
                     // A player that has ended answers nobody.
-                    drop(self.teller.send(Asked { cue, reply: Some(reply) }));
+                    drop(self.teller.send(Asked { command, reply: Some(reply) }));
                     self.open.push((asker, answer));
                 }
-                Ok(None) => self.bench.send(Outgoing::Answer(asker, refusal(name)), 0),
-                Err(fault) => self.bench.complain(format!("{name}: {fault}")),
+                Ok(None) => self.bench.send(Outgoing::Response(asker, refusal(name)), 0),
+                Err(fault) => self.bench.report_malformed(format!("{name}: {fault}")),
             }
         }
         self.collect();
@@ -139,7 +140,7 @@ impl Desk {
         open.retain(|(asker, answer)| match answer.try_recv() {
             Ok(answer) => {
                 let (name, _) = SERVICES[asker.offer % SERVICES.len()];
-                bench.send(Outgoing::Answer(asker.clone(), response(name, &answer)), 0);
+                bench.send(Outgoing::Response(asker.clone(), response(name, &answer)), 0);
                 false
             }
             Err(error) => error == mpsc::TryRecvError::Empty,
@@ -148,28 +149,28 @@ impl Desk {
 }
 
 /// What a question asks of the player; `None` if it asks for what cannot be.
-fn cue(name: &str, body: &Cdr) -> Result<Option<Cue>, String> {
+fn command(name: &str, body: &Cdr) -> Result<Option<PlayerCommand>, String> {
     let text = |fault: &dyn std::fmt::Display| fault.to_string();
     Ok(match name {
-        "pause" => Some(Cue::Pause),
-        "resume" => Some(Cue::Resume),
-        "toggle_paused" => Some(Cue::Toggle),
+        "pause" => Some(PlayerCommand::Pause),
+        "resume" => Some(PlayerCommand::Resume),
+        "toggle_paused" => Some(PlayerCommand::Toggle),
         "set_rate" => {
             let SetRateRequest { rate } = body.read().map_err(|it| text(&it))?;
-            (0.0 < rate && rate.is_finite()).then_some(Cue::Rate(rate))
+            (0.0 < rate && rate.is_finite()).then_some(PlayerCommand::Rate(rate))
         }
         "seek" => {
             let SeekRequest { time } = body.read().map_err(|it| text(&it))?;
             let sec = u64::try_from(time.sec).ok();
-            sec.map(|sec| Cue::SeekTo(sec * 1_000_000_000 + u64::from(time.nanosec)))
+            sec.map(|sec| PlayerCommand::SeekTo(sec * 1_000_000_000 + u64::from(time.nanosec)))
         }
-        "play_next" => Some(Cue::Burst(1)),
+        "play_next" => Some(PlayerCommand::Burst(1)),
         "burst" => {
             let BurstRequest { num_messages } = body.read().map_err(|it| text(&it))?;
-            Some(Cue::Burst(num_messages))
+            Some(PlayerCommand::Burst(num_messages))
         }
-        "stop" => Some(Cue::Quit),
-        _ => Some(Cue::Look),
+        "stop" => Some(PlayerCommand::Quit),
+        _ => Some(PlayerCommand::Look),
     })
 }
 
@@ -203,18 +204,18 @@ mod tests {
     /// Oracle: the meaning of the services in rosbag2_interfaces.
     #[test]
     fn questions_become_cues_and_nonsense_is_refused() {
-        let rate = |rate| cue("set_rate", &Cdr::of(&SetRateRequest { rate }));
-        assert_eq!(rate(2.5), Ok(Some(Cue::Rate(2.5))));
+        let rate = |rate| command("set_rate", &Cdr::of(&SetRateRequest { rate }));
+        assert_eq!(rate(2.5), Ok(Some(PlayerCommand::Rate(2.5))));
         for wrong in [0.0, -1.0, f64::NAN, f64::INFINITY] {
             assert_eq!(rate(wrong), Ok(None));
         }
         let seek =
-            |sec, nanosec| cue("seek", &Cdr::of(&SeekRequest { time: Time { sec, nanosec } }));
-        assert_eq!(seek(2, 5), Ok(Some(Cue::SeekTo(2_000_000_005))));
+            |sec, nanosec| command("seek", &Cdr::of(&SeekRequest { time: Time { sec, nanosec } }));
+        assert_eq!(seek(2, 5), Ok(Some(PlayerCommand::SeekTo(2_000_000_005))));
         assert_eq!(seek(-1, 0), Ok(None));
         let nothing = Cdr { bytes: Vec::new(), is_big_endian: false };
-        assert!(cue("burst", &nothing).is_err(), "a burst without a number");
-        assert_eq!(cue("play_next", &nothing), Ok(Some(Cue::Burst(1))));
+        assert!(command("burst", &nothing).is_err(), "a burst without a number");
+        assert_eq!(command("play_next", &nothing), Ok(Some(PlayerCommand::Burst(1))));
         let refused: SetRateResponse = refusal("set_rate").read().unwrap();
         assert!(!refused.success);
     }

@@ -116,7 +116,7 @@ pub enum ReplayError {
 }
 
 /// A recording with its scene read and its course known.
-pub struct Again {
+pub struct RecordedRun {
     /// Where it is.
     pub path: PathBuf,
     /// What it says of itself.
@@ -127,7 +127,7 @@ pub struct Again {
     pub course: Course,
 }
 
-impl Again {
+impl RecordedRun {
     /// Reads a recording.
     ///
     /// # Errors

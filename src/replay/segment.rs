@@ -5,7 +5,7 @@
 
 use std::{borrow::Cow, mem};
 
-use super::recorded_run::{Again, ReplayError};
+use super::recorded_run::{RecordedRun, ReplayError};
 use crate::{
     bag::{
         recording::{Alteration, Place},
@@ -59,7 +59,7 @@ impl Start<'_> {
 }
 
 /// A part of a recording.
-pub(super) struct Part<'a> {
+pub(super) struct Segment<'a> {
     pub(super) start: Start<'a>,
     /// Its last tick.
     pub(super) end: u64,
@@ -68,7 +68,7 @@ pub(super) struct Part<'a> {
 }
 
 /// Cuts a recording, from `start` to the tick `last`, at its checkpoints.
-pub(super) fn cut<'a>(start: Start<'a>, last: u64, checkpoints: &'a [Place]) -> Vec<Part<'a>> {
+pub(super) fn cut<'a>(start: Start<'a>, last: u64, checkpoints: &'a [Place]) -> Vec<Segment<'a>> {
     let mut starts = vec![start];
     for place in checkpoints {
         let begun = starts.last().map_or(0, Start::tick);
@@ -80,7 +80,7 @@ pub(super) fn cut<'a>(start: Start<'a>, last: u64, checkpoints: &'a [Place]) -> 
     let n = starts.len();
     let parts = starts.into_iter().zip(ends).enumerate();
     parts
-        .map(|(i, (start, end))| Part { start, end, is_first: i == 0, is_last: i + 1 == n })
+        .map(|(i, (start, end))| Segment { start, end, is_first: i == 0, is_last: i + 1 == n })
         .collect()
 }
 
@@ -155,11 +155,11 @@ impl Found {
     }
 }
 
-impl Part<'_> {
+impl Segment<'_> {
     /// Simulates the part; `leaves` is asked before every tick whether to leave it.
     pub(super) fn simulate(
         &self,
-        again: &Again,
+        again: &RecordedRun,
         mut script: Script,
         n_threads: usize,
         leaves: &dyn Fn() -> bool,

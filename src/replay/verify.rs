@@ -2,9 +2,9 @@
 
 use super::{
     compatibility,
-    recorded_run::{Again, ReplayError},
+    recorded_run::{RecordedRun, ReplayError},
     segment::{self, Difference, Start},
-    workers::{Crew, Hands},
+    workers::{CpuBudget, Workers},
 };
 use crate::{
     bag::recording::Alteration,
@@ -18,7 +18,7 @@ use crate::{
 /// How to verify.
 pub struct Options<'a> {
     /// How the machine is shared out; it does not change the result.
-    pub hands: Hands,
+    pub hands: CpuBudget,
     /// True fills the bag anew from scene and seed; false takes the start that was recorded.
     pub settles: bool,
     /// Simulated time from which on to verify [ns]; from the last checkpoint before it.
@@ -35,7 +35,7 @@ pub struct Options<'a> {
 
 /// What verification found.
 #[derive(Clone, Debug)]
-pub struct Verdict {
+pub struct VerifyReport {
     /// Ticks that were simulated.
     pub n_ticks: u64,
     /// Digests that were compared.
@@ -56,7 +56,7 @@ pub struct Verdict {
     pub is_interrupted: bool,
 }
 
-impl Verdict {
+impl VerifyReport {
     /// True if something was compared and all of it was equal.
     pub fn is_equal(&self) -> bool {
         self.first_difference.is_none() && 0 < self.n_compared && !self.is_interrupted
@@ -79,7 +79,7 @@ impl Verdict {
 ///
 /// # Errors
 /// If it cannot be run again. A difference is no error.
-pub fn verify(again: &Again, options: &Options<'_>) -> Result<Verdict, ReplayError> {
+pub fn verify(again: &RecordedRun, options: &Options<'_>) -> Result<VerifyReport, ReplayError> {
     let (course, tick_ns) = (&again.course, again.scene.time.tick_ns);
     let mut remarks = remarks(again);
     if options.settles {
@@ -98,15 +98,15 @@ pub fn verify(again: &Again, options: &Options<'_>) -> Result<Verdict, ReplayErr
     options.progress.running(Some(last * tick_ns));
     let stopwatch = Stopwatch::start();
     let (progress, shutdown) = (options.progress, options.shutdown);
-    let crew = Crew { again, script: again.script()?, n_jobs, n_threads, progress, shutdown };
-    let found = crew.simulate(&parts)?;
+    let workers = Workers { again, script: again.script()?, n_jobs, n_threads, progress, shutdown };
+    let found = workers.simulate(&parts)?;
     options.progress.end();
     let wall_s = stopwatch.total_s();
     remarks.extend(found.remarks);
     if found.first_difference.is_some() {
         remarks.extend(blame(again));
     }
-    Ok(Verdict {
+    Ok(VerifyReport {
         n_ticks: found.n_ticks,
         n_compared: found.n_compared,
         n_checkpoints: found.n_checkpoints,
@@ -129,7 +129,7 @@ fn not_settled(change: &Alteration) -> Option<String> {
 
 /// The start, or the checkpoint before the time asked for.
 fn start<'a>(
-    again: &'a Again,
+    again: &'a RecordedRun,
     options: &Options<'_>,
     remarks: &mut Vec<String>,
 ) -> Result<Start<'a>, ReplayError> {
@@ -162,7 +162,7 @@ fn start<'a>(
 }
 
 /// What is wrong with a recording before anything is simulated.
-fn remarks(again: &Again) -> Vec<String> {
+fn remarks(again: &RecordedRun) -> Vec<String> {
     let course = &again.course;
     let mut remarks: Vec<String> = course
         .damages
@@ -193,7 +193,7 @@ fn remarks(again: &Again) -> Vec<String> {
 }
 
 /// What may be the reason of a difference.
-fn blame(again: &Again) -> Vec<String> {
+fn blame(again: &RecordedRun) -> Vec<String> {
     let version = again.recording.version();
     let mut found = vec![format!(
         "recorded by jamgrip {version} on {}, simulated again by {} on {} {}",

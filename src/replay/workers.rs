@@ -10,8 +10,8 @@ use std::sync::{
 };
 
 use super::{
-    recorded_run::{Again, ReplayError},
-    segment::{Found, Part},
+    recorded_run::{RecordedRun, ReplayError},
+    segment::{Found, Segment},
 };
 use crate::{
     bag::source::Script,
@@ -20,7 +20,7 @@ use crate::{
 
 /// How the machine is shared out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Hands {
+pub struct CpuBudget {
     /// Processors of the machine.
     pub n_processors: usize,
     /// Solver threads of each simulation, if someone wants to say.
@@ -29,7 +29,7 @@ pub struct Hands {
     pub n_jobs: Option<usize>,
 }
 
-impl Hands {
+impl CpuBudget {
     /// Simulations at a time, and threads of each, for so many parts. Each gets one thread unless
     /// there are fewer simulations than processors.
     pub fn shared_out(&self, n_parts: usize) -> (usize, usize) {
@@ -40,8 +40,8 @@ impl Hands {
 }
 
 /// All that the jobs share.
-pub(super) struct Crew<'a> {
-    pub(super) again: &'a Again,
+pub(super) struct Workers<'a> {
+    pub(super) again: &'a RecordedRun,
     pub(super) script: Script,
     pub(super) n_jobs: usize,
     pub(super) n_threads: usize,
@@ -60,12 +60,12 @@ struct Board {
     results: Mutex<Vec<(usize, Result<Found, ReplayError>)>>,
 }
 
-impl Crew<'_> {
+impl Workers<'_> {
     /// Simulates all parts, up to the first difference.
     ///
     /// # Errors
     /// The first of the failures, unless something differs before it.
-    pub(super) fn simulate(&self, parts: &[Part<'_>]) -> Result<Found, ReplayError> {
+    pub(super) fn simulate(&self, parts: &[Segment<'_>]) -> Result<Found, ReplayError> {
         let board = Board {
             next: AtomicUsize::new(0),
             decided: AtomicUsize::new(usize::MAX),
@@ -90,7 +90,7 @@ impl Crew<'_> {
         Ok(all)
     }
 
-    fn work(&self, parts: &[Part<'_>], board: &Board) {
+    fn work(&self, parts: &[Segment<'_>], board: &Board) {
         loop {
             let i = board.next.fetch_add(1, Ordering::SeqCst);
             let is_over =
@@ -126,7 +126,7 @@ mod tests {
     /// Oracle: what a person would do with so many processors.
     #[test]
     fn processors_are_shared_out_among_parts_first() {
-        let hands = |n_threads, n_jobs| Hands { n_processors: 8, n_threads, n_jobs };
+        let hands = |n_threads, n_jobs| CpuBudget { n_processors: 8, n_threads, n_jobs };
         assert_eq!(hands(None, None).shared_out(20), (8, 1));
         assert_eq!(hands(None, None).shared_out(3), (3, 2), "what is left goes into each");
         assert_eq!(hands(None, None).shared_out(1), (1, 8));

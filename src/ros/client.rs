@@ -6,7 +6,7 @@ use rustdds::{
 };
 
 use crate::{
-    io::server::Offer,
+    io::server::ServiceSpec,
     ros::service::{Raw, Reader, SERVICE, Writer, reader, writer},
 };
 use crate::{
@@ -19,7 +19,7 @@ pub struct RosClient {
     asks: Writer,
     answers: Reader,
     way: Way,
-    n_asked: i64,
+    n_received: i64,
     /// Servers that hear and that are heard.
     n_matched: [i32; 2],
 }
@@ -38,7 +38,7 @@ impl RosClient {
     ///
     /// # Errors
     /// When it cannot be opened.
-    pub fn open(node: &RosNode, offer: &Offer, way: Way) -> Result<Self, RosError> {
+    pub fn open(node: &RosNode, offer: &ServiceSpec, way: Way) -> Result<Self, RosError> {
         let participant = &node.participant();
         let of = offer.service_type;
         let (ask, answer) = (format!("rq{}Request", offer.name), format!("rr{}Reply", offer.name));
@@ -46,7 +46,7 @@ impl RosClient {
             answers: reader(participant, &answer, of.response_dds_name)?,
             asks: writer(participant, &ask, of.request_dds_name, SERVICE)?,
             way,
-            n_asked: 0,
+            n_received: 0,
             n_matched: [0; 2],
         })
     }
@@ -68,11 +68,11 @@ impl RosClient {
 
     /// Asks. Answers to questions before are not waited for any more.
     pub fn ask(&mut self, body: &Cdr) {
-        self.n_asked += 1;
+        self.n_received += 1;
         let guid = self.asks_guid();
         let identity = SampleIdentity {
             writer_guid: guid,
-            sequence_number: SequenceNumber::from(self.n_asked),
+            sequence_number: SequenceNumber::from(self.n_received),
         };
         let (bytes, options) = match self.way {
             Way::Enhanced => {
@@ -99,7 +99,7 @@ impl RosClient {
             match self.way {
                 Way::Enhanced => {
                     let is_mine = related.is_some_and(|it| {
-                        i64::from(it.sequence_number) == self.n_asked
+                        i64::from(it.sequence_number) == self.n_received
                             && it.writer_guid == self.asks_guid()
                     });
                     if is_mine {
@@ -122,7 +122,7 @@ impl RosClient {
     fn header(&self) -> [u8; 16] {
         let mut header = [0; 16];
         header[..8].copy_from_slice(&self.asks_guid().to_bytes()[8..]);
-        let [a, b, c, d, e, f, g, h] = self.n_asked.to_le_bytes();
+        let [a, b, c, d, e, f, g, h] = self.n_received.to_le_bytes();
         // The high half of the number comes first.
         header[8..].copy_from_slice(&[e, f, g, h, a, b, c, d]);
         header

@@ -21,16 +21,16 @@ const DOMAIN_MAX: u16 = 232;
 
 /// Who may be found, and under which domain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Reach {
+pub struct DiscoveryRange {
     /// Domain of the graph; only equal domains see each other.
     pub domain_id: u16,
     /// How far discovery goes.
-    pub extent: Extent,
+    pub extent: DiscoveryExtent,
 }
 
 /// How far discovery goes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Extent {
+pub enum DiscoveryExtent {
     /// Nowhere: ROS 2 is left out.
     Off,
     /// Processes on this host.
@@ -41,7 +41,7 @@ pub enum Extent {
 
 /// The environment says something that is not understood.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum ReachError {
+pub enum DiscoveryRangeError {
     /// A domain that is no number, or too large.
     #[error("ROS 2 domain `{given}` ({place}) is no whole number from 0 to {DOMAIN_MAX}: use one")]
     Domain {
@@ -60,7 +60,7 @@ pub enum ReachError {
     },
 }
 
-impl Reach {
+impl DiscoveryRange {
     /// What scene and environment ask for; `variable` looks up the environment.
     ///
     /// # Errors
@@ -68,7 +68,7 @@ impl Reach {
     pub fn choose(
         scene: &Ros,
         variable: impl Fn(&str) -> Option<String>,
-    ) -> Result<Self, ReachError> {
+    ) -> Result<Self, DiscoveryRangeError> {
         let variable = |name: &str| variable(name).filter(|it| !it.is_empty());
         let domain_id = match (scene.domain_id, variable("ROS_DOMAIN_ID")) {
             (Some(id), _) => domain("scene `outputs.ros.domain_id`", &id.to_string())?,
@@ -77,42 +77,46 @@ impl Reach {
         };
         let is_localhost_only = variable("ROS_LOCALHOST_ONLY").as_deref() == Some("1");
         let extent = match variable("ROS_AUTOMATIC_DISCOVERY_RANGE").as_deref() {
-            Some("OFF") => Extent::Off,
-            _ if is_localhost_only => Extent::Host,
-            Some("LOCALHOST") => Extent::Host,
-            Some("SUBNET") => Extent::Lan,
+            Some("OFF") => DiscoveryExtent::Off,
+            _ if is_localhost_only => DiscoveryExtent::Host,
+            Some("LOCALHOST") => DiscoveryExtent::Host,
+            Some("SUBNET") => DiscoveryExtent::Lan,
             None | Some("SYSTEM_DEFAULT") => {
                 if scene.lan {
-                    Extent::Lan
+                    DiscoveryExtent::Lan
                 } else {
-                    Extent::Host
+                    DiscoveryExtent::Host
                 }
             }
-            Some(given) => return Err(ReachError::Range { given: given.to_owned() }),
+            Some(given) => return Err(DiscoveryRangeError::Range { given: given.to_owned() }),
         };
         Ok(Self { domain_id, extent })
     }
 }
 
-fn domain(place: &'static str, given: &str) -> Result<u16, ReachError> {
+fn domain(place: &'static str, given: &str) -> Result<u16, DiscoveryRangeError> {
     given
         .trim()
         .parse()
         .ok()
         .filter(|id| *id <= DOMAIN_MAX)
-        .ok_or_else(|| ReachError::Domain { place, given: given.to_owned() })
+        .ok_or_else(|| DiscoveryRangeError::Domain { place, given: given.to_owned() })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn choose(lan: bool, domain_id: Option<u16>, said: &[(&str, &str)]) -> Result<Reach, String> {
+    fn choose(
+        lan: bool,
+        domain_id: Option<u16>,
+        said: &[(&str, &str)],
+    ) -> Result<DiscoveryRange, String> {
         let scene = Ros { enabled: true, domain_id, lan, ..Ros::OFF };
         let variable = |name: &str| {
             said.iter().find(|(key, _)| *key == name).map(|(_, value)| (*value).to_owned())
         };
-        Reach::choose(&scene, variable).map_err(|it| it.to_string())
+        DiscoveryRange::choose(&scene, variable).map_err(|it| it.to_string())
     }
 
     /// Oracle: the table at the head of this file.
@@ -121,17 +125,17 @@ mod tests {
         const RANGE: &str = "ROS_AUTOMATIC_DISCOVERY_RANGE";
         const ONLY: &str = "ROS_LOCALHOST_ONLY";
         for (lan, said, extent) in [
-            (false, vec![], Extent::Host),
-            (true, vec![], Extent::Lan),
-            (true, vec![(RANGE, "OFF")], Extent::Off),
-            (true, vec![(RANGE, "OFF"), (ONLY, "1")], Extent::Off),
-            (true, vec![(ONLY, "1")], Extent::Host),
-            (false, vec![(ONLY, "1"), (RANGE, "SUBNET")], Extent::Host),
-            (false, vec![(ONLY, "0"), (RANGE, "SUBNET")], Extent::Lan),
-            (true, vec![(RANGE, "LOCALHOST")], Extent::Host),
-            (false, vec![(RANGE, "SUBNET")], Extent::Lan),
-            (false, vec![(RANGE, "SYSTEM_DEFAULT")], Extent::Host),
-            (true, vec![(RANGE, "")], Extent::Lan),
+            (false, vec![], DiscoveryExtent::Host),
+            (true, vec![], DiscoveryExtent::Lan),
+            (true, vec![(RANGE, "OFF")], DiscoveryExtent::Off),
+            (true, vec![(RANGE, "OFF"), (ONLY, "1")], DiscoveryExtent::Off),
+            (true, vec![(ONLY, "1")], DiscoveryExtent::Host),
+            (false, vec![(ONLY, "1"), (RANGE, "SUBNET")], DiscoveryExtent::Host),
+            (false, vec![(ONLY, "0"), (RANGE, "SUBNET")], DiscoveryExtent::Lan),
+            (true, vec![(RANGE, "LOCALHOST")], DiscoveryExtent::Host),
+            (false, vec![(RANGE, "SUBNET")], DiscoveryExtent::Lan),
+            (false, vec![(RANGE, "SYSTEM_DEFAULT")], DiscoveryExtent::Host),
+            (true, vec![(RANGE, "")], DiscoveryExtent::Lan),
         ] {
             assert_eq!(choose(lan, None, &said).unwrap().extent, extent, "lan {lan}, {said:?}");
         }

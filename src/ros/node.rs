@@ -29,10 +29,10 @@ use crate::wire::{
 };
 use crate::{
     io::{
-        published::Announced,
+        published::PublishedUpTo,
         sink::{Packet, Sink},
     },
-    ros::discovery::{Extent, Reach},
+    ros::discovery::{DiscoveryExtent, DiscoveryRange},
 };
 
 /// What of the middleware's own log is worth a line, as a filter for `env_logger`: it warns about
@@ -109,7 +109,7 @@ pub struct Body(Vec<u8>);
 pub struct RosSink {
     publishers: Vec<Option<(String, Publisher<Body>)>>,
     encoder: Arc<Encoder>,
-    announced: Arc<Announced>,
+    published: Arc<PublishedUpTo>,
     /// The last clock message, repeated while time stands still.
     clock: Option<Message>,
     node: Arc<RosNode>,
@@ -120,7 +120,7 @@ impl RosNode {
     ///
     /// # Errors
     /// When discovery is off, or there is no socket to be had.
-    pub fn join(reach: &Reach) -> Result<Arc<Self>, RosError> {
+    pub fn join(reach: &DiscoveryRange) -> Result<Arc<Self>, RosError> {
         Self::join_as("/jamgrip", reach)
     }
 
@@ -128,16 +128,16 @@ impl RosNode {
     ///
     /// # Errors
     /// As for `join`.
-    pub fn join_as(name: &str, reach: &Reach) -> Result<Arc<Self>, RosError> {
+    pub fn join_as(name: &str, reach: &DiscoveryRange) -> Result<Arc<Self>, RosError> {
         let refused = |it: &dyn std::fmt::Display| RosError::Join {
             domain_id: reach.domain_id,
             reason: it.to_string(),
         };
         let builder = DomainParticipantBuilder::new(reach.domain_id);
         let builder = match reach.extent {
-            Extent::Off => return Err(RosError::Off),
-            Extent::Host => builder.with_only_networks([Ipv4Addr::LOCALHOST]),
-            Extent::Lan => builder,
+            DiscoveryExtent::Off => return Err(RosError::Off),
+            DiscoveryExtent::Host => builder.with_only_networks([Ipv4Addr::LOCALHOST]),
+            DiscoveryExtent::Lan => builder,
         };
         let participant = builder.build().map_err(|it| refused(&it))?;
         let context = Context::from_domain_participant(participant).map_err(|it| refused(&it))?;
@@ -263,7 +263,7 @@ impl RosSink {
         let sink = Self {
             publishers,
             encoder: Arc::clone(encoder),
-            announced: Arc::default(),
+            published: Arc::default(),
             clock: None,
             node: Arc::clone(node),
         };
@@ -272,8 +272,8 @@ impl RosSink {
     }
 
     /// Notes what has been published, for answers that must stay behind it.
-    pub fn announcing(self, announced: &Arc<Announced>) -> Self {
-        Self { announced: Arc::clone(announced), ..self }
+    pub fn announcing(self, published: &Arc<PublishedUpTo>) -> Self {
+        Self { published: Arc::clone(published), ..self }
     }
 
     /// Tries all messages, also behind one that fails.
@@ -312,7 +312,7 @@ impl Sink for RosSink {
         if self.clock.is_none() {
             self.send(&self.encoder.ready(packet.snapshot.time_ns))?;
         }
-        self.announced.note(packet.number);
+        self.published.note(packet.number);
         self.clock = messages.iter().find(|it| it.topic == common(Common::Clock)).cloned();
         sent.map_err(Into::into)
     }

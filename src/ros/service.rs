@@ -20,14 +20,17 @@ use smol::{LocalExecutor, channel, future, stream::StreamExt};
 
 pub use super::client::{RosClient, Way};
 use crate::{
-    io::published::Announced,
+    io::published::PublishedUpTo,
     ros::node::{RosError, RosNode, policies},
     wire::{cdr::Cdr, topics::Qos},
 };
 use crate::{
     io::{
         request_queue::Queue,
-        server::{Asker, Bench, BenchCounters, Call, Channel, Offer, Outgoing},
+        server::{
+            Outgoing, RequestId, ServerCounters, ServiceRequest, ServiceServer, ServiceSpec,
+            TopicSpec,
+        },
     },
     ros::discovery_info::Listed,
 };
@@ -35,20 +38,20 @@ use crate::{
 /// First bytes of the identity of everything that Cyclone DDS makes.
 const CYCLONE: [u8; 2] = [0x01, 0x10];
 /// Longest time that an answer stays behind its tick's messages.
-const PATIENCE: Duration = Duration::from_secs(1);
+const TIMEOUT: Duration = Duration::from_secs(1);
 /// Answers that wait for their turn; a client that does not read them loses them.
 const OUTBOX: usize = 4096;
 
 /// Longest time that one who leaves waits until its last answers have arrived, and the time that it
 /// then stays for them to be read.
-const FAREWELL: Duration = Duration::from_secs(2);
-const LINGERING: Duration = Duration::from_millis(200);
+const ACK_TIMEOUT: Duration = Duration::from_secs(2);
+const SHUTDOWN_GRACE: Duration = Duration::from_millis(200);
 
 /// How often is looked for a client's ears, and how long between two looks.
 const HEARING_TRIES: usize = 40;
-const HEARING_NAP: Duration = Duration::from_millis(5);
+const MATCH_POLL_PERIOD: Duration = Duration::from_millis(5);
 /// Clients without ears that are remembered, so that nobody waits for them again.
-const DEAF_MAX: usize = 1000;
+const UNMATCHED_MAX: usize = 1000;
 
 /// A body with its byte order.
 #[derive(Clone, Debug)]
@@ -117,23 +120,23 @@ struct Waiting {
 }
 
 /// All services of a node.
-pub struct RosBench {
+pub struct RosServiceServer {
     waiting: Arc<Waiting>,
     outbox: Option<mpsc::SyncSender<(Outgoing, u64)>>,
     stop: channel::Sender<()>,
     threads: Vec<JoinHandle<()>>,
 }
 
-impl RosBench {
-    /// Opens all services and channels, and lists them below the node. Answers stay behind what `announced` counts.
+impl RosServiceServer {
+    /// Opens all services and channels, and lists them below the node. Answers stay behind what `published` counts.
     ///
     /// # Errors
     /// When one cannot be opened.
     pub fn open(
         node: &RosNode,
-        offers: &[Offer],
-        channels: &[Channel],
-        announced: &Arc<Announced>,
+        offers: &[ServiceSpec],
+        channels: &[TopicSpec],
+        published: &Arc<PublishedUpTo>,
     ) -> Result<Self, RosError> {
         let participant = &node.participant();
         let queue = Arc::new(Waiting::default());
@@ -161,20 +164,20 @@ impl RosBench {
                 .chain(mouths_of_channels.iter().map(RTPSEntity::guid))
                 .collect(),
         )?;
-        let mut mouths = Mouths { answers, channels: mouths_of_channels, deaf: BTreeSet::new() };
+        let mut writers = Writers { answers, channels: mouths_of_channels, deaf: BTreeSet::new() };
         let (stop, stopped) = channel::bounded(1);
         let (outbox, waiting) = mpsc::sync_channel(OUTBOX);
-        let (kept, announced) = (Arc::clone(&queue), Arc::clone(announced));
+        let (kept, published) = (Arc::clone(&queue), Arc::clone(published));
         let threads = vec![
             thread("ros-questions", move || listen(readers, listed, &kept, &stopped))?,
-            thread("ros-answers", move || mouths.speak(&waiting, &announced))?,
+            thread("ros-answers", move || writers.run(&waiting, &published))?,
         ];
         Ok(Self { waiting: queue, outbox: Some(outbox), stop, threads })
     }
 }
 
-impl Bench for RosBench {
-    fn take(&mut self, most: usize) -> Vec<Call> {
+impl ServiceServer for RosServiceServer {
+    fn take(&mut self, most: usize) -> Vec<ServiceRequest> {
         lock(&self.waiting.queue).take(most)
     }
 
@@ -192,16 +195,16 @@ impl Bench for RosBench {
         }
     }
 
-    fn complain(&mut self, fault: String) {
-        lock(&self.waiting.queue).complain(fault);
+    fn report_malformed(&mut self, fault: String) {
+        lock(&self.waiting.queue).report_malformed(fault);
     }
 
-    fn counters(&self) -> BenchCounters {
+    fn counters(&self) -> ServerCounters {
         lock(&self.waiting.queue).counters()
     }
 }
 
-impl Drop for RosBench {
+impl Drop for RosServiceServer {
     fn drop(&mut self) {
         self.stop.close();
         self.outbox = None;
@@ -213,7 +216,7 @@ impl Drop for RosBench {
 }
 
 /// Everything that answers leave by.
-struct Mouths {
+struct Writers {
     /// For each offer the writer of its answers and the readers that hear it.
     answers: Vec<(Writer, BTreeSet<[u8; 16]>)>,
     channels: Vec<Writer>,
@@ -221,9 +224,9 @@ struct Mouths {
     deaf: BTreeSet<[u8; 12]>,
 }
 
-impl Mouths {
+impl Writers {
     /// Waits a moment until the one who asked can hear: an ear may be found later than a question.
-    fn find(&mut self, asker: &Asker) {
+    fn find(&mut self, asker: &RequestId) {
         let (writer, ears) = &mut self.answers[asker.offer];
         let mut participant = [0; 12];
         participant.copy_from_slice(&asker.writer[..12]);
@@ -243,21 +246,21 @@ impl Mouths {
                 self.deaf.remove(&participant);
                 return;
             }
-            std::thread::sleep(HEARING_NAP);
+            std::thread::sleep(MATCH_POLL_PERIOD);
         }
-        if DEAF_MAX <= self.deaf.len() {
+        if UNMATCHED_MAX <= self.deaf.len() {
             self.deaf.clear();
         }
         self.deaf.insert(participant);
     }
 
-    fn speak(&mut self, waiting: &mpsc::Receiver<(Outgoing, u64)>, announced: &Announced) {
+    fn run(&mut self, waiting: &mpsc::Receiver<(Outgoing, u64)>, published: &PublishedUpTo) {
         let mut has_spoken = false;
         while let Ok((outgoing, after_packet)) = waiting.recv() {
             has_spoken = true;
-            announced.wait_for(after_packet, PATIENCE);
+            published.wait_for(after_packet, TIMEOUT);
             let said = match outgoing {
-                Outgoing::Answer(asker, body) => {
+                Outgoing::Response(asker, body) => {
                     self.find(&asker);
                     let (body, options) = addressed(&asker, body);
                     self.answers[asker.offer].0.write_with_options(Raw(body), options).map(drop)
@@ -269,25 +272,27 @@ impl Mouths {
             }
         }
         if has_spoken {
-            self.see_off();
+            self.drain();
         }
     }
 
     /// Waits until the last answers are with those who asked. What is still on its way goes with its
     /// writer; some readers (those of RustDDS) even lose what they hold and have not handed out.
-    fn see_off(&self) {
+    fn drain(&self) {
         let has_arrived = |(writer, _): &(Writer, _)| {
-            writer.wait_for_acknowledgments(FAREWELL).is_ok_and(|has_arrived| has_arrived)
+            writer.wait_for_acknowledgments(ACK_TIMEOUT).is_ok_and(|has_arrived| has_arrived)
         };
         if !self.answers.iter().all(has_arrived) {
-            log::warn!("the last answers did not arrive in {FAREWELL:?}; did their readers stop?");
+            log::warn!(
+                "the last answers did not arrive in {ACK_TIMEOUT:?}; did their readers stop?"
+            );
         }
-        std::thread::sleep(LINGERING);
+        std::thread::sleep(SHUTDOWN_GRACE);
     }
 }
 
 /// An answer with what leads it back to its asker.
-fn addressed(asker: &Asker, body: Cdr) -> (Cdr, rustdds::with_key::WriteOptions) {
+fn addressed(asker: &RequestId, body: Cdr) -> (Cdr, rustdds::with_key::WriteOptions) {
     let options = WriteOptionsBuilder::new().related_sample_identity(SampleIdentity {
         writer_guid: GUID::from_bytes(asker.writer),
         sequence_number: SequenceNumber::from(asker.number),
@@ -330,10 +335,10 @@ async fn attend(offer: usize, reader: Reader, waiting: &Waiting) {
                         lock(queue).offer(call);
                         waiting.news.notify_all();
                     }
-                    None => lock(queue).complain("a request without a body".to_owned()),
+                    None => lock(queue).report_malformed("a request without a body".to_owned()),
                 }
             }
-            Err(error) => lock(queue).complain(error.to_string()),
+            Err(error) => lock(queue).report_malformed(error.to_string()),
         }
         // A flood on one service lets the others have their turn.
         future::yield_now().await;
@@ -342,7 +347,12 @@ async fn attend(offer: usize, reader: Reader, waiting: &Waiting) {
 
 /// Makes a call of what arrived: `id` is the sample's own writer and number, `related` what its
 /// sender wrote beside it.
-fn call(offer: usize, id: (GUID, i64), related: Option<(GUID, i64)>, body: Cdr) -> Option<Call> {
+fn call(
+    offer: usize,
+    id: (GUID, i64),
+    related: Option<(GUID, i64)>,
+    body: Cdr,
+) -> Option<ServiceRequest> {
     let writer = id.0.to_bytes();
     // Others that go Cyclone's way put half of their writer's identity first.
     let is_headed =
@@ -356,8 +366,8 @@ fn call(offer: usize, id: (GUID, i64), related: Option<(GUID, i64)>, body: Cdr) 
     // Fast DDS names the reader that the answer shall go to, and leaves the number open.
     let (writer, number) = related.unwrap_or(id);
     let number = if number == i64::from(SequenceNumber::UNKNOWN) { id.1 } else { number };
-    let asker = Asker { offer, writer: writer.to_bytes(), number, header };
-    Some(Call { asker, body })
+    let asker = RequestId { offer, writer: writer.to_bytes(), number, header };
+    Some(ServiceRequest { asker, body })
 }
 
 /// Says once a second what could not be read, if anything.

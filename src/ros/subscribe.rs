@@ -55,7 +55,13 @@ impl RosSource {
             let subscription = node.subscription::<Received>(topic)?;
             let encoder = Arc::clone(encoder);
             let recode = Recode { type_name: topic.message_type.name };
-            ears.push(Ear { index, name: topic.name.clone(), recode, subscription, encoder });
+            ears.push(SubscriptionTask {
+                index,
+                name: topic.name.clone(),
+                recode,
+                subscription,
+                encoder,
+            });
         }
         let (stop, stopped) = channel::bounded(1);
         let kept = Arc::clone(&inbox);
@@ -175,7 +181,7 @@ impl Drop for RosClock {
 }
 
 /// One subscription and what is done with its messages.
-struct Ear {
+struct SubscriptionTask {
     index: usize,
     name: String,
     recode: Recode,
@@ -183,7 +189,7 @@ struct Ear {
     encoder: Arc<Encoder>,
 }
 
-impl Ear {
+impl SubscriptionTask {
     async fn listen(self, inbox: &Mutex<Inbox>) {
         let mut messages = std::pin::pin!(self.subscription.async_stream_seed(self.recode));
         while let Some(message) = messages.next().await {
@@ -205,18 +211,18 @@ impl Ear {
 }
 
 /// Listens to all topics until `stopped` closes.
-fn listen(ears: Vec<Ear>, inbox: &Mutex<Inbox>, stopped: &channel::Receiver<()>) {
+fn listen(ears: Vec<SubscriptionTask>, inbox: &Mutex<Inbox>, stopped: &channel::Receiver<()>) {
     let executor = LocalExecutor::new();
     for ear in ears {
         executor.spawn(ear.listen(inbox)).detach();
     }
-    executor.spawn(complain(inbox)).detach();
+    executor.spawn(report_malformed(inbox)).detach();
     // The channel carries nothing: its only news is that it was closed.
     let _closed = smol::block_on(executor.run(stopped.recv()));
 }
 
 /// Says once a second what could not be read, if anything.
-async fn complain(inbox: &Mutex<Inbox>) {
+async fn report_malformed(inbox: &Mutex<Inbox>) {
     let mut n_said = 0;
     loop {
         smol::Timer::after(Duration::from_secs(1)).await;

@@ -91,9 +91,9 @@ impl<'a> Case<'a> {
 
     fn start(job: &'a Job<'a>) -> Result<Self, StartError> {
         let mut watch = Stopwatch::start();
-        let run = job.study.plan.start(job.case)?;
+        let run = job.loaded.plan.start(job.case)?;
         let wall_s = BTreeMap::from([(SETTING_UP.to_owned(), watch.lap_s())]);
-        let programs = vec![job.study.identity.program.clone()];
+        let programs = vec![job.loaded.identity.program.clone()];
         let (share, saved_at_s) = (0.0, 0.0);
         Ok(Self { job, run, watch, wall_s, programs, share_at_start: share, share, saved_at_s })
     }

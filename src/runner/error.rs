@@ -9,7 +9,7 @@ use crate::{
 
 /// Why an experiment cannot be run.
 #[derive(Debug, thiserror::Error)]
-pub enum LabError {
+pub enum RunnerError {
     /// No experiment has this name.
     #[error("no experiment `{name}`; {}there are: {}", did_you_mean(.near), known())]
     Unknown {
@@ -73,7 +73,7 @@ pub enum LabError {
     Threads(#[from] rayon::ThreadPoolBuildError),
 }
 
-impl LabError {
+impl RunnerError {
     /// No experiment is called `name`.
     pub fn unknown(name: &str) -> Self {
         let near = near_matches(name, EXPERIMENTS.iter().map(|it| it.name()));

@@ -12,16 +12,16 @@ use crate::{
     base::digest::Digest,
     experiments::{
         EXPERIMENTS, Experiment, Plan, SceneText, Size,
-        findings::{Expected, Findings, Row, Told},
+        findings::{Expected, Findings, Report, Row},
         record::{Record, Validity},
     },
     scene::SceneError,
 };
-use crate::{report::plot, runner::error::LabError};
+use crate::{report::plot, runner::error::RunnerError};
 
 /// What shall be run.
 #[derive(Clone)]
-pub struct Order<'a> {
+pub struct RunRequest<'a> {
     /// The experiment.
     pub experiment: &'a dyn Experiment,
     /// How much of it.
@@ -32,7 +32,7 @@ pub struct Order<'a> {
     pub scene: Option<PathBuf>,
 }
 
-impl std::fmt::Debug for Order<'_> {
+impl std::fmt::Debug for RunRequest<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "Order({}, {:?}, {:?})", self.experiment.name(), self.size, self.overrides)
     }
@@ -42,9 +42,9 @@ impl std::fmt::Debug for Order<'_> {
 ///
 /// # Errors
 /// If there is none; names spelled alike are told.
-pub fn by_name(name: &str) -> Result<&'static dyn Experiment, LabError> {
+pub fn by_name(name: &str) -> Result<&'static dyn Experiment, RunnerError> {
     let found = EXPERIMENTS.iter().find(|it| it.name() == name);
-    found.copied().ok_or_else(|| LabError::unknown(name))
+    found.copied().ok_or_else(|| RunnerError::unknown(name))
 }
 
 /// All that decides what comes out.
@@ -94,19 +94,19 @@ impl Identity {
 }
 
 /// An experiment whose scene has been read.
-pub struct Study<'a> {
+pub struct LoadedExperiment<'a> {
     pub(super) identity: Identity,
     pub(super) plan: Box<dyn Plan>,
     about: &'a str,
     cases: Vec<String>,
 }
 
-impl<'a> Study<'a> {
+impl<'a> LoadedExperiment<'a> {
     /// Reads the scene.
     ///
     /// # Errors
     /// If it is wrong.
-    pub fn read(order: &Order<'a>) -> Result<Self, LabError> {
+    pub fn read(order: &RunRequest<'a>) -> Result<Self, RunnerError> {
         let (source, text) = match &order.scene {
             None => {
                 let (source, text) = order.experiment.scene();
@@ -180,7 +180,7 @@ impl<'a> Study<'a> {
 
     /// A case that did not come to its end, as a row.
     fn failure(&self, case: &str, fault: &str) -> Row {
-        let told = Told {
+        let told = Report {
             id: &format!("{}.{case}.ran_to_its_end", self.identity.experiment),
             quantity: &format!("case {case} ran to its end"),
             unit: "1",

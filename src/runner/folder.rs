@@ -16,7 +16,7 @@ use std::{
 
 use serde::{Deserialize, Serialize};
 
-use crate::runner::{error::LabError, experiment::Identity};
+use crate::runner::{error::RunnerError, experiment::Identity};
 use crate::{
     base::digest::Digest,
     experiments::{findings::Curve, record::Record},
@@ -89,11 +89,11 @@ impl Folder {
     ///
     /// # Errors
     /// If it holds something else, is in use, or cannot be written.
-    pub fn open(path: &Path, wanted: &Identity, policy: Policy) -> Result<Self, LabError> {
-        let unwritable = |reason| LabError::Unwritable { path: path.to_owned(), reason };
+    pub fn open(path: &Path, wanted: &Identity, policy: Policy) -> Result<Self, RunnerError> {
+        let unwritable = |reason| RunnerError::Unwritable { path: path.to_owned(), reason };
         let plan = path.join(PLAN);
         if !plan.exists() && holds_files(path) {
-            return Err(LabError::Foreign { path: path.to_owned() });
+            return Err(RunnerError::Foreign { path: path.to_owned() });
         }
         fs::create_dir_all(path).map_err(unwritable)?;
         let lock = lock(path)?;
@@ -111,11 +111,11 @@ impl Folder {
         Ok(folder)
     }
 
-    fn compare(&self, wanted: &Identity, plan: &str, policy: Policy) -> Result<(), LabError> {
+    fn compare(&self, wanted: &Identity, plan: &str, policy: Policy) -> Result<(), RunnerError> {
         let path = self.path.clone();
         let Ok(there) = serde_json::from_str::<Identity>(plan) else {
             let differences = vec![format!("{PLAN} is damaged")];
-            return Err(LabError::OtherPlan { path, differences, is_program_only: false });
+            return Err(RunnerError::OtherPlan { path, differences, is_program_only: false });
         };
         let mut differences = wanted.differences(&there);
         let is_program_only = differences.is_empty();
@@ -125,7 +125,7 @@ impl Folder {
         if differences.is_empty() {
             return Ok(());
         }
-        Err(LabError::OtherPlan { path, differences, is_program_only })
+        Err(RunnerError::OtherPlan { path, differences, is_program_only })
     }
 
     /// Removes what was written here; other files stay.
@@ -167,15 +167,15 @@ impl Folder {
     }
 
     /// Saves a case on its way.
-    pub(super) fn save(&self, case: &str, saved: &SavedCase) -> Result<(), LabError> {
+    pub(super) fn save(&self, case: &str, saved: &SavedCase) -> Result<(), RunnerError> {
         let file = self.state_file(case);
         let bytes = postcard::to_stdvec(saved).expect("memory is the only limit");
         atomic_file::seal(&file, self.case_key(case), &bytes)
-            .map_err(|reason| LabError::Unwritable { path: file, reason })
+            .map_err(|reason| RunnerError::Unwritable { path: file, reason })
     }
 
     /// Keeps a case that has come to its end; its saved state goes.
-    pub(super) fn keep(&self, case: &str, kept: &KeptCase) -> Result<(), LabError> {
+    pub(super) fn keep(&self, case: &str, kept: &KeptCase) -> Result<(), RunnerError> {
         let text = serde_json::to_string(kept).expect("all keys are texts");
         self.write_text(&format!("{CASES}/{case}.json"), &(text + "\n"))?;
         self.forget(case);
@@ -192,16 +192,16 @@ impl Folder {
     ///
     /// # Errors
     /// If it cannot be written.
-    pub fn write_text(&self, name: &str, text: &str) -> Result<(), LabError> {
+    pub fn write_text(&self, name: &str, text: &str) -> Result<(), RunnerError> {
         let path = self.path.join(name);
         atomic_file::replace(&path, &[text.as_bytes()])
-            .map_err(|reason| LabError::Unwritable { path, reason })
+            .map_err(|reason| RunnerError::Unwritable { path, reason })
     }
 
     /// Writes a curve as CSV: names with units above columns.
-    pub(super) fn write_curve(&self, curve: &Curve) -> Result<(), LabError> {
+    pub(super) fn write_curve(&self, curve: &Curve) -> Result<(), RunnerError> {
         let name = format!("{CURVES}/{}.csv", curve.name);
-        let text = csv_text(curve).map_err(|error| LabError::Unwritable {
+        let text = csv_text(curve).map_err(|error| RunnerError::Unwritable {
             path: self.path.join(&name),
             reason: io::Error::other(error),
         })?;
@@ -237,13 +237,13 @@ fn holds_files(folder: &Path) -> bool {
         .is_ok_and(|entries| entries.flatten().any(|entry| entry.file_name() != LOCK))
 }
 
-fn lock(folder: &Path) -> Result<File, LabError> {
+fn lock(folder: &Path) -> Result<File, RunnerError> {
     let path = folder.join(LOCK);
-    let unwritable = |reason| LabError::Unwritable { path: path.clone(), reason };
+    let unwritable = |reason| RunnerError::Unwritable { path: path.clone(), reason };
     let file = File::create(&path).map_err(unwritable)?;
     match file.try_lock() {
         Ok(()) => Ok(file),
-        Err(TryLockError::WouldBlock) => Err(LabError::Busy { path: folder.to_owned() }),
+        Err(TryLockError::WouldBlock) => Err(RunnerError::Busy { path: folder.to_owned() }),
         Err(TryLockError::Error(reason)) => Err(unwritable(reason)),
     }
 }

@@ -1,6 +1,6 @@
 //! Runs experiments: cases on threads, state on disk, findings in files and tables.
 //!
-//! A `Study` is an experiment whose scene has been read. Its cases are carried out side by side,
+//! A `LoadedExperiment` is an experiment whose scene has been read. Its cases are carried out side by side,
 //! each on one thread; what they leave becomes an `Outcome`, and that is all that result files,
 //! tables, reports and documents are made of.
 
@@ -20,11 +20,11 @@ use std::path::{Path, PathBuf};
 
 use self::{
     case::CaseEnd,
-    error::LabError,
-    experiment::{Order, Study},
+    error::RunnerError,
+    experiment::{LoadedExperiment, RunRequest},
     folder::{Folder, Policy},
     outcome::Outcome,
-    progress::Board,
+    progress::ProgressBoard,
     workers::Job,
 };
 use crate::{experiments::findings::Findings, host::shutdown::Shutdown};
@@ -46,7 +46,7 @@ pub struct Options<'a> {
 #[derive(Debug)]
 pub struct Task<'a> {
     /// What is run.
-    pub order: Order<'a>,
+    pub order: RunRequest<'a>,
     /// The folder.
     pub out: Option<PathBuf>,
 }
@@ -69,18 +69,20 @@ pub enum Ending {
 ///
 /// # Errors
 /// If something is wrong before the first case, or the files cannot be written.
-pub fn run(tasks: &[Task<'_>], options: &Options<'_>) -> Result<Ending, LabError> {
-    let studies =
-        tasks.iter().map(|task| Study::read(&task.order)).collect::<Result<Vec<_>, LabError>>()?;
+pub fn run(tasks: &[Task<'_>], options: &Options<'_>) -> Result<Ending, RunnerError> {
+    let loaded_all = tasks
+        .iter()
+        .map(|task| LoadedExperiment::read(&task.order))
+        .collect::<Result<Vec<_>, RunnerError>>()?;
     let folders = tasks
         .iter()
-        .zip(&studies)
-        .map(|(task, study)| open(task.out.as_deref(), study, options.policy))
-        .collect::<Result<Vec<_>, LabError>>()?;
-    let jobs = jobs(&studies, &folders);
-    let board = Board::new(&jobs, options.n_threads, options.is_quiet);
-    let ends = workers::work(&jobs, options.n_threads, options.shutdown, &board);
-    board.end();
+        .zip(&loaded_all)
+        .map(|(task, loaded)| open(task.out.as_deref(), loaded, options.policy))
+        .collect::<Result<Vec<_>, RunnerError>>()?;
+    let jobs = jobs(&loaded_all, &folders);
+    let progress = ProgressBoard::new(&jobs, options.n_threads, options.is_quiet);
+    let ends = workers::work(&jobs, options.n_threads, options.shutdown, &progress);
+    progress.end();
     let ends = ends?;
     if ends.iter().any(|end| matches!(end, CaseEnd::Stopped)) {
         let n_done = ends.iter().filter(|end| !matches!(end, CaseEnd::Stopped)).count();
@@ -88,9 +90,9 @@ pub fn run(tasks: &[Task<'_>], options: &Options<'_>) -> Result<Ending, LabError
     }
     let mut ends = ends.into_iter();
     let mut outcomes = Vec::new();
-    for (study, folder) in studies.iter().zip(&folders) {
-        let of_study = ends.by_ref().take(study.cases().len()).collect();
-        let (outcome, findings) = study.conclude(of_study);
+    for (loaded, folder) in loaded_all.iter().zip(&folders) {
+        let of_study = ends.by_ref().take(loaded.cases().len()).collect();
+        let (outcome, findings) = loaded.conclude(of_study);
         if let Some(folder) = folder {
             write(folder, &outcome, &findings)?;
         }
@@ -99,19 +101,23 @@ pub fn run(tasks: &[Task<'_>], options: &Options<'_>) -> Result<Ending, LabError
     Ok(Ending::Finished(outcomes))
 }
 
-fn open(out: Option<&Path>, study: &Study<'_>, policy: Policy) -> Result<Option<Folder>, LabError> {
-    out.map(|path| Folder::open(path, &study.identity, policy)).transpose()
+fn open(
+    out: Option<&Path>,
+    loaded: &LoadedExperiment<'_>,
+    policy: Policy,
+) -> Result<Option<Folder>, RunnerError> {
+    out.map(|path| Folder::open(path, &loaded.identity, policy)).transpose()
 }
 
 /// All cases, in the order of the studies.
-fn jobs<'a>(studies: &'a [Study<'a>], folders: &'a [Option<Folder>]) -> Vec<Job<'a>> {
-    let of_study = |(study, folder): (&'a Study<'a>, &'a Option<Folder>)| {
-        study.cases().iter().map(move |case| Job { study, folder: folder.as_ref(), case })
+fn jobs<'a>(loaded_all: &'a [LoadedExperiment<'a>], folders: &'a [Option<Folder>]) -> Vec<Job<'a>> {
+    let of_study = |(loaded, folder): (&'a LoadedExperiment<'a>, &'a Option<Folder>)| {
+        loaded.cases().iter().map(move |case| Job { loaded, folder: folder.as_ref(), case })
     };
-    studies.iter().zip(folders).flat_map(of_study).collect()
+    loaded_all.iter().zip(folders).flat_map(of_study).collect()
 }
 
-fn write(folder: &Folder, outcome: &Outcome, findings: &Findings) -> Result<(), LabError> {
+fn write(folder: &Folder, outcome: &Outcome, findings: &Findings) -> Result<(), RunnerError> {
     folder.write_text("result.json", &outcome.to_text())?;
     for curve in &findings.curves {
         folder.write_curve(curve)?;

@@ -22,7 +22,7 @@ const STEPS: u64 = 1000;
 const LINE_EVERY_S: f64 = 60.0;
 
 /// The lines on standard error.
-pub struct Board {
+pub struct ProgressBoard {
     bars: MultiProgress,
     overall: ProgressBar,
     titles: Vec<String>,
@@ -34,7 +34,7 @@ pub struct Board {
     is_quiet: bool,
 }
 
-impl Board {
+impl ProgressBoard {
     /// A board for a terminal; `is_quiet` shows nothing but faults.
     pub(super) fn new(jobs: &[Job<'_>], n_threads: usize, is_quiet: bool) -> Self {
         let target =
@@ -46,8 +46,8 @@ impl Board {
         let mut places = vec![0; jobs.len()];
         queue.iter().enumerate().for_each(|(place, &i)| places[i] = place);
         let group = |i: usize| {
-            let name = &jobs[i].study.identity.experiment;
-            jobs.iter().position(|job| job.study.identity.experiment == *name).unwrap_or(i)
+            let name = &jobs[i].loaded.identity.experiment;
+            jobs.iter().position(|job| job.loaded.identity.experiment == *name).unwrap_or(i)
         };
         let cases = queue.iter().map(|&i| (group(i), jobs[i].expected_s()));
         Self {
@@ -66,7 +66,7 @@ impl Board {
     pub(super) fn begin(&self, i: usize) -> Line<'_> {
         let bar = self.bars.insert_before(&self.overall, ProgressBar::new(STEPS));
         bar.set_style(style("{bar:24} {msg}"));
-        Line { board: self, i, bar }
+        Line { progress: self, i, bar }
     }
 
     /// Says something above the lines.
@@ -115,7 +115,7 @@ impl Board {
 
 /// The line of a case.
 pub(super) struct Line<'a> {
-    board: &'a Board,
+    progress: &'a ProgressBoard,
     i: usize,
     bar: ProgressBar,
 }
@@ -123,47 +123,47 @@ pub(super) struct Line<'a> {
 impl Line<'_> {
     /// The case goes on, after `wall_s` of this run, which began at `share_at_start`.
     pub(super) fn show(&self, progress: &Progress, share_at_start: f64, wall_s: f64) {
-        let place = self.board.places[self.i];
-        let left = self.board.forecast(|it| {
+        let place = self.progress.places[self.i];
+        let left = self.progress.forecast(|it| {
             it.running(place, share_at_start, progress.share, wall_s);
             it.left_of(place)
         });
         if self.bar.is_hidden() {
-            self.board.speak_now_and_then();
+            self.progress.speak_now_and_then();
             return;
         }
         self.bar.set_position(steps(progress.share));
-        let title = &self.board.titles[self.i];
+        let title = &self.progress.titles[self.i];
         let left = left.map_or_else(String::new, |it| format!(", {} left", format::duration(it)));
         let percent = progress.share * 1e2;
         self.bar.set_message(format!("{title}: {}, {percent:.0} %{left}", progress.stage));
-        self.board.show_overall();
+        self.progress.show_overall();
     }
 
     /// Says something above the lines.
     pub(super) fn say(&self, text: &dyn Display) {
-        self.board.say(text);
+        self.progress.say(text);
     }
 
     /// The case has ended.
     pub(super) fn end(self, end: &CaseEnd) {
-        let place = self.board.places[self.i];
-        let title = &self.board.titles[self.i];
+        let place = self.progress.places[self.i];
+        let title = &self.progress.titles[self.i];
         let took_s = match end {
             CaseEnd::Finished(kept) => Some(kept.record.wall_s.values().sum()),
             CaseEnd::Failed(_) | CaseEnd::Stopped => None,
         };
-        self.board.forecast(|it| it.ended(place, took_s));
+        self.progress.forecast(|it| it.ended(place, took_s));
         self.bar.finish_and_clear();
         match end {
             CaseEnd::Failed(fault) => self.say(&format!("{title} cannot go on: {fault}")),
-            CaseEnd::Finished(_) if !self.board.is_quiet && self.bar.is_hidden() => {
+            CaseEnd::Finished(_) if !self.progress.is_quiet && self.bar.is_hidden() => {
                 let took = format::duration(took_s.unwrap_or(0.0));
-                self.say(&format!("{title}: {took}; {}", self.board.state()));
+                self.say(&format!("{title}: {took}; {}", self.progress.state()));
             }
             CaseEnd::Finished(_) | CaseEnd::Stopped => {}
         }
-        self.board.show_overall();
+        self.progress.show_overall();
     }
 }
 

@@ -197,12 +197,12 @@ fn broken(name: &str, width: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::experiments::findings::{Expected, Told};
+    use crate::experiments::findings::{Expected, Report};
 
     /// Oracle: written by hand.
     #[test]
     fn distances_are_told_in_percent_or_units() {
-        let told = Told { id: "", quantity: "", unit: "N", oracle: "", reason: "" };
+        let told = Report { id: "", quantity: "", unit: "N", oracle: "", reason: "" };
         let apart = |oracle, measured| {
             super::apart(&Row::new(&told, Expected::within(oracle, 1.0), measured))
         };

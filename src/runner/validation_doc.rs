@@ -12,7 +12,7 @@ use crate::{
         format::{self, duration, number, with_unit},
         plot,
     },
-    runner::error::LabError,
+    runner::error::RunnerError,
 };
 
 const HEAD: &str = "\
@@ -28,9 +28,9 @@ what the most likely cause is and what was tried. Tolerances are never widened t
 ///
 /// # Errors
 /// If a file cannot be read as a result.
-pub fn read(folder: &Path) -> Result<Vec<Outcome>, LabError> {
+pub fn read(folder: &Path) -> Result<Vec<Outcome>, RunnerError> {
     let unreadable =
-        |path: &Path, reason: String| LabError::Unreadable { path: path.to_owned(), reason };
+        |path: &Path, reason: String| RunnerError::Unreadable { path: path.to_owned(), reason };
     let entries = fs::read_dir(folder).map_err(|it| unreadable(folder, it.to_string()))?;
     let mut files: Vec<_> = entries.flatten().map(|entry| entry.path()).collect();
     files.retain(|file| file.extension().is_some_and(|it| it == "json"));
@@ -62,8 +62,9 @@ pub fn tell(outcomes: &[Outcome]) -> Vec<(String, String)> {
 ///
 /// # Errors
 /// If a file cannot be written.
-pub fn write(outcomes: &[Outcome], folder: &Path) -> Result<(), LabError> {
-    let unwritable = |path: &Path, reason| LabError::Unwritable { path: path.to_owned(), reason };
+pub fn write(outcomes: &[Outcome], folder: &Path) -> Result<(), RunnerError> {
+    let unwritable =
+        |path: &Path, reason| RunnerError::Unwritable { path: path.to_owned(), reason };
     let figures = folder.join("figures");
     fs::create_dir_all(&figures).map_err(|reason| unwritable(&figures, reason))?;
     for (name, text) in tell(outcomes) {

@@ -10,13 +10,13 @@ use super::{
     case::{self, CaseEnd},
     folder::Folder,
 };
-use crate::runner::{experiment::Study, progress::Board};
+use crate::runner::{experiment::LoadedExperiment, progress::ProgressBoard};
 use crate::{base::parallel, host::shutdown::Shutdown};
 
 /// One case to be carried out.
 pub(super) struct Job<'a> {
     /// What it belongs to.
-    pub(super) study: &'a Study<'a>,
+    pub(super) loaded: &'a LoadedExperiment<'a>,
     /// Where it is kept, if anywhere.
     pub(super) folder: Option<&'a Folder>,
     /// Its name.
@@ -26,12 +26,12 @@ pub(super) struct Job<'a> {
 impl Job<'_> {
     /// Experiment and case.
     pub(super) fn title(&self) -> String {
-        format!("{} {}", self.study.identity.experiment, self.case)
+        format!("{} {}", self.loaded.identity.experiment, self.case)
     }
 
     /// Seconds that it is expected to take, if that is known.
     pub(super) fn expected_s(&self) -> Option<f64> {
-        self.study.plan.expected_s(self.case)
+        self.loaded.plan.expected_s(self.case)
     }
 }
 
@@ -40,7 +40,7 @@ pub(super) fn work(
     jobs: &[Job<'_>],
     n_threads: usize,
     shutdown: &Shutdown,
-    board: &Board,
+    progress: &ProgressBoard,
 ) -> Result<Vec<CaseEnd>, rayon::ThreadPoolBuildError> {
     let n_threads = n_threads.clamp(1, jobs.len().max(1));
     let pools = (0..n_threads).map(|_| parallel::pool(1)).collect::<Result<Vec<_>, _>>()?;
@@ -50,7 +50,7 @@ pub(super) fn work(
         for pool in &pools {
             scope.spawn(|| {
                 while let Some(&i) = queue.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    let line = board.begin(i);
+                    let line = progress.begin(i);
                     let end = parallel::lead(pool, || case::carry_out(&jobs[i], shutdown, &line));
                     line.end(&end);
                     *ends[i].lock().expect("nothing panics under this lock") = Some(end);

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::{
     Scene, schema,
-    visit::{Quantity, Range, Walk},
+    visit::{Quantity, Range, Visitor},
 };
 use crate::base::{Real, Vec3};
 
@@ -37,7 +37,7 @@ fn vector_text(kind: Quantity, vector: &Vec3) -> String {
     format!("[{}]", parts.join(", "))
 }
 
-impl Walk for Printer {
+impl Visitor for Printer {
     fn section(&mut self, key: &'static str, inside: impl FnOnce(&mut Self)) {
         let indent = "  ".repeat(self.depth);
         writeln!(self.text, "{indent}{key}:").expect("a String takes any text");

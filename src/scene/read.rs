@@ -4,7 +4,7 @@ use super::{
     error::{Fault, Problem, near_matches},
     quantity::Dimension,
     tree::{Node, Value},
-    visit::{Quantity, Range, Walk},
+    visit::{Quantity, Range, Visitor},
 };
 use crate::base::{Real, Vec3};
 
@@ -235,7 +235,7 @@ fn is_word(node: &Node, word: &str) -> bool {
     matches!(&node.value, Value::Text(text) if text == word)
 }
 
-impl Walk for Reader<'_> {
+impl Visitor for Reader<'_> {
     fn section(&mut self, key: &'static str, inside: impl FnOnce(&mut Self)) {
         let node = self.take(key).and_then(|node| {
             let is_map = matches!(node.value, Value::Map(_));

@@ -10,7 +10,7 @@ use super::{
         ACCELERATION, ANGLE, ANGULAR_ACCELERATION, ANGULAR_SPEED, DENSITY, FORCE, FREQUENCY,
         IMPULSE, LENGTH, PRESSURE, PRESSURE_RATE, SPEED, TIME, TORQUE,
     },
-    visit::{Quantity, Range, Walk},
+    visit::{Quantity, Range, Visitor},
 };
 use crate::base::{Pose, Quat, Real, Vec3};
 
@@ -20,7 +20,7 @@ const LENGTH_MAX: Real = 10.0;
 const DENSITY_SCALING_MAX: Real = 1000.0;
 
 /// Walks all keys of a scene.
-pub(crate) fn scene(walk: &mut impl Walk, scene: &mut Scene) {
+pub(crate) fn scene(walk: &mut impl Visitor, scene: &mut Scene) {
     walk.text("name", &mut scene.name);
     walk.whole("seed", 0, u64::MAX, &mut scene.seed);
     walk.vector("gravity", Quantity::any(&ACCELERATION), &mut scene.gravity);
@@ -35,7 +35,7 @@ pub(crate) fn scene(walk: &mut impl Walk, scene: &mut Scene) {
     walk.section("outputs", |walk| outputs(walk, &mut scene.outputs));
 }
 
-pub(crate) fn time(walk: &mut impl Walk, time: &mut Time) {
+pub(crate) fn time(walk: &mut impl Visitor, time: &mut Time) {
     #[expect(clippy::cast_precision_loss, reason = "a tick is far below 2^53 ns")]
     let mut tick = time.tick_ns as Real / 1e9;
     walk.quantity("tick", Quantity::between(&TIME, 1e-5, 0.02), &mut tick);
@@ -53,13 +53,13 @@ pub(crate) fn time(walk: &mut impl Walk, time: &mut Time) {
     );
 }
 
-pub(crate) fn material(walk: &mut impl Walk, material: &mut Material) {
+pub(crate) fn material(walk: &mut impl Visitor, material: &mut Material) {
     walk.quantity("youngs_modulus", Quantity::above_zero(&PRESSURE), &mut material.youngs_modulus);
     walk.number("poisson_ratio", Range::Between(0.0, 0.5), &mut material.poisson_ratio);
     walk.quantity("density", Quantity::above_zero(&DENSITY), &mut material.density);
 }
 
-pub(crate) fn grains(walk: &mut impl Walk, grains: &mut Grains) {
+pub(crate) fn grains(walk: &mut impl Visitor, grains: &mut Grains) {
     whole_usize(walk, "count", (1, 200_000), &mut grains.count);
     let radius = Quantity { dimension: &LENGTH, range: Range::AboveUpTo(0.0, LENGTH_MAX) };
     walk.quantity("radius_min", radius, &mut grains.radius_min);
@@ -70,7 +70,7 @@ pub(crate) fn grains(walk: &mut impl Walk, grains: &mut Grains) {
     walk.number("tangential_damping", Range::AtLeast(0.0), &mut grains.tangential_damping);
 }
 
-pub(crate) fn membrane(walk: &mut impl Walk, membrane: &mut Membrane) {
+pub(crate) fn membrane(walk: &mut impl Visitor, membrane: &mut Membrane) {
     let length = Quantity { dimension: &LENGTH, range: Range::AboveUpTo(0.0, LENGTH_MAX) };
     walk.quantity("radius", length, &mut membrane.radius);
     whole_usize(walk, "frequency", (2, 64), &mut membrane.frequency);
@@ -89,7 +89,7 @@ pub(crate) fn membrane(walk: &mut impl Walk, membrane: &mut Membrane) {
     walk.number("tangential_damping", Range::AtLeast(0.0), &mut membrane.tangential_damping);
 }
 
-pub(crate) fn chamber(walk: &mut impl Walk, chamber: &mut Chamber) {
+pub(crate) fn chamber(walk: &mut impl Visitor, chamber: &mut Chamber) {
     walk.quantity("ambient", Quantity::above_zero(&PRESSURE), &mut chamber.ambient);
     let vacuum = Quantity { dimension: &PRESSURE, range: Range::AtMost(0.0) };
     walk.quantity("gauge_min", vacuum, &mut chamber.gauge_min);
@@ -98,7 +98,7 @@ pub(crate) fn chamber(walk: &mut impl Walk, chamber: &mut Chamber) {
     walk.quantity("rate_max", Quantity::above_zero(&PRESSURE_RATE), &mut chamber.rate_max);
 }
 
-pub(crate) fn flange(walk: &mut impl Walk, flange: &mut Flange) {
+pub(crate) fn flange(walk: &mut impl Visitor, flange: &mut Flange) {
     pose(walk, &mut flange.pose);
     walk.quantity("speed_max", Quantity::above_zero(&SPEED), &mut flange.speed_max);
     let acceleration = Quantity::above_zero(&ACCELERATION);
@@ -113,12 +113,12 @@ pub(crate) fn flange(walk: &mut impl Walk, flange: &mut Flange) {
     );
 }
 
-fn table(walk: &mut impl Walk, table: &mut Table) {
+fn table(walk: &mut impl Visitor, table: &mut Table) {
     walk.quantity("height", Quantity::any(&LENGTH), &mut table.height);
     walk.number("friction", Range::AtLeast(0.0), &mut table.friction);
 }
 
-pub(crate) fn object(walk: &mut impl Walk, object: &mut Object) {
+pub(crate) fn object(walk: &mut impl Visitor, object: &mut Object) {
     walk.text("name", &mut object.name);
     shape(walk, &mut object.shape);
     material(walk, &mut object.material);
@@ -129,7 +129,7 @@ pub(crate) fn object(walk: &mut impl Walk, object: &mut Object) {
 
 /// Position and orientation. The orientation is written as roll, pitch, yaw about the fixed axes
 /// x, y, z, or as a unit quaternion x, y, z, w.
-pub(crate) fn pose(walk: &mut impl Walk, pose: &mut Pose) {
+pub(crate) fn pose(walk: &mut impl Visitor, pose: &mut Pose) {
     walk.vector("position", Quantity::any(&LENGTH), &mut pose.translation.vector);
     let is_identity = pose.rotation == Quat::identity();
     let current = if is_identity { "roll_pitch_yaw" } else { "quaternion" };
@@ -153,7 +153,7 @@ pub(crate) fn pose(walk: &mut impl Walk, pose: &mut Pose) {
 
 const SHAPES: [&str; 6] = ["sphere", "box", "cylinder", "capsule", "convex_hull", "mesh"];
 
-pub(crate) fn shape(walk: &mut impl Walk, shape: &mut Shape) {
+pub(crate) fn shape(walk: &mut impl Visitor, shape: &mut Shape) {
     let Some(chosen) = walk.alternative("shape", &SHAPES, shape_name(shape)) else { return };
     if walk.is_reading() {
         *shape = blank_shape(chosen);
@@ -164,7 +164,7 @@ pub(crate) fn shape(walk: &mut impl Walk, shape: &mut Shape) {
     });
 }
 
-fn shape_keys(walk: &mut impl Walk, length: Quantity, shape: &mut Shape) {
+fn shape_keys(walk: &mut impl Visitor, length: Quantity, shape: &mut Shape) {
     match shape {
         Shape::Sphere { radius } => walk.quantity("radius", length, radius),
         Shape::Box { size } => walk.vector("size", length, size),
@@ -208,7 +208,7 @@ fn blank_shape(name: &str) -> Shape {
     }
 }
 
-fn controller(walk: &mut impl Walk, controller: &mut Controller, object: &str) {
+fn controller(walk: &mut impl Visitor, controller: &mut Controller, object: &str) {
     let current = match controller {
         Controller::Builtin(_) => "builtin",
         Controller::Topics { .. } => "topics",
@@ -234,7 +234,7 @@ fn controller(walk: &mut impl Walk, controller: &mut Controller, object: &str) {
     };
 }
 
-fn lockstep(walk: &mut impl Walk, it: &mut Lockstep) {
+fn lockstep(walk: &mut impl Visitor, it: &mut Lockstep) {
     let current = match (it.is_on, it.follows_clock) {
         (true, _) => "wait_command",
         (false, true) => "external_clock",
@@ -258,7 +258,7 @@ fn lockstep(walk: &mut impl Walk, it: &mut Lockstep) {
     };
 }
 
-fn pick_and_lift(walk: &mut impl Walk, it: &mut PickAndLift) {
+fn pick_and_lift(walk: &mut impl Visitor, it: &mut PickAndLift) {
     let speed = Quantity::above_zero(&SPEED);
     let force = Quantity::above_zero(&FORCE);
     let length = Quantity { dimension: &LENGTH, range: Range::AboveUpTo(0.0, LENGTH_MAX) };
@@ -280,7 +280,7 @@ fn pick_and_lift(walk: &mut impl Walk, it: &mut PickAndLift) {
     walk.quantity("retreat_height", Quantity::at_least_zero(&LENGTH), &mut it.retreat_height);
 }
 
-fn outputs(walk: &mut impl Walk, outputs: &mut Outputs) {
+fn outputs(walk: &mut impl Visitor, outputs: &mut Outputs) {
     let rate = Quantity::above_zero(&FREQUENCY);
     walk.quantity("state_rate", rate, &mut outputs.state_rate);
     walk.quantity("pressure_rate", rate, &mut outputs.pressure_rate);
@@ -295,7 +295,7 @@ fn outputs(walk: &mut impl Walk, outputs: &mut Outputs) {
     walk.flag("real_time", &mut outputs.real_time);
 }
 
-fn ros(walk: &mut impl Walk, ros: &mut Ros) {
+fn ros(walk: &mut impl Visitor, ros: &mut Ros) {
     walk.flag("enabled", &mut ros.enabled);
     let mut domain = ros.domain_id.map(u64::from);
     // DDS derives UDP ports from the domain; above 232 they do not fit.
@@ -310,7 +310,7 @@ fn ros(walk: &mut impl Walk, ros: &mut Ros) {
     walk.flag("monotonic_clock", &mut ros.monotonic_clock);
 }
 
-fn bag(walk: &mut impl Walk, bag: &mut Bag) {
+fn bag(walk: &mut impl Visitor, bag: &mut Bag) {
     walk.flag("enabled", &mut bag.enabled);
     let mut folder = bag.folder.as_ref().map(|it| it.to_string_lossy().into_owned());
     walk.text_or("folder", "auto", &mut folder);
@@ -350,7 +350,7 @@ fn bag(walk: &mut impl Walk, bag: &mut Bag) {
 
 /// A whole number that counts things in memory.
 pub(crate) fn whole_usize(
-    walk: &mut impl Walk,
+    walk: &mut impl Visitor,
     key: &'static str,
     (min, max): (u64, u64),
     value: &mut usize,

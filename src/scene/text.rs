@@ -10,7 +10,7 @@ use super::{
     schema,
     tree::{Entry, Node, Place, Value},
     unset,
-    visit::Walk,
+    visit::Visitor,
     yaml,
 };
 
@@ -80,7 +80,7 @@ pub(crate) struct Layers<'a> {
 /// The keys of a scene of another kind: how they are walked, and what joins them.
 pub(crate) trait Keys {
     /// Every key with its unit and its limits.
-    fn walk(&mut self, walk: &mut impl Walk);
+    fn walk(&mut self, walk: &mut impl Visitor);
 
     /// Rules that join several keys: key, what is wrong with its value, and the remedy.
     fn unfit(&self) -> Vec<(&'static str, String, &'static str)>;

@@ -82,7 +82,7 @@ impl Quantity {
 
 /// Visits the keys of a scene. The reader writes into the values it is given, the printer reads
 /// them.
-pub(crate) trait Walk: Sized {
+pub(crate) trait Visitor: Sized {
     /// A map under `key`.
     fn section(&mut self, key: &'static str, inside: impl FnOnce(&mut Self));
 

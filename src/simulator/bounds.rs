@@ -9,7 +9,7 @@ use crate::{
     wire::messages::{
         geometry_msgs::Vector3,
         simulation_interfaces::{
-            Bounds, GetEntityBoundsRequest, GetEntityBoundsResponse, Result as Told,
+            Bounds, GetEntityBoundsRequest, GetEntityBoundsResponse, Result as SimResult,
         },
     },
 };
@@ -139,7 +139,7 @@ impl Simulator {
                 GetEntityBoundsResponse { result: ok(), bounds }
             }
             Err(why) => GetEntityBoundsResponse {
-                result: failed(Told::RESULT_NOT_FOUND, why),
+                result: failed(SimResult::RESULT_NOT_FOUND, why),
                 ..Default::default()
             },
         }

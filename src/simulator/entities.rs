@@ -26,7 +26,7 @@ use crate::{
             simulation_interfaces::{
                 EntityState, GetEntitiesRequest, GetEntitiesResponse, GetEntitiesStatesRequest,
                 GetEntitiesStatesResponse, GetEntityInfoRequest, GetEntityInfoResponse,
-                GetEntityStateRequest, GetEntityStateResponse, Result as Told,
+                GetEntityStateRequest, GetEntityStateResponse, Result as SimResult,
                 SetEntityInfoRequest, SetEntityInfoResponse, SetEntityStateRequest,
                 SetEntityStateResponse,
             },
@@ -168,7 +168,7 @@ impl Simulator {
                 GetEntityStateResponse { result: ok(), state }
             }
             Err(why) => {
-                let result = failed(Told::RESULT_NOT_FOUND, why);
+                let result = failed(SimResult::RESULT_NOT_FOUND, why);
                 GetEntityStateResponse { result, ..Default::default() }
             }
         }
@@ -211,7 +211,7 @@ impl Simulator {
         world: &mut World<'_>,
     ) -> SetEntityStateResponse {
         let result = match self.find_entity(&request.entity, world) {
-            Err(why) => failed(Told::RESULT_NOT_FOUND, why),
+            Err(why) => failed(SimResult::RESULT_NOT_FOUND, why),
             Ok(entity) => match self.set_state(&entity, request, world) {
                 Ok(()) => ok(),
                 Err(result) => result,
@@ -225,7 +225,7 @@ impl Simulator {
         entity: &Entity,
         request: &SetEntityStateRequest,
         world: &mut World<'_>,
-    ) -> Result<(), Told> {
+    ) -> Result<(), SimResult> {
         const INVALID: u8 = SetEntityStateResponse::INVALID_POSE;
         let frame = self.frame(&request.state.header.frame_id, world);
         let frame = frame.map_err(|why| failed(INVALID, why))?;
@@ -240,7 +240,7 @@ impl Simulator {
             let angular = Vec3::new(asked.angular.x, asked.angular.y, asked.angular.z);
             if [linear, angular].iter().any(|v| !v.norm_squared().is_finite()) {
                 let why = "the twist has numbers that are not finite";
-                return Err(failed(Told::RESULT_OPERATION_FAILED, why));
+                return Err(failed(SimResult::RESULT_OPERATION_FAILED, why));
             }
             twist = Twist { linear: frame.rotation * linear, angular: frame.rotation * angular };
         }
@@ -250,18 +250,18 @@ impl Simulator {
         let change = match entity.name.as_str() {
             TABLE => {
                 let why = "the table stands still";
-                return Err(failed(Told::RESULT_OPERATION_FAILED, why));
+                return Err(failed(SimResult::RESULT_OPERATION_FAILED, why));
             }
             FLANGE | BAG if request.set_twist && twist != Twist::zero() => {
                 let why = "the gripper moves as commanded on ~/flange/pose_cmd: set its pose only";
-                return Err(failed(Told::RESULT_OPERATION_FAILED, why));
+                return Err(failed(SimResult::RESULT_OPERATION_FAILED, why));
             }
             FLANGE | BAG => Change::PlaceFlange { pose },
             name => Change::PlaceObject { object: name.to_owned(), pose, twist },
         };
         self.change(&change, world).map_err(|refusal| match refusal {
             ChangeRefused::Overlap { .. } => failed(INVALID, refusal),
-            _ => failed(Told::RESULT_OPERATION_FAILED, refusal),
+            _ => failed(SimResult::RESULT_OPERATION_FAILED, refusal),
         })
     }
 
@@ -288,7 +288,7 @@ impl Simulator {
                 GetEntityInfoResponse { result: ok(), info: self.register.get(&entity.name) }
             }
             Err(why) => {
-                let result = failed(Told::RESULT_NOT_FOUND, why);
+                let result = failed(SimResult::RESULT_NOT_FOUND, why);
                 GetEntityInfoResponse { result, ..Default::default() }
             }
         }
@@ -304,7 +304,7 @@ impl Simulator {
                 self.register.set(&entity.name, request.info);
                 ok()
             }
-            Err(why) => failed(Told::RESULT_NOT_FOUND, why),
+            Err(why) => failed(SimResult::RESULT_NOT_FOUND, why),
         };
         SetEntityInfoResponse { result }
     }

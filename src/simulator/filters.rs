@@ -4,7 +4,7 @@ use regex::RegexBuilder;
 
 use super::{Simulator, bounds::Volume, entities::Entity, failed};
 use crate::wire::messages::simulation_interfaces::{
-    EntityFilters, EntityInfo, Result as Told, TagsFilter,
+    EntityFilters, EntityInfo, Result as SimResult, TagsFilter,
 };
 
 /// Memory that a name filter may take when compiled; matching takes linear time in any case.
@@ -21,21 +21,21 @@ impl Simulator {
         &self,
         entities: Vec<Entity>,
         filters: &EntityFilters,
-    ) -> Result<Vec<Entity>, Told> {
+    ) -> Result<Vec<Entity>, SimResult> {
         if FILTER_MAX < filters.filter.len() {
             let why = format!("the name filter has more than {FILTER_MAX} characters");
-            return Err(failed(Told::RESULT_OPERATION_FAILED, why));
+            return Err(failed(SimResult::RESULT_OPERATION_FAILED, why));
         }
         let name = RegexBuilder::new(&filters.filter).size_limit(REGEX_BYTES_MAX).build();
         let name = name.map_err(|error| {
             let why = format!("filter `{}` is no regular expression: {error}", filters.filter);
-            failed(Told::RESULT_OPERATION_FAILED, why)
+            failed(SimResult::RESULT_OPERATION_FAILED, why)
         })?;
         let place = Volume::of_filter(&filters.bounds)
-            .map_err(|why| failed(Told::RESULT_OPERATION_FAILED, why))?;
+            .map_err(|why| failed(SimResult::RESULT_OPERATION_FAILED, why))?;
         if TagsFilter::FILTER_MODE_ALL < filters.tags.filter_mode {
             let why = format!("there is no tags filter mode {}", filters.tags.filter_mode);
-            return Err(failed(Told::RESULT_OPERATION_FAILED, why));
+            return Err(failed(SimResult::RESULT_OPERATION_FAILED, why));
         }
         let passes = |entity: &Entity| {
             let info = self.register.get(&entity.name);

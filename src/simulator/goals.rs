@@ -10,7 +10,7 @@ use super::{
     services::{Action, channels_of},
 };
 use crate::{
-    io::server::{Asker, Outgoing},
+    io::server::{Outgoing, RequestId},
     snapshot::Snapshot,
     wire::{
         actions::{GetResultRequest, GetResultResponse, SendGoalRequest, SendGoalResponse},
@@ -25,7 +25,7 @@ use crate::{
                 ParallelGripperCommandResult,
             },
             simulation_interfaces::{
-                Result as Told, SimulateStepsFeedback, SimulateStepsGoal, SimulateStepsResult,
+                Result as SimResult, SimulateStepsFeedback, SimulateStepsGoal, SimulateStepsResult,
             },
             unique_identifier_msgs::UUID,
         },
@@ -57,7 +57,7 @@ struct Goal {
     status: i8,
     /// The response to those who wait, once there is one.
     result: Option<Cdr>,
-    waiting: Vec<Asker>,
+    waiting: Vec<RequestId>,
 }
 
 impl Simulator {
@@ -111,7 +111,7 @@ impl Simulator {
         &mut self,
         action: Action,
         body: &Cdr,
-        asker: &Asker,
+        asker: &RequestId,
     ) -> Result<Option<Cdr>, Unreadable> {
         let request: GetResultRequest = body.read()?;
         let found = self.goals.find(request.goal_id.uuid);
@@ -146,7 +146,7 @@ impl Simulator {
             self.cancel_grip(id, seen);
             if let Some((done, left)) = self.cancel_steps(id) {
                 let why = format!("cancelled after {done} steps, {left} were left");
-                let result = failed(Told::RESULT_OPERATION_FAILED, why);
+                let result = failed(SimResult::RESULT_OPERATION_FAILED, why);
                 let result = SimulateStepsResult { result };
                 self.end_goal(id, GoalStatus::STATUS_CANCELED, &result);
             }
@@ -168,7 +168,7 @@ impl Simulator {
     }
 
     /// A goal cannot be reached any more.
-    pub(super) fn abort_goal(&mut self, id: GoalId, result: Told) {
+    pub(super) fn abort_goal(&mut self, id: GoalId, result: SimResult) {
         self.end_goal(id, GoalStatus::STATUS_ABORTED, &SimulateStepsResult { result });
     }
 
@@ -180,7 +180,7 @@ impl Simulator {
         let action = goal.action;
         let waiting = std::mem::take(&mut goal.waiting);
         self.tell_status(action);
-        let answers = waiting.into_iter().map(|asker| Outgoing::Answer(asker, answer.clone()));
+        let answers = waiting.into_iter().map(|asker| Outgoing::Response(asker, answer.clone()));
         self.out.extend(answers);
     }
 
@@ -262,7 +262,9 @@ fn unknown_goal(action: Action) -> Cdr {
         }),
         Action::SimulateSteps => Cdr::of(&GetResultResponse {
             status: GoalStatus::STATUS_UNKNOWN,
-            result: SimulateStepsResult { result: failed(Told::RESULT_NOT_FOUND, "no such goal") },
+            result: SimulateStepsResult {
+                result: failed(SimResult::RESULT_NOT_FOUND, "no such goal"),
+            },
         }),
     }
 }

@@ -28,7 +28,7 @@ use std::{
 };
 
 use serde::{Serialize, de::DeserializeOwned};
-pub use services::{Ask, Asked, asked};
+pub use services::{Endpoint, Service, asked};
 
 use self::{entity_info::Register, goals::Goals, gripper::Grip, running::Running, worlds::Loading};
 use crate::{
@@ -37,13 +37,15 @@ use crate::{
         Command,
         change::{Change, ChangeRefused},
     },
-    io::server::{Asker, Call, Outgoing},
+    io::server::{Outgoing, RequestId, ServiceRequest},
     physics::boundary::shape::Aabb,
     scene::{Outputs, Scene, resource::Shelf},
     snapshot::Snapshot,
     wire::{
         cdr::Cdr,
-        messages::simulation_interfaces::{Resource, Result as Told, Spawnable, WorldResource},
+        messages::simulation_interfaces::{
+            Resource, Result as SimResult, Spawnable, WorldResource,
+        },
     },
 };
 
@@ -100,7 +102,7 @@ pub struct Simulator {
     resource: Resource,
     folder: PathBuf,
     version: Version,
-    asked: Vec<Asked>,
+    asked: Vec<Endpoint>,
     running: Running,
     register: Register,
     goals: Goals,
@@ -127,7 +129,7 @@ type Unreadable = cdr_encoding::Error;
 impl Simulator {
     /// A simulator of `scene` that is asked by `asked`, in the order of the services offered. If it is
     /// stopped, it stands still until a first command or until it is told to play.
-    pub fn new(scene: &Scene, asked: Vec<Asked>, is_stopped: bool) -> Self {
+    pub fn new(scene: &Scene, asked: Vec<Endpoint>, is_stopped: bool) -> Self {
         Self {
             scene: scene.clone(),
             resource: Resource::default(),
@@ -168,68 +170,74 @@ impl Simulator {
     ///
     /// # Errors
     /// If the question cannot be read; there is no answer then.
-    pub fn attend(&mut self, call: &Call, world: &mut World<'_>) -> Result<(), String> {
+    pub fn handle_requests(
+        &mut self,
+        call: &ServiceRequest,
+        world: &mut World<'_>,
+    ) -> Result<(), String> {
         let Some(asked) = self.asked.get(call.asker.offer).copied() else { return Ok(()) };
         let answer = self
             .answer(asked, call, world)
             .map_err(|fault| format!("{}: {fault}", asked.name()))?;
         if let Some(body) = answer {
-            self.out.push(Outgoing::Answer(call.asker.clone(), body));
+            self.out.push(Outgoing::Response(call.asker.clone(), body));
         }
         Ok(())
     }
 
     fn answer(
         &mut self,
-        asked: Asked,
-        call: &Call,
+        asked: Endpoint,
+        call: &ServiceRequest,
         world: &mut World<'_>,
     ) -> Result<Option<Cdr>, Unreadable> {
         let (body, asker) = (&call.body, &call.asker);
         let ask = match asked {
-            Asked::Service(ask) => ask,
-            Asked::SendGoal(action) => return self.send_goal(action, body, world.seen).map(Some),
-            Asked::CancelGoal(action) => {
+            Endpoint::Service(ask) => ask,
+            Endpoint::SendGoal(action) => {
+                return self.send_goal(action, body, world.seen).map(Some);
+            }
+            Endpoint::CancelGoal(action) => {
                 return self.cancel_goals(action, body, world.seen).map(Some);
             }
-            Asked::GetResult(action) => return self.get_result(action, body, asker),
+            Endpoint::GetResult(action) => return self.get_result(action, body, asker),
         };
         let answer = match ask {
-            Ask::GetSimulatorFeatures => Cdr::of(&self.features()),
-            Ask::GetSimulationState => Cdr::of(&self.simulation_state()),
-            Ask::SetSimulationState => reply(body, |it| self.set_simulation_state(&it, world))?,
-            Ask::ResetSimulation => reply(body, |it| self.reset_simulation(&it, world))?,
-            Ask::StepSimulation => return self.step_simulation(body, asker),
-            Ask::GetEntities => reply(body, |it| self.get_entities(&it, world))?,
-            Ask::GetEntitiesStates => reply(body, |it| self.get_entities_states(&it, world))?,
-            Ask::GetEntityState => reply(body, |it| self.get_entity_state(&it, world))?,
-            Ask::SetEntityState => {
+            Service::GetSimulatorFeatures => Cdr::of(&self.features()),
+            Service::GetSimulationState => Cdr::of(&self.simulation_state()),
+            Service::SetSimulationState => reply(body, |it| self.set_simulation_state(&it, world))?,
+            Service::ResetSimulation => reply(body, |it| self.reset_simulation(&it, world))?,
+            Service::StepSimulation => return self.step_simulation(body, asker),
+            Service::GetEntities => reply(body, |it| self.get_entities(&it, world))?,
+            Service::GetEntitiesStates => reply(body, |it| self.get_entities_states(&it, world))?,
+            Service::GetEntityState => reply(body, |it| self.get_entity_state(&it, world))?,
+            Service::SetEntityState => {
                 let request = entities::read_set_entity_state(body)?;
                 Cdr::of(&self.set_entity_state(&request, world))
             }
-            Ask::GetEntityInfo => reply(body, |it| self.get_entity_info(&it, world))?,
-            Ask::SetEntityInfo => reply(body, |it| self.set_entity_info(it, world))?,
-            Ask::GetEntityBounds => reply(body, |it| self.get_entity_bounds(&it, world))?,
-            Ask::SpawnEntity => reply(body, |it| self.spawn_entity(it, world))?,
-            Ask::SpawnEntities => reply(body, |it| self.spawn_entities(&it, world))?,
-            Ask::DeleteEntity => reply(body, |it| self.delete_entity(&it, world))?,
-            Ask::GetSpawnables => self.get_spawnables(&body.read()?),
-            Ask::GetNamedPoses => reply(body, |it| self.get_named_poses(&it))?,
-            Ask::GetNamedPoseBounds => reply(body, |it| self.get_named_pose_bounds(&it))?,
-            Ask::LoadWorld => return self.load_world(body, asker),
-            Ask::UnloadWorld => Cdr::of(&self.unload_world()),
-            Ask::GetCurrentWorld => Cdr::of(&self.get_current_world()),
-            Ask::GetAvailableWorlds => reply(body, |it| self.get_available_worlds(&it))?,
-            Ask::GripCommand => reply(body, |it| self.grip_command(&it))?,
-            Ask::DescribeParameters => reply(body, |it| self.describe_parameters(&it))?,
-            Ask::GetParameters => reply(body, |it| self.get_parameters(&it))?,
-            Ask::GetParameterTypes => reply(body, |it| self.get_parameter_types(&it))?,
-            Ask::ListParameters => reply(body, |it| self.list_parameters(&it))?,
-            Ask::SetParameters => reply(body, |it| self.set_parameters(&it, world))?,
-            Ask::SetParametersAtomically => {
+            Service::GetEntityInfo => reply(body, |it| self.get_entity_info(&it, world))?,
+            Service::SetEntityInfo => reply(body, |it| self.set_entity_info(it, world))?,
+            Service::GetEntityBounds => reply(body, |it| self.get_entity_bounds(&it, world))?,
+            Service::SpawnEntity => reply(body, |it| self.spawn_entity(it, world))?,
+            Service::SpawnEntities => reply(body, |it| self.spawn_entities(&it, world))?,
+            Service::DeleteEntity => reply(body, |it| self.delete_entity(&it, world))?,
+            Service::GetSpawnables => self.get_spawnables(&body.read()?),
+            Service::GetNamedPoses => reply(body, |it| self.get_named_poses(&it))?,
+            Service::GetNamedPoseBounds => reply(body, |it| self.get_named_pose_bounds(&it))?,
+            Service::LoadWorld => return self.load_world(body, asker),
+            Service::UnloadWorld => Cdr::of(&self.unload_world()),
+            Service::GetCurrentWorld => Cdr::of(&self.get_current_world()),
+            Service::GetAvailableWorlds => reply(body, |it| self.get_available_worlds(&it))?,
+            Service::GripCommand => reply(body, |it| self.grip_command(&it))?,
+            Service::DescribeParameters => reply(body, |it| self.describe_parameters(&it))?,
+            Service::GetParameters => reply(body, |it| self.get_parameters(&it))?,
+            Service::GetParameterTypes => reply(body, |it| self.get_parameter_types(&it))?,
+            Service::ListParameters => reply(body, |it| self.list_parameters(&it))?,
+            Service::SetParameters => reply(body, |it| self.set_parameters(&it, world))?,
+            Service::SetParametersAtomically => {
                 reply(body, |it| self.set_parameters_atomically(&it, world))?
             }
-            Ask::ZeroForceSensor => Cdr::of(&self.zero_force_sensor(world)),
+            Service::ZeroForceSensor => Cdr::of(&self.zero_force_sensor(world)),
         };
         Ok(Some(answer))
     }
@@ -292,8 +300,8 @@ impl Simulator {
         std::mem::take(&mut self.changed)
     }
 
-    fn send_answer<T: Serialize>(&mut self, asker: Asker, answer: &T) {
-        self.out.push(Outgoing::Answer(asker, Cdr::of(answer)));
+    fn send_answer<T: Serialize>(&mut self, asker: RequestId, answer: &T) {
+        self.out.push(Outgoing::Response(asker, Cdr::of(answer)));
     }
 
     /// True if there is a scene that can be asked about and changed.
@@ -336,11 +344,11 @@ fn reply<Q: DeserializeOwned, A: Serialize>(
 }
 
 /// All went well.
-fn ok() -> Told {
-    Told { result: Told::RESULT_OK, error_message: String::new() }
+fn ok() -> SimResult {
+    SimResult { result: SimResult::RESULT_OK, error_message: String::new() }
 }
 
 /// It did not.
-fn failed(result: u8, why: impl std::fmt::Display) -> Told {
-    Told { result, error_message: why.to_string() }
+fn failed(result: u8, why: impl std::fmt::Display) -> SimResult {
+    SimResult { result, error_message: why.to_string() }
 }

@@ -6,7 +6,7 @@ use crate::{
     physics::boundary::shape::Aabb,
     wire::messages::simulation_interfaces::{
         Bounds, GetNamedPoseBoundsRequest, GetNamedPoseBoundsResponse, GetNamedPosesRequest,
-        GetNamedPosesResponse, NamedPose, Result as Told, TagsFilter,
+        GetNamedPosesResponse, NamedPose, Result as SimResult, TagsFilter,
     },
 };
 
@@ -68,7 +68,7 @@ impl Simulator {
             Some(place) => GetNamedPoseBoundsResponse { result: ok(), bounds: place.bounds },
             None => GetNamedPoseBoundsResponse {
                 result: failed(
-                    Told::RESULT_NOT_FOUND,
+                    SimResult::RESULT_NOT_FOUND,
                     format!("there is no pose `{}`", request.name),
                 ),
                 ..Default::default()

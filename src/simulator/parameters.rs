@@ -6,7 +6,7 @@
 
 use super::{Simulator, World, entities::stamp, services::parameter_events};
 use crate::{
-    command::change::{Change, Knob},
+    command::change::{Change, TunableParameter},
     io::server::Outgoing,
     scene::{Outputs, Scene},
     wire::{
@@ -25,11 +25,11 @@ use crate::{
 /// What a parameter is.
 enum Kind {
     /// A number of the world that may be changed.
-    Knob(Knob),
+    TunableParameter(TunableParameter),
     /// A rate of topics, which may be changed [Hz].
     Rate(fn(&mut Outputs) -> &mut f64),
     /// Something that is told.
-    Told(fn(&Scene) -> ParameterValue),
+    SimResult(fn(&Scene) -> ParameterValue),
 }
 
 /// Slowest rate of a topic [Hz].
@@ -38,7 +38,7 @@ const RATE_MIN: f64 = 1e-3;
 /// A change that has been checked.
 #[derive(Clone, Copy)]
 enum Setting {
-    Knob(Knob),
+    TunableParameter(TunableParameter),
     Rate(fn(&mut Outputs) -> &mut f64),
 }
 
@@ -46,22 +46,34 @@ enum Setting {
 type Row = (&'static str, Kind, &'static str);
 
 const PARAMETERS: [Row; 16] = [
-    ("chamber.lag", Kind::Knob(Knob::ChamberLag), "time constant of pump and line [s]"),
-    ("chamber.rate_max", Kind::Knob(Knob::ChamberRateMax), "largest rate of the pressure [Pa/s]"),
+    (
+        "chamber.lag",
+        Kind::TunableParameter(TunableParameter::ChamberLag),
+        "time constant of pump and line [s]",
+    ),
+    (
+        "chamber.rate_max",
+        Kind::TunableParameter(TunableParameter::ChamberRateMax),
+        "largest rate of the pressure [Pa/s]",
+    ),
     (
         "grains.dissipation_time",
-        Kind::Knob(Knob::GrainDissipationTime),
+        Kind::TunableParameter(TunableParameter::GrainDissipationTime),
         "dissipation time of contacts between grains, from which their restitution follows [s]",
     ),
-    ("grains.friction", Kind::Knob(Knob::GrainFriction), "friction between grains [-]"),
+    (
+        "grains.friction",
+        Kind::TunableParameter(TunableParameter::GrainFriction),
+        "friction between grains [-]",
+    ),
     (
         "membrane.friction",
-        Kind::Knob(Knob::MembraneFriction),
+        Kind::TunableParameter(TunableParameter::MembraneFriction),
         "friction of grains on the membrane [-]",
     ),
     (
         "object.friction",
-        Kind::Knob(Knob::ObjectFriction),
+        Kind::TunableParameter(TunableParameter::ObjectFriction),
         "friction of all objects on the membrane [-]",
     ),
     ("outputs.contacts_rate", Kind::Rate(|it| &mut it.contacts_rate), "rate of contacts [Hz]"),
@@ -74,10 +86,10 @@ const PARAMETERS: [Row; 16] = [
         Kind::Rate(|it| &mut it.statistics_rate),
         "rate of statistics [Hz]",
     ),
-    ("scene", Kind::Told(|it| text(&it.name)), "name of the scene"),
-    ("seed", Kind::Told(|it| whole(it.seed)), "seed of all random numbers"),
-    ("time.tick", Kind::Told(|it| double(tick_s(it))), "length of a tick [s]"),
-    ("use_sim_time", Kind::Told(|_| flag(false)), "the simulator itself runs on wall time"),
+    ("scene", Kind::SimResult(|it| text(&it.name)), "name of the scene"),
+    ("seed", Kind::SimResult(|it| whole(it.seed)), "seed of all random numbers"),
+    ("time.tick", Kind::SimResult(|it| double(tick_s(it))), "length of a tick [s]"),
+    ("use_sim_time", Kind::SimResult(|_| flag(false)), "the simulator itself runs on wall time"),
 ];
 
 fn tick_s(scene: &Scene) -> f64 {
@@ -112,18 +124,18 @@ fn find(name: &str) -> Option<&'static Row> {
 impl Simulator {
     fn value(&self, row: &Row) -> ParameterValue {
         match &row.1 {
-            Kind::Knob(knob) => double(knob.get(&self.scene)),
+            Kind::TunableParameter(parameter) => double(parameter.get(&self.scene)),
             Kind::Rate(rate) => double(*rate(&mut self.scene.outputs.clone())),
-            Kind::Told(tell) => tell(&self.scene),
+            Kind::SimResult(tell) => tell(&self.scene),
         }
     }
 
     /// Smallest and largest value of a parameter that may be changed.
     fn range(&self, kind: &Kind) -> Option<[f64; 2]> {
         match kind {
-            Kind::Knob(knob) => Some(knob.range()),
+            Kind::TunableParameter(parameter) => Some(parameter.range()),
             Kind::Rate(_) => Some([RATE_MIN, 1.0 / tick_s(&self.scene)]),
-            Kind::Told(_) => None,
+            Kind::SimResult(_) => None,
         }
     }
 
@@ -157,7 +169,7 @@ impl Simulator {
                 name: name.clone(),
                 r#type: self.value(row).r#type,
                 description: row.2.to_owned(),
-                read_only: matches!(row.1, Kind::Told(_)),
+                read_only: matches!(row.1, Kind::SimResult(_)),
                 floating_point_range: range.into_iter().collect(),
                 ..Default::default()
             }
@@ -229,9 +241,9 @@ impl Simulator {
         let name = &asked.name;
         let row = find(name).ok_or_else(|| format!("there is no parameter `{name}`"))?;
         let setting = match row.1 {
-            Kind::Knob(knob) => Setting::Knob(knob),
+            Kind::TunableParameter(parameter) => Setting::TunableParameter(parameter),
             Kind::Rate(rate) => Setting::Rate(rate),
-            Kind::Told(_) => {
+            Kind::SimResult(_) => {
                 return Err(format!(
                     "`{name}` is read-only: change it in the scene, and start anew"
                 ));
@@ -258,10 +270,10 @@ impl Simulator {
     ) -> Result<(), String> {
         let value = asked.value.double_value;
         match setting {
-            Setting::Knob(knob) => {
-                let change = Change::Turn { knob, value };
+            Setting::TunableParameter(parameter) => {
+                let change = Change::SetParameter { parameter, value };
                 self.change(&change, world).map_err(|refusal| refusal.to_string())?;
-                knob.set(&mut self.scene, value);
+                parameter.set(&mut self.scene, value);
             }
             Setting::Rate(rate) => {
                 *rate(&mut self.scene.outputs) = value;

@@ -3,13 +3,13 @@
 use super::{Simulator, Unreadable, World, failed, goals::GoalId, ok};
 use crate::{
     command::change::{Change, ChangeRefused, Scope},
-    io::server::Asker,
+    io::server::RequestId,
     scene::resource::FORMATS,
     wire::{
         cdr::Cdr,
         messages::simulation_interfaces::{
             GetSimulationStateResponse, GetSimulatorFeaturesResponse, ResetSimulationRequest,
-            ResetSimulationResponse, Result as Told, SetSimulationStateRequest,
+            ResetSimulationResponse, Result as SimResult, SetSimulationStateRequest,
             SetSimulationStateResponse, SimulationState, SimulatorFeatures as F,
             StepSimulationRequest, StepSimulationResponse,
         },
@@ -70,7 +70,7 @@ pub(super) struct Stepping {
 /// Who waits for steps.
 enum Whose {
     /// A client of the service.
-    Client(Asker),
+    Client(RequestId),
     /// A goal of the action.
     Goal(GoalId),
 }
@@ -180,7 +180,7 @@ impl Simulator {
         SetSimulationStateResponse { result }
     }
 
-    fn go_to(&mut self, target: u8, world: &mut World<'_>) -> Told {
+    fn go_to(&mut self, target: u8, world: &mut World<'_>) -> SimResult {
         use SetSimulationStateResponse as R;
         use SimulationState as S;
         let now = self.running.state;
@@ -233,7 +233,7 @@ impl Simulator {
             R::SCOPE_TIME if self.is_monotonic => {
                 let why = "outputs.ros.monotonic_clock is true: time never goes back";
                 return ResetSimulationResponse {
-                    result: failed(Told::RESULT_FEATURE_UNSUPPORTED, why),
+                    result: failed(SimResult::RESULT_FEATURE_UNSUPPORTED, why),
                 };
             }
             scope if scope & !known == 0 => Scope {
@@ -244,13 +244,15 @@ impl Simulator {
             scope => {
                 let why = format!("scope {scope} has bits beyond time 1, state 2 and spawned 4");
                 return ResetSimulationResponse {
-                    result: failed(Told::RESULT_FEATURE_UNSUPPORTED, why),
+                    result: failed(SimResult::RESULT_FEATURE_UNSUPPORTED, why),
                 };
             }
         };
         if self.running.stepping.is_some() {
             let why = "steps are being made: wait for them, cancel them, or stop";
-            return ResetSimulationResponse { result: failed(Told::RESULT_INCORRECT_STATE, why) };
+            return ResetSimulationResponse {
+                result: failed(SimResult::RESULT_INCORRECT_STATE, why),
+            };
         }
         let scope = Scope { time: scope.time && !self.is_monotonic, ..scope };
         let result = match self.change(&Change::Reset(scope), world) {
@@ -260,8 +262,8 @@ impl Simulator {
                 }
                 ok()
             }
-            Err(error @ ChangeRefused::NoScene) => failed(Told::RESULT_INCORRECT_STATE, error),
-            Err(error) => failed(Told::RESULT_OPERATION_FAILED, error),
+            Err(error @ ChangeRefused::NoScene) => failed(SimResult::RESULT_INCORRECT_STATE, error),
+            Err(error) => failed(SimResult::RESULT_OPERATION_FAILED, error),
         };
         ResetSimulationResponse { result }
     }
@@ -269,11 +271,11 @@ impl Simulator {
     pub(super) fn step_simulation(
         &mut self,
         body: &Cdr,
-        asker: &Asker,
+        asker: &RequestId,
     ) -> Result<Option<Cdr>, Unreadable> {
         let StepSimulationRequest { steps } = body.read()?;
         let result = match self.running.is_ready_to_step() {
-            Err(why) => failed(Told::RESULT_OPERATION_FAILED, why),
+            Err(why) => failed(SimResult::RESULT_OPERATION_FAILED, why),
             Ok(()) if steps == 0 => ok(),
             Ok(()) => {
                 let whose = Whose::Client(asker.clone());
@@ -322,7 +324,7 @@ impl Simulator {
     pub(super) fn end_steps(&mut self, why: &str) {
         let Some(stepping) = self.running.stepping.take() else { return };
         let why = format!("{why} after {} steps, {} were left", stepping.done, stepping.left);
-        let result = failed(Told::RESULT_OPERATION_FAILED, why);
+        let result = failed(SimResult::RESULT_OPERATION_FAILED, why);
         match stepping.whose {
             Whose::Client(asker) => self.send_answer(asker, &StepSimulationResponse { result }),
             Whose::Goal(goal) => self.abort_goal(goal, result),

@@ -1,7 +1,7 @@
 //! The closed list of questions, with the names and types of their services.
 
 use crate::{
-    io::server::{Channel, Offer},
+    io::server::{ServiceSpec, TopicSpec},
     wire::messages::{
         ActionType, RosAction, RosService, ServiceType,
         action_msgs::srv::CancelGoal,
@@ -27,7 +27,7 @@ use crate::{
 /// What may be asked by a service of its own.
 #[expect(missing_docs, reason = "named after the services of simulation_interfaces")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Ask {
+pub enum Service {
     GetSimulatorFeatures,
     GetSimulationState,
     SetSimulationState,
@@ -73,9 +73,9 @@ pub enum Action {
 
 /// What a service is asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Asked {
+pub enum Endpoint {
     /// A question of its own.
-    Service(Ask),
+    Service(Service),
     /// An action's hidden service that takes goals.
     SendGoal(Action),
     /// An action's hidden service that cancels goals.
@@ -85,37 +85,37 @@ pub enum Asked {
 }
 
 /// Name below the node, type.
-const ASKS: [(Ask, &str, ServiceType); 30] = [
-    (Ask::GetSimulatorFeatures, "get_simulator_features", GetSimulatorFeatures::TYPE),
-    (Ask::GetSimulationState, "get_simulation_state", GetSimulationState::TYPE),
-    (Ask::SetSimulationState, "set_simulation_state", SetSimulationState::TYPE),
-    (Ask::ResetSimulation, "reset_simulation", ResetSimulation::TYPE),
-    (Ask::StepSimulation, "step_simulation", StepSimulation::TYPE),
-    (Ask::GetEntities, "get_entities", GetEntities::TYPE),
-    (Ask::GetEntitiesStates, "get_entities_states", GetEntitiesStates::TYPE),
-    (Ask::GetEntityState, "get_entity_state", GetEntityState::TYPE),
-    (Ask::SetEntityState, "set_entity_state", SetEntityState::TYPE),
-    (Ask::GetEntityInfo, "get_entity_info", GetEntityInfo::TYPE),
-    (Ask::SetEntityInfo, "set_entity_info", SetEntityInfo::TYPE),
-    (Ask::GetEntityBounds, "get_entity_bounds", GetEntityBounds::TYPE),
-    (Ask::SpawnEntity, "spawn_entity", SpawnEntity::TYPE),
-    (Ask::SpawnEntities, "spawn_entities", SpawnEntities::TYPE),
-    (Ask::DeleteEntity, "delete_entity", DeleteEntity::TYPE),
-    (Ask::GetSpawnables, "get_spawnables", GetSpawnables::TYPE),
-    (Ask::GetNamedPoses, "get_named_poses", GetNamedPoses::TYPE),
-    (Ask::GetNamedPoseBounds, "get_named_pose_bounds", GetNamedPoseBounds::TYPE),
-    (Ask::LoadWorld, "load_world", LoadWorld::TYPE),
-    (Ask::UnloadWorld, "unload_world", UnloadWorld::TYPE),
-    (Ask::GetCurrentWorld, "get_current_world", GetCurrentWorld::TYPE),
-    (Ask::GetAvailableWorlds, "get_available_worlds", GetAvailableWorlds::TYPE),
-    (Ask::GripCommand, "grip_cmd", SetBool::TYPE),
-    (Ask::ZeroForceSensor, "zero_ftsensor", Trigger::TYPE),
-    (Ask::DescribeParameters, "describe_parameters", DescribeParameters::TYPE),
-    (Ask::GetParameters, "get_parameters", GetParameters::TYPE),
-    (Ask::GetParameterTypes, "get_parameter_types", GetParameterTypes::TYPE),
-    (Ask::ListParameters, "list_parameters", ListParameters::TYPE),
-    (Ask::SetParameters, "set_parameters", SetParameters::TYPE),
-    (Ask::SetParametersAtomically, "set_parameters_atomically", SetParametersAtomically::TYPE),
+const SERVICES: [(Service, &str, ServiceType); 30] = [
+    (Service::GetSimulatorFeatures, "get_simulator_features", GetSimulatorFeatures::TYPE),
+    (Service::GetSimulationState, "get_simulation_state", GetSimulationState::TYPE),
+    (Service::SetSimulationState, "set_simulation_state", SetSimulationState::TYPE),
+    (Service::ResetSimulation, "reset_simulation", ResetSimulation::TYPE),
+    (Service::StepSimulation, "step_simulation", StepSimulation::TYPE),
+    (Service::GetEntities, "get_entities", GetEntities::TYPE),
+    (Service::GetEntitiesStates, "get_entities_states", GetEntitiesStates::TYPE),
+    (Service::GetEntityState, "get_entity_state", GetEntityState::TYPE),
+    (Service::SetEntityState, "set_entity_state", SetEntityState::TYPE),
+    (Service::GetEntityInfo, "get_entity_info", GetEntityInfo::TYPE),
+    (Service::SetEntityInfo, "set_entity_info", SetEntityInfo::TYPE),
+    (Service::GetEntityBounds, "get_entity_bounds", GetEntityBounds::TYPE),
+    (Service::SpawnEntity, "spawn_entity", SpawnEntity::TYPE),
+    (Service::SpawnEntities, "spawn_entities", SpawnEntities::TYPE),
+    (Service::DeleteEntity, "delete_entity", DeleteEntity::TYPE),
+    (Service::GetSpawnables, "get_spawnables", GetSpawnables::TYPE),
+    (Service::GetNamedPoses, "get_named_poses", GetNamedPoses::TYPE),
+    (Service::GetNamedPoseBounds, "get_named_pose_bounds", GetNamedPoseBounds::TYPE),
+    (Service::LoadWorld, "load_world", LoadWorld::TYPE),
+    (Service::UnloadWorld, "unload_world", UnloadWorld::TYPE),
+    (Service::GetCurrentWorld, "get_current_world", GetCurrentWorld::TYPE),
+    (Service::GetAvailableWorlds, "get_available_worlds", GetAvailableWorlds::TYPE),
+    (Service::GripCommand, "grip_cmd", SetBool::TYPE),
+    (Service::ZeroForceSensor, "zero_ftsensor", Trigger::TYPE),
+    (Service::DescribeParameters, "describe_parameters", DescribeParameters::TYPE),
+    (Service::GetParameters, "get_parameters", GetParameters::TYPE),
+    (Service::GetParameterTypes, "get_parameter_types", GetParameterTypes::TYPE),
+    (Service::ListParameters, "list_parameters", ListParameters::TYPE),
+    (Service::SetParameters, "set_parameters", SetParameters::TYPE),
+    (Service::SetParametersAtomically, "set_parameters_atomically", SetParametersAtomically::TYPE),
 ];
 
 const ACTIONS: [(Action, &str, ActionType); 3] = [
@@ -124,11 +124,11 @@ const ACTIONS: [(Action, &str, ActionType); 3] = [
     (Action::ParallelGripper, "parallel_gripper_cmd", ParallelGripperCommand::TYPE),
 ];
 
-impl Asked {
+impl Endpoint {
     /// For messages to people.
     pub fn name(self) -> &'static str {
         match self {
-            Self::Service(ask) => ASKS.iter().find(|it| it.0 == ask).map_or("", |it| it.1),
+            Self::Service(ask) => SERVICES.iter().find(|it| it.0 == ask).map_or("", |it| it.1),
             Self::SendGoal(action) | Self::CancelGoal(action) | Self::GetResult(action) => {
                 ACTIONS.iter().find(|it| it.0 == action).map_or("", |it| it.1)
             }
@@ -137,49 +137,49 @@ impl Asked {
 }
 
 /// All services below `node` and, if there is one, below `prefix` too; and what each is asked for.
-pub fn asked(node: &str, prefix: Option<&str>) -> (Vec<Offer>, Vec<Asked>) {
+pub fn asked(node: &str, prefix: Option<&str>) -> (Vec<ServiceSpec>, Vec<Endpoint>) {
     let mut offers = Vec::new();
     let mut asked = Vec::new();
     let mut offer = |name: String, service_type, what| {
-        offers.push(Offer { name, service_type });
+        offers.push(ServiceSpec { name, service_type });
         asked.push(what);
     };
     for place in std::iter::once(node).chain(prefix) {
         let is_standard = |service_type: &ServiceType| {
             place == node || service_type.name.starts_with("simulation_interfaces/")
         };
-        for (ask, name, service_type) in ASKS.into_iter().filter(|it| is_standard(&it.2)) {
-            offer(format!("{place}/{name}"), service_type, Asked::Service(ask));
+        for (ask, name, service_type) in SERVICES.into_iter().filter(|it| is_standard(&it.2)) {
+            offer(format!("{place}/{name}"), service_type, Endpoint::Service(ask));
         }
         for (action, name, of) in ACTIONS {
             let hidden = format!("{place}/{name}/_action");
-            offer(format!("{hidden}/send_goal"), of.send_goal, Asked::SendGoal(action));
-            offer(format!("{hidden}/cancel_goal"), CancelGoal::TYPE, Asked::CancelGoal(action));
-            offer(format!("{hidden}/get_result"), of.get_result, Asked::GetResult(action));
+            offer(format!("{hidden}/send_goal"), of.send_goal, Endpoint::SendGoal(action));
+            offer(format!("{hidden}/cancel_goal"), CancelGoal::TYPE, Endpoint::CancelGoal(action));
+            offer(format!("{hidden}/get_result"), of.get_result, Endpoint::GetResult(action));
         }
     }
     (offers, asked)
 }
 
 /// Feedback and status of all actions, in this order, below each place; last, changed parameters.
-pub fn channels(node: &str, prefix: Option<&str>) -> Vec<Channel> {
+pub fn channels(node: &str, prefix: Option<&str>) -> Vec<TopicSpec> {
     let mut channels = Vec::new();
     for place in std::iter::once(node).chain(prefix) {
         for (_, name, of) in ACTIONS {
             let hidden = format!("{place}/{name}/_action");
-            channels.push(Channel {
+            channels.push(TopicSpec {
                 name: format!("{hidden}/feedback"),
                 dds_name: of.feedback_dds_name.to_owned(),
                 is_latched: false,
             });
-            channels.push(Channel {
+            channels.push(TopicSpec {
                 name: format!("{hidden}/status"),
                 dds_name: "action_msgs::msg::dds_::GoalStatusArray_".to_owned(),
                 is_latched: true,
             });
         }
     }
-    channels.push(Channel {
+    channels.push(TopicSpec {
         name: "/parameter_events".to_owned(),
         dds_name: "rcl_interfaces::msg::dds_::ParameterEvent_".to_owned(),
         is_latched: false,

@@ -19,7 +19,7 @@ use crate::{
         cdr::Cdr,
         messages::simulation_interfaces::{
             DeleteEntityRequest, DeleteEntityResponse, EntityCategory, EntityInfo,
-            GetSpawnablesRequest, GetSpawnablesResponse, Resource, Result as Told,
+            GetSpawnablesRequest, GetSpawnablesResponse, Resource, Result as SimResult,
             SpawnEntitiesRequest, SpawnEntitiesResponse, SpawnEntity, SpawnEntityRequest,
             SpawnEntityResponse, SpawnResult, Spawnable,
         },
@@ -57,7 +57,7 @@ impl Simulator {
     ) -> SpawnEntitiesResponse {
         let spawn = |it: &SpawnEntity| self.spawn(it, world);
         let results: Vec<SpawnResult> = request.spawn_requests.iter().map(spawn).collect();
-        let n_failed = results.iter().filter(|it| it.result.result != Told::RESULT_OK).count();
+        let n_failed = results.iter().filter(|it| it.result.result != SimResult::RESULT_OK).count();
         let result = match n_failed {
             0 => ok(),
             _ => failed(
@@ -75,13 +75,17 @@ impl Simulator {
         }
     }
 
-    fn try_spawn(&mut self, request: &SpawnEntity, world: &mut World<'_>) -> Result<String, Told> {
+    fn try_spawn(
+        &mut self,
+        request: &SpawnEntity,
+        world: &mut World<'_>,
+    ) -> Result<String, SimResult> {
         if !self.has_world() {
-            return Err(failed(Told::RESULT_INCORRECT_STATE, ChangeRefused::NoScene));
+            return Err(failed(SimResult::RESULT_INCORRECT_STATE, ChangeRefused::NoScene));
         }
         if OBJECTS_MAX <= world.seen.objects.len() {
             let why = format!("there are {OBJECTS_MAX} objects already");
-            return Err(failed(Told::RESULT_OPERATION_FAILED, why));
+            return Err(failed(SimResult::RESULT_OPERATION_FAILED, why));
         }
         let Resource { uri, resource_string } = &request.entity_resource;
         let found = resource::object(uri, resource_string, &self.folder);
@@ -94,7 +98,7 @@ impl Simulator {
                 ChangeRefused::NameTaken { .. } => SpawnResult::NAME_NOT_UNIQUE,
                 ChangeRefused::Overlap { .. } => SpawnResult::INVALID_POSE,
                 ChangeRefused::Unusable(_) => SpawnResult::UNSUPPORTED_ASSETS,
-                _ => Told::RESULT_OPERATION_FAILED,
+                _ => SimResult::RESULT_OPERATION_FAILED,
             };
             failed(code, refusal)
         })?;
@@ -108,7 +112,12 @@ impl Simulator {
     }
 
     /// The name that an entity gets: unique, and good for frames.
-    fn name(&self, request: &SpawnEntity, own: &str, world: &World<'_>) -> Result<String, Told> {
+    fn name(
+        &self,
+        request: &SpawnEntity,
+        own: &str,
+        world: &World<'_>,
+    ) -> Result<String, SimResult> {
         let namespace = request.entity_namespace.trim_matches('/');
         if !namespace.is_empty() && !namespace.split('/').all(is_word) {
             let why = format!("`{namespace}` is no namespace of ROS 2");
@@ -148,7 +157,7 @@ impl Simulator {
         object: &mut Object,
         request: &SpawnEntity,
         world: &World<'_>,
-    ) -> Result<(), Told> {
+    ) -> Result<(), SimResult> {
         let invalid = |why: String| failed(SpawnResult::INVALID_POSE, why);
         let frame = self.frame(&request.initial_pose.header.frame_id, world).map_err(invalid)?;
         let pose = frame * read_pose(&request.initial_pose.pose).map_err(invalid)?;
@@ -166,15 +175,17 @@ impl Simulator {
     ) -> DeleteEntityResponse {
         let name = &request.entity;
         let result = if [FLANGE, BAG, TABLE].contains(&name.as_str()) {
-            failed(Told::RESULT_OPERATION_FAILED, format!("`{name}` belongs to the world"))
+            failed(SimResult::RESULT_OPERATION_FAILED, format!("`{name}` belongs to the world"))
         } else {
             match self.change(&Change::Remove { object: name.clone() }, world) {
                 Ok(()) => ok(),
                 Err(refusal @ ChangeRefused::UnknownObject { .. }) => {
-                    failed(Told::RESULT_NOT_FOUND, refusal)
+                    failed(SimResult::RESULT_NOT_FOUND, refusal)
                 }
-                Err(refusal @ ChangeRefused::NoScene) => failed(Told::RESULT_NOT_FOUND, refusal),
-                Err(refusal) => failed(Told::RESULT_OPERATION_FAILED, refusal),
+                Err(refusal @ ChangeRefused::NoScene) => {
+                    failed(SimResult::RESULT_NOT_FOUND, refusal)
+                }
+                Err(refusal) => failed(SimResult::RESULT_OPERATION_FAILED, refusal),
             }
         };
         DeleteEntityResponse { result }
@@ -203,7 +214,7 @@ impl Simulator {
                 Some(folder) => folders.push(folder),
                 None => {
                     let why = format!("source `{source}` is no folder");
-                    let result = failed(Told::RESULT_NOT_FOUND, why);
+                    let result = failed(SimResult::RESULT_NOT_FOUND, why);
                     return GetSpawnablesResponse { result, ..Default::default() };
                 }
             }

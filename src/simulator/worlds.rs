@@ -9,7 +9,7 @@ use super::{
 };
 use crate::{
     command::change::{Change, SettledScene},
-    io::server::Asker,
+    io::server::RequestId,
     scene::{
         self, Controller, Scene,
         resource::{self, ResourceFault, Shelf},
@@ -18,7 +18,7 @@ use crate::{
         cdr::Cdr,
         messages::simulation_interfaces::{
             GetAvailableWorldsRequest, GetAvailableWorldsResponse, GetCurrentWorldResponse,
-            LoadWorldRequest, LoadWorldResponse as Loaded, Resource, Result as Told,
+            LoadWorldRequest, LoadWorldResponse as Loaded, Resource, Result as SimResult,
             UnloadWorldResponse, WorldResource,
         },
     },
@@ -26,7 +26,7 @@ use crate::{
 
 /// A scene on its way.
 pub(super) struct Loading {
-    asker: Asker,
+    asker: RequestId,
     scene: Scene,
     /// Where it is from, as told.
     resource: Resource,
@@ -38,13 +38,13 @@ impl Simulator {
     pub(super) fn load_world(
         &mut self,
         body: &Cdr,
-        asker: &Asker,
+        asker: &RequestId,
     ) -> Result<Option<Cdr>, Unreadable> {
         let request: LoadWorldRequest = body.read()?;
         let refused = |result| Ok(Some(Cdr::of(&Loaded { result, ..Loaded::default() })));
         if self.loading.is_some() {
             let why = "a world is being loaded already: wait for it";
-            return refused(failed(Told::RESULT_INCORRECT_STATE, why));
+            return refused(failed(SimResult::RESULT_INCORRECT_STATE, why));
         }
         let (scene, resource) = match self.find_world(request) {
             Ok(found) => found,
@@ -58,7 +58,7 @@ impl Simulator {
     }
 
     /// The scene that a request means, as this run can have it.
-    fn find_world(&self, request: LoadWorldRequest) -> Result<(Scene, Resource), Told> {
+    fn find_world(&self, request: LoadWorldRequest) -> Result<(Scene, Resource), SimResult> {
         let Resource { uri, resource_string } = &request.world_resource;
         let ignores = request.ignore_missing_or_unsupported_assets;
         let found = resource::scene(uri, resource_string, &self.folder, ignores);
@@ -111,7 +111,7 @@ impl Simulator {
             }
             Err(why) => {
                 self.running.give_up_loading(before);
-                let result = failed(Told::RESULT_OPERATION_FAILED, why);
+                let result = failed(SimResult::RESULT_OPERATION_FAILED, why);
                 Loaded { result, ..Loaded::default() }
             }
         };
@@ -130,7 +130,7 @@ impl Simulator {
 
     pub(super) fn unload_world(&mut self) -> UnloadWorldResponse {
         let result = if self.loading.is_some() {
-            failed(Told::RESULT_INCORRECT_STATE, "a world is being loaded: wait for it")
+            failed(SimResult::RESULT_INCORRECT_STATE, "a world is being loaded: wait for it")
         } else if !self.has_world() {
             failed(UnloadWorldResponse::NO_WORLD_LOADED, "no world is loaded")
         } else {
@@ -171,7 +171,7 @@ impl Simulator {
                 None if request.continue_on_error => {}
                 None => {
                     let why = format!("source `{source}` is no folder");
-                    let result = failed(Told::RESULT_NOT_FOUND, why);
+                    let result = failed(SimResult::RESULT_NOT_FOUND, why);
                     return GetAvailableWorldsResponse { result, ..Default::default() };
                 }
             }

@@ -30,7 +30,7 @@ pub fn snapshot(session: &Session, parts: Parts) -> Snapshot {
         contact_wrench: in_flange_axes(&means.objects_on_gripper),
         mount_wrench: session.sensor(),
         chamber: ChamberSnapshot {
-            gauge_setpoint: session.desk().gauge_setpoint(),
+            gauge_setpoint: session.processor().gauge_setpoint(),
             gauge: state.gauge,
             ambient: session.scene().chamber.ambient,
             volume: measure::enclosed_volume(&coupled.model, state),
@@ -45,7 +45,7 @@ pub fn snapshot(session: &Session, parts: Parts) -> Snapshot {
         }),
         contacts: parts.contacts.then(|| contacts(coupled)),
         commands: session.records().to_vec(),
-        command_counts: session.desk().counts(),
+        command_counts: session.processor().counts(),
         digest: session.digest(),
     }
 }
@@ -75,7 +75,7 @@ fn objects(session: &Session) -> Vec<ObjectSnapshot> {
             body: BodySnapshot { pose: motion.pose, twist: motion.twist },
             contact_wrench: means.contacts_on_objects[i],
             membrane_wrench: means.membrane_on_objects[i],
-            is_driven: session.desk().is_driven(i),
+            is_driven: session.processor().is_driven(i),
         }
     };
     session.scene().objects.iter().enumerate().map(of_object).collect()

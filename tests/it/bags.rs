@@ -30,7 +30,7 @@ const DIGEST: u64 = 1000_u64.wrapping_mul(0x9e37_79b9_7f4a_7c15);
 fn subject() -> Subject {
     Subject {
         scene_text: SCENE_TEXT.to_owned(),
-        scene_files: vec![("knob.obj".to_owned(), b"v 0 0 0\n".to_vec())],
+        scene_files: vec![("parameter.obj".to_owned(), b"v 0 0 0\n".to_vec())],
         facts: vec![("seed", "7".to_owned())],
         format: Format::default(),
     }
@@ -159,7 +159,7 @@ fn other_libraries_read_every_topic() {
     assert!(mcap["library"].as_str().unwrap().starts_with("jamgrip "));
     assert_eq!(mcap["compressions"], serde_json::json!(["zstd"]));
     assert_eq!(mcap["attachments"]["scene.yaml"], SCENE_TEXT);
-    assert_eq!(mcap["attachments"]["scene_file/knob.obj"], "v 0 0 0\n");
+    assert_eq!(mcap["attachments"]["scene_file/parameter.obj"], "v 0 0 0\n");
     assert_eq!(mcap["metadata"]["jamgrip"]["seed"], "7");
     assert_eq!(mcap["metadata"]["jamgrip_end"]["state_digest"], format!("{DIGEST:016x}"));
     let whole = mcap["metadata"]["rosbag2"]["serialized_metadata"].as_str().unwrap();

@@ -14,8 +14,8 @@ use jamgrip::{
     host::shutdown::Shutdown,
     io::sink::Sink,
     replay::{
-        play::{Options, Played, Stage, play},
-        player_command::{Asked, Cue},
+        play::{Options, Played, PlayerOutput, play},
+        player_command::{Asked, PlayerCommand},
     },
 };
 
@@ -41,7 +41,7 @@ fn record(folder: &Path) -> Vec<PathBuf> {
 struct Memory {
     published: Vec<(String, u64, Instant)>,
     clock: Vec<u64>,
-    cues: Vec<(usize, Cue)>,
+    cues: Vec<(usize, PlayerCommand)>,
     teller: Option<Sender<Asked>>,
 }
 
@@ -50,7 +50,7 @@ fn now() -> Instant {
     Instant::now()
 }
 
-impl Stage for Memory {
+impl PlayerOutput for Memory {
     fn open(&mut self, channel: &Channel) -> bool {
         channel.topic != "/jamgrip/grains"
     }
@@ -82,7 +82,11 @@ fn options() -> Options {
     }
 }
 
-fn run(files: &[PathBuf], options: &Options, cues: Vec<(usize, Cue)>) -> (Played, Memory) {
+fn run(
+    files: &[PathBuf],
+    options: &Options,
+    cues: Vec<(usize, PlayerCommand)>,
+) -> (Played, Memory) {
     let (teller, listener) = mpsc::channel();
     let mut stage = Memory { cues, teller: Some(teller), ..Memory::default() };
     let played = play(files, options, &mut stage, &listener, &Shutdown::default()).unwrap();
@@ -151,13 +155,13 @@ fn it_is_wound_stepped_looped_and_ended_by_cues() {
     // After 10 messages back to 5 ms; two steps while it stands still; then to 399 ms, around the
     // end, and out.
     let cues = vec![
-        (10, Cue::Seek(ms(5))),
-        (11, Cue::Next),
-        (12, Cue::Next),
-        (13, Cue::Seek(ms(399))),
-        (13, Cue::Resume),
-        (13, Cue::Rate(50.0)),
-        (15, Cue::Quit),
+        (10, PlayerCommand::Seek(ms(5))),
+        (11, PlayerCommand::Next),
+        (12, PlayerCommand::Next),
+        (13, PlayerCommand::Seek(ms(399))),
+        (13, PlayerCommand::Resume),
+        (13, PlayerCommand::Rate(50.0)),
+        (15, PlayerCommand::Quit),
     ];
     let (_, stage) = run(&files, &only_clock, cues);
     // Oracle: counting by hand. Each cue is heard before the next message.
@@ -205,13 +209,13 @@ fn who_asks_is_told_when_it_is_done() {
     let (teller, listener) = mpsc::channel();
     let ask = |cue| {
         let (reply, answer) = mpsc::channel();
-        teller.send(Asked { cue, reply: Some(reply) }).unwrap();
+        teller.send(Asked { command: cue, reply: Some(reply) }).unwrap();
         answer
     };
-    let (look, five) = (ask(Cue::Look), ask(Cue::Burst(5)));
-    let nowhere = ask(Cue::SeekTo(401_000_000));
-    let (rate, there) = (ask(Cue::Rate(3.0)), ask(Cue::SeekTo(399_000_000)));
-    let (rest, end) = (ask(Cue::Burst(0)), ask(Cue::Resume));
+    let (look, five) = (ask(PlayerCommand::Look), ask(PlayerCommand::Burst(5)));
+    let nowhere = ask(PlayerCommand::SeekTo(401_000_000));
+    let (rate, there) = (ask(PlayerCommand::Rate(3.0)), ask(PlayerCommand::SeekTo(399_000_000)));
+    let (rest, end) = (ask(PlayerCommand::Burst(0)), ask(PlayerCommand::Resume));
     let mut stage = Memory::default();
     play(&files, &only_clock, &mut stage, &listener, &Shutdown::default()).unwrap();
     let look = look.recv().unwrap();
@@ -229,11 +233,11 @@ fn who_asks_is_told_when_it_is_done() {
 
 #[test]
 fn cues_are_read_and_refused() {
-    assert_eq!(Cue::parse("seek 1.5s\n"), Ok(Cue::Seek(1_500_000_000)));
-    assert_eq!(Cue::parse("rate 0.5"), Ok(Cue::Rate(0.5)));
-    assert_eq!(Cue::parse(""), Ok(Cue::Toggle));
+    assert_eq!(PlayerCommand::parse("seek 1.5s\n"), Ok(PlayerCommand::Seek(1_500_000_000)));
+    assert_eq!(PlayerCommand::parse("rate 0.5"), Ok(PlayerCommand::Rate(0.5)));
+    assert_eq!(PlayerCommand::parse(""), Ok(PlayerCommand::Toggle));
     for wrong in ["seek", "seek -1s", "seek 3", "rate 0", "rate fast", "stop"] {
-        assert!(Cue::parse(wrong).is_err(), "{wrong}");
+        assert!(PlayerCommand::parse(wrong).is_err(), "{wrong}");
     }
 }
 
@@ -242,7 +246,7 @@ fn cues_are_read_and_refused() {
 #[test]
 fn a_played_recording_reaches_a_subscriber() {
     use jamgrip::{
-        replay::player_node::RosStage,
+        replay::player_node::RosPlayerNode,
         ros::node::RosNode,
         wire::{
             messages::{geometry_msgs::WrenchStamped, rosgraph_msgs::Clock, tf2_msgs::TFMessage},
@@ -261,7 +265,7 @@ fn a_played_recording_reaches_a_subscriber() {
         let there = RosNode::join_as("listener", &reach()).unwrap();
         let wrench = there.subscription::<WrenchStamped>(&topic("/jamgrip/wrench")).unwrap();
         let clock = there.subscription::<Clock>(&topic("/clock")).unwrap();
-        let mut stage = RosStage::join(&reach(), true).unwrap();
+        let mut stage = RosPlayerNode::join(&reach(), true).unwrap();
         let options = Options {
             rate: 1.0,
             delay: Duration::from_secs(2),
@@ -363,7 +367,7 @@ impl Someone {
 #[test]
 fn services_pause_wind_and_step_it() {
     use jamgrip::{
-        replay::player_node::RosStage,
+        replay::player_node::RosPlayerNode,
         wire::messages::{
             builtin_interfaces::Time,
             rosbag2_interfaces::{
@@ -382,7 +386,7 @@ fn services_pause_wind_and_step_it() {
         let files = record(folder.path());
         let mut someone = Someone::join();
         let player = std::thread::spawn(move || {
-            let stage = RosStage::join(&reach(), false).unwrap();
+            let stage = RosPlayerNode::join(&reach(), false).unwrap();
             let (teller, listener) = mpsc::channel();
             let _prompter = stage.prompted(teller).unwrap();
             let only_clock =

@@ -159,7 +159,7 @@ fn a_loaded_scene_runs_as_if_it_had_been_the_first() {
     session.change(&Change::from_bytes(&load.to_bytes()).unwrap()).unwrap();
     assert_eq!((session.digest(), session.time_ns(), session.run_tick().0), (start, 0, 10));
     assert_eq!(run(&mut session, 30), expected);
-    assert_eq!(session.desk().counts().n_applied + session.desk().counts().n_limited, 80);
+    assert_eq!(session.processor().counts().n_applied + session.processor().counts().n_limited, 80);
     assert!(session.save().is_none(), "a checkpoint would be taken for the first scene's");
     session.change(&Change::Reset(Scope::ALL)).unwrap();
     assert_eq!(run(&mut session, 30), expected);

@@ -167,7 +167,7 @@ fn a_run_taken_up_anywhere_goes_on_with_the_same_bits() {
             let expected = digests[tick + 1];
             assert_eq!(resumed.digest(), expected, "from tick {start}, after tick {tick}");
         }
-        assert_eq!(resumed.desk().counts(), session.desk().counts());
+        assert_eq!(resumed.processor().counts(), session.processor().counts());
     }
 }
 

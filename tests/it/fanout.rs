@@ -17,7 +17,7 @@ use jamgrip::io::{
 use crate::synthetic;
 
 /// Longer than anything here takes; only a fault makes a test wait so long.
-const PATIENCE: Duration = Duration::from_secs(60);
+const TIMEOUT: Duration = Duration::from_secs(60);
 
 type Outcome = Result<(), Box<dyn Error + Send + Sync>>;
 
@@ -91,7 +91,7 @@ fn gate() -> (impl FnMut(u64) -> Outcome + Send, Receiver<u64>, Sender<()>) {
 fn every_packet_arrives_in_order() {
     let (fanout, seen) = start(Delivery::Every { depth: 4 }, |_| Ok(()));
     publish(&fanout, 1..=500);
-    let (ends, faults) = fanout.close(PATIENCE);
+    let (ends, faults) = fanout.close(TIMEOUT);
     // Oracle: what was published; `Every` may drop nothing.
     assert_eq!(seen.ticks(), (1..=500).collect::<Vec<u64>>());
     assert!(ends[0].is_closed && faults.is_empty());
@@ -104,12 +104,12 @@ fn a_slow_sink_gets_the_latest_and_drops_are_counted() {
     let (at_write, at_gate, open) = gate();
     let (fanout, seen) = start(Delivery::Latest { depth: 3 }, at_write);
     publish(&fanout, 1..=1);
-    assert_eq!(at_gate.recv_timeout(PATIENCE), Ok(1), "the sink works on tick 1");
+    assert_eq!(at_gate.recv_timeout(TIMEOUT), Ok(1), "the sink works on tick 1");
     // This returns although the sink stands still: physics is never slowed.
     publish(&fanout, 2..=10);
     assert_eq!(fanout.counters()[0].n_dropped, 6);
     (0..4).for_each(|_| open.send(()).unwrap());
-    let (ends, _) = fanout.close(PATIENCE);
+    let (ends, _) = fanout.close(TIMEOUT);
     // Oracle: the packet in hand, then the three latest of those that came meanwhile.
     assert_eq!(seen.ticks(), [1, 8, 9, 10]);
     let counters = &ends[0].counters;
@@ -126,12 +126,12 @@ fn a_full_queue_of_every_makes_the_run_wait() {
             fanout.publish(&synthetic::packet(tick));
             said.send(tick).unwrap();
         }
-        fanout.close(PATIENCE)
+        fanout.close(TIMEOUT)
     });
-    assert_eq!(at_gate.recv_timeout(PATIENCE), Ok(1));
+    assert_eq!(at_gate.recv_timeout(TIMEOUT), Ok(1));
     // One packet is in hand and two are queued; the fourth waits until the gate opens.
     for tick in 1..=3 {
-        assert_eq!(published.recv_timeout(PATIENCE), Ok(tick));
+        assert_eq!(published.recv_timeout(TIMEOUT), Ok(tick));
     }
     assert!(published.try_recv().is_err(), "the fourth packet must wait");
     (0..6).for_each(|_| open.send(()).unwrap());
@@ -145,7 +145,7 @@ fn a_failing_sink_is_counted_and_goes_on() {
     let at_write = |tick| if tick % 2 == 0 { Err("disk on fire".into()) } else { Ok(()) };
     let (fanout, seen) = start(Delivery::Every { depth: 8 }, at_write);
     publish(&fanout, 1..=10);
-    let (ends, faults) = fanout.close(PATIENCE);
+    let (ends, faults) = fanout.close(TIMEOUT);
     assert_eq!(seen.ticks(), [1, 3, 5, 7, 9]);
     let counters = &ends[0].counters;
     assert_eq!((counters.n_written, counters.n_failed), (5, 5));
@@ -166,7 +166,7 @@ fn a_sink_that_panics_is_out_and_the_others_go_on() {
     fanout.add(Box::new(sink), Delivery::Every { depth: 2 }).unwrap();
     // `Every` must not wait for a sink that is gone: this returns.
     publish(&fanout, 1..=20);
-    let (ends, faults) = fanout.close(PATIENCE);
+    let (ends, faults) = fanout.close(TIMEOUT);
     assert_eq!(broken.ticks(), [1, 2]);
     assert_eq!(healthy.ticks().len(), 20);
     assert_eq!((ends[0].counters.n_written, ends[0].counters.n_failed), (2, 18));
@@ -179,7 +179,7 @@ fn a_sink_that_hangs_is_left_behind() {
     let (at_write, at_gate, open) = gate();
     let (fanout, _) = start(Delivery::Latest { depth: 4 }, at_write);
     publish(&fanout, 1..=3);
-    at_gate.recv_timeout(PATIENCE).unwrap();
+    at_gate.recv_timeout(TIMEOUT).unwrap();
     let (ends, faults) = fanout.close(Duration::from_millis(50));
     assert!(!ends[0].is_closed);
     assert!(faults[0].text.contains("left behind with 2 results unwritten"), "{}", faults[0].text);
@@ -193,7 +193,7 @@ fn a_fault_while_closing_is_told() {
     let sink = Memory { seen: Seen::default(), at_write: |_| Ok(()), at_close };
     fanout.add(Box::new(sink), Delivery::Latest { depth: 4 }).unwrap();
     publish(&fanout, 1..=1);
-    let (ends, faults) = fanout.close(PATIENCE);
+    let (ends, faults) = fanout.close(TIMEOUT);
     assert!(ends[0].is_closed);
     assert_eq!(faults[0].text, "no room for the index");
 }
@@ -203,8 +203,8 @@ fn queued_packets_are_written_before_closing() {
     let (at_write, at_gate, open) = gate();
     let (fanout, seen) = start(Delivery::Latest { depth: 8 }, at_write);
     publish(&fanout, 1..=5);
-    at_gate.recv_timeout(PATIENCE).unwrap();
+    at_gate.recv_timeout(TIMEOUT).unwrap();
     (0..5).for_each(|_| open.send(()).unwrap());
-    fanout.close(PATIENCE);
+    fanout.close(TIMEOUT);
     assert_eq!(seen.ticks(), [1, 2, 3, 4, 5]);
 }

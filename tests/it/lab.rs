@@ -12,8 +12,8 @@ use jamgrip::{
     host::shutdown::Shutdown,
     runner::{
         self, Ending, Options, Task,
-        error::LabError,
-        experiment::Order,
+        error::RunnerError,
+        experiment::RunRequest,
         folder::Policy,
         outcome::Outcome,
         report,
@@ -29,7 +29,7 @@ fn run(
     out: Option<&Path>,
     n_threads: usize,
     policy: Policy,
-) -> Result<Ending, LabError> {
+) -> Result<Ending, RunnerError> {
     run_changed(experiment, out, n_threads, policy, &[])
 }
 
@@ -39,15 +39,15 @@ fn run_changed(
     n_threads: usize,
     policy: Policy,
     overrides: &[&str],
-) -> Result<Ending, LabError> {
+) -> Result<Ending, RunnerError> {
     let shutdown = experiment.stop.as_ref().map_or_else(Shutdown::default, |it| it.0.clone());
     let overrides = overrides.iter().map(|it| (*it).to_owned()).collect();
-    let order = Order { experiment, size: Size::Quick, overrides, scene: None };
+    let order = RunRequest { experiment, size: Size::Quick, overrides, scene: None };
     let tasks = [Task { order, out: out.map(Path::to_owned) }];
     runner::run(&tasks, &Options { n_threads, is_quiet: true, policy, shutdown: &shutdown })
 }
 
-fn outcome(ending: Result<Ending, LabError>) -> Outcome {
+fn outcome(ending: Result<Ending, RunnerError>) -> Outcome {
     match ending.unwrap() {
         Ending::Finished(mut outcomes) => outcomes.remove(0),
         Ending::Interrupted { .. } => panic!("nobody asked for an end"),
@@ -82,7 +82,7 @@ fn cases_side_by_side_give_what_one_after_the_other_gives() {
 fn experiments_share_one_queue_and_keep_their_order() {
     let experiments = [with(&["growing"]), with(&[])];
     let task = |experiment| {
-        let order = Order { experiment, size: Size::Full, overrides: Vec::new(), scene: None };
+        let order = RunRequest { experiment, size: Size::Full, overrides: Vec::new(), scene: None };
         Task { order, out: None }
     };
     let tasks = [task(&experiments[0]), task(&experiments[1])];
@@ -105,8 +105,10 @@ fn a_scene_file_takes_the_place_of_the_scene_that_comes_along() {
     let run_mine = || {
         let scene = Some(file.clone());
         let (size, overrides) = (Size::Quick, Vec::new());
-        let tasks =
-            [Task { order: Order { experiment: &experiment, size, overrides, scene }, out: None }];
+        let tasks = [Task {
+            order: RunRequest { experiment: &experiment, size, overrides, scene },
+            out: None,
+        }];
         let shutdown = Shutdown::default();
         let policy = Policy::default();
         runner::run(&tasks, &Options { n_threads: 1, is_quiet: true, policy, shutdown: &shutdown })
@@ -206,7 +208,7 @@ fn a_folder_of_something_else_is_refused() {
     let foreign = tempfile::tempdir().unwrap();
     fs::write(foreign.path().join("mine.txt"), "mine").unwrap();
     let error = run(&with(&[]), Some(foreign.path()), 2, Policy::default()).unwrap_err();
-    assert!(matches!(error, LabError::Foreign { .. }), "{error}");
+    assert!(matches!(error, RunnerError::Foreign { .. }), "{error}");
 }
 
 /// Oracle: the outcome in memory, and an HTML parser that knows nothing of ours.

@@ -29,7 +29,7 @@ pub(crate) const WEIGHT: f64 = 2.4;
 const LAG: f64 = 0.05;
 const GAUGE_HOLDING: f64 = -50e3;
 
-struct Toy {
+struct MockPlant {
     flange: Vec3,
     object_z: f64,
     gauge: f64,
@@ -38,7 +38,7 @@ struct Toy {
     grip: Option<f64>,
 }
 
-impl Toy {
+impl MockPlant {
     fn tick(&mut self, commands: &[Command]) {
         for command in commands {
             match command {
@@ -73,7 +73,8 @@ pub(crate) fn run(node: &Arc<RosNode>, mut is_over: impl FnMut() -> bool) {
     let mut source = RosSource::new(node, &encoder).unwrap();
     let mut system = Synthetic::new("cylinder");
     let flange = Vec3::new(0.0, 0.0, 0.15);
-    let mut toy = Toy { flange, object_z: OBJECT_REST, gauge: 0.0, setpoint: 0.0, grip: None };
+    let mut toy =
+        MockPlant { flange, object_z: OBJECT_REST, gauge: 0.0, setpoint: 0.0, grip: None };
     let mut tick = 0;
     while !is_over() {
         std::thread::sleep(Duration::from_micros(300));

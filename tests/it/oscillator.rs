@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 use jamgrip::{
     experiments::{
         Experiment, Plan, Progress, ResumeError, Run, SceneText, StartError,
-        findings::{Curve, Expected, Findings, Kind, Plot, Quantity, Row, Series, Told},
+        findings::{Curve, Expected, Findings, Kind, Plot, Quantity, Row, Series, Report},
         record::{Column, Record, Validity},
     },
     host::shutdown::Shutdown,
@@ -89,7 +89,7 @@ impl Plan for Oscillator {
             let analytic: Vec<f64> = times.iter().map(|t| exact(zeta, *t)).collect();
             let worst = |worst: f64, (a, b): (&f64, &f64)| worst.max((a - b).abs());
             let distance = heights.iter().zip(&analytic).fold(0.0, worst);
-            let told = Told {
+            let told = Report {
                 id: &format!("T1.{}", record.case),
                 quantity: "largest distance from the exact solution",
                 unit: "m",

@@ -10,7 +10,7 @@ use std::{
     process::{Command, Stdio},
 };
 
-use jamgrip::ros::discovery::{Extent, Reach};
+use jamgrip::ros::discovery::{DiscoveryExtent, DiscoveryRange};
 
 /// Set inside the namespace.
 const INSIDE: &str = "JAMGRIP_TEST_PRIVATE_NETWORK";
@@ -66,9 +66,9 @@ pub(crate) fn inside_with_peers(test: &str, body: impl FnOnce()) {
 }
 
 /// A domain of this process alone, on this host alone.
-pub(crate) fn reach() -> Reach {
+pub(crate) fn reach() -> DiscoveryRange {
     let id = u16::try_from(std::process::id() % 200).unwrap();
-    Reach { domain_id: 1 + id, extent: Extent::Host }
+    DiscoveryRange { domain_id: 1 + id, extent: DiscoveryExtent::Host }
 }
 
 /// A file for CycloneDDS: loopback only, found without multicast.

@@ -15,7 +15,7 @@ use jamgrip::{
     base::{Pose, real::Twist},
     command::{
         Command,
-        change::{Change, Knob, Scope},
+        change::{Change, Scope, TunableParameter},
     },
     io::sink::{Packet, Sink},
     node::plant::Plant,
@@ -357,7 +357,7 @@ fn changes_after(tick: u64, session: &Session) -> Vec<Change> {
         30 => vec![ball(), Change::PlaceFlange { pose: Pose::translation(0.001, 0.0, 0.11) }],
         50 => vec![Change::Reset(Scope { time: false, state: true, spawned: true })],
         55 => vec![
-            Change::Turn { knob: Knob::ObjectFriction, value: 0.3 },
+            Change::SetParameter { parameter: TunableParameter::ObjectFriction, value: 0.3 },
             Change::ZeroForceSensor,
             Change::PlaceFlange { pose: Pose::translation(0.0, 0.001, 0.11) },
         ],

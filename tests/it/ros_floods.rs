@@ -15,7 +15,7 @@ use jamgrip::{
             geometry_msgs::PoseStamped,
             jamgrip_msgs::ObjectCommand,
             simulation_interfaces::{
-                ResetSimulationRequest, ResetSimulationResponse, Result as Told,
+                ResetSimulationRequest, ResetSimulationResponse, Result as SimResult,
                 SetSimulationStateRequest, SetSimulationStateResponse, SimulationState,
                 StepSimulationRequest, StepSimulationResponse, srv,
             },
@@ -85,11 +85,16 @@ fn ten_thousand_commands_a_second_change_no_bit() {
         let mut step = Client::of::<srv::StepSimulation>(&node, "step_simulation");
         let state = SimulationState { state: SimulationState::STATE_PAUSED };
         let answer: SetSimulationStateResponse = set.ask(&SetSimulationStateRequest { state });
-        assert_eq!(answer.result.result, Told::RESULT_OK);
+        assert_eq!(answer.result.result, SimResult::RESULT_OK);
         let mut episode = || {
             let since = now();
             let answer: StepSimulationResponse = step.ask(&StepSimulationRequest { steps: TICKS });
-            assert_eq!(answer.result.result, Told::RESULT_OK, "{}", answer.result.error_message);
+            assert_eq!(
+                answer.result.result,
+                SimResult::RESULT_OK,
+                "{}",
+                answer.result.error_message
+            );
             since.elapsed().as_secs_f64()
         };
         let quiet_s = episode();

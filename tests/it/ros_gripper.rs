@@ -22,7 +22,7 @@ use jamgrip::{
             sensor_msgs::JointState,
             simulation_interfaces::{
                 EntityState, GetEntityStateRequest, GetEntityStateResponse, ResetSimulationRequest,
-                ResetSimulationResponse, Result as Told, SetSimulationStateRequest,
+                ResetSimulationResponse, Result as SimResult, SetSimulationStateRequest,
                 SetSimulationStateResponse, SimulationState, StepSimulationRequest,
                 StepSimulationResponse, srv,
             },
@@ -103,7 +103,7 @@ fn set_state(node: &RosNode, state: u8) {
     let mut client = Client::of::<srv::SetSimulationState>(node, "set_simulation_state");
     let state = SimulationState { state };
     let answer: SetSimulationStateResponse = client.ask(&SetSimulationStateRequest { state });
-    assert_eq!(answer.result.result, Told::RESULT_OK, "{}", answer.result.error_message);
+    assert_eq!(answer.result.result, SimResult::RESULT_OK, "{}", answer.result.error_message);
 }
 
 /// Oracle: the meaning that the actions' definitions and MoveIt give to their fields, in shares of
@@ -198,7 +198,7 @@ fn the_wrist_sensor_is_set_to_zero() {
         let mut zero = Client::of::<Trigger>(&node, "zero_ftsensor");
         let mut read = || {
             let answer: StepSimulationResponse = step.ask(&StepSimulationRequest { steps: 50 });
-            assert_eq!(answer.result.result, Told::RESULT_OK);
+            assert_eq!(answer.result.result, SimResult::RESULT_OK);
             let mut found = None;
             wait_until("a wrench", || {
                 found = last(&wrench).or(found.take());
@@ -260,7 +260,7 @@ impl Controller {
         let mut reset = Client::of::<srv::ResetSimulation>(&self.node, "reset_simulation");
         let scope = ResetSimulationRequest::SCOPE_ALL;
         let answer: ResetSimulationResponse = reset.ask(&ResetSimulationRequest { scope });
-        assert_eq!(answer.result.result, Told::RESULT_OK, "{}", answer.result.error_message);
+        assert_eq!(answer.result.result, SimResult::RESULT_OK, "{}", answer.result.error_message);
         std::thread::sleep(Duration::from_millis(200));
         while self.clock.take().is_ok_and(|it| it.is_some()) {}
         let mut time_ns = 0;

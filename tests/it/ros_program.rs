@@ -7,7 +7,7 @@ use std::{
 };
 
 use jamgrip::{
-    io::server::Offer,
+    io::server::ServiceSpec,
     ros::{
         node::RosNode,
         service::{RosClient, Way},
@@ -84,7 +84,7 @@ impl Client {
 
     /// The same by its full name.
     pub(crate) fn at(node: &RosNode, name: &str, service_type: ServiceType) -> Self {
-        let offer = Offer { name: name.to_owned(), service_type };
+        let offer = ServiceSpec { name: name.to_owned(), service_type };
         let mut client = RosClient::open(node, &offer, Way::Enhanced).unwrap();
         wait_until(name, || client.is_matched());
         Self(client)

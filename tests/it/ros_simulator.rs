@@ -4,7 +4,7 @@ use std::{path::Path, process::Command, time::Duration};
 
 use jamgrip::{
     command::change::{Change, ChangeRefused},
-    io::server::{Asker, Call, Offer},
+    io::server::{RequestId, ServiceRequest, ServiceSpec},
     ros::{
         node::RosNode,
         service::{RosClient, Way},
@@ -28,7 +28,7 @@ use jamgrip::{
             },
             simulation_interfaces::{
                 EntityState, GetEntityStateRequest, GetEntityStateResponse, ResetSimulationRequest,
-                ResetSimulationResponse, Result as Told, SetSimulationStateRequest,
+                ResetSimulationResponse, Result as SimResult, SetSimulationStateRequest,
                 SetSimulationStateResponse, SimulationState, StepSimulationRequest,
                 StepSimulationResponse, srv,
             },
@@ -106,9 +106,9 @@ fn clients_of_the_other_way_and_version_are_served_too() {
 fn episode(reset: &mut Client, step: &mut Client, state: &mut Client) -> EntityState {
     let scope = ResetSimulationRequest::SCOPE_ALL;
     let answer: ResetSimulationResponse = reset.ask(&ResetSimulationRequest { scope });
-    assert_eq!(answer.result.result, Told::RESULT_OK, "{}", answer.result.error_message);
+    assert_eq!(answer.result.result, SimResult::RESULT_OK, "{}", answer.result.error_message);
     let answer: StepSimulationResponse = step.ask(&StepSimulationRequest { steps: 100 });
-    assert_eq!(answer.result.result, Told::RESULT_OK, "{}", answer.result.error_message);
+    assert_eq!(answer.result.result, SimResult::RESULT_OK, "{}", answer.result.error_message);
     let entity = "cylinder".to_owned();
     let answer: GetEntityStateResponse = state.ask(&GetEntityStateRequest { entity });
     answer.state
@@ -124,7 +124,7 @@ fn garbage_and_floods_do_not_reach_the_physics() {
         let mut play = Client::of::<srv::SetSimulationState>(&node, "set_simulation_state");
         let state = SimulationState { state: SimulationState::STATE_PAUSED };
         let answer: SetSimulationStateResponse = play.ask(&SetSimulationStateRequest { state });
-        assert_eq!(answer.result.result, Told::RESULT_OK);
+        assert_eq!(answer.result.result, SimResult::RESULT_OK);
         let mut reset = Client::of::<srv::ResetSimulation>(&node, "reset_simulation");
         let mut step = Client::of::<srv::StepSimulation>(&node, "step_simulation");
         let mut look = Client::of::<srv::GetEntityState>(&node, "get_entity_state");
@@ -156,9 +156,9 @@ fn garbage_and_floods_do_not_reach_the_physics() {
         });
         let loud = episode(&mut reset, &mut step, &mut look);
         stop.send(()).unwrap();
-        let n_asked = flooder.join().unwrap();
-        assert!(100 < n_asked, "{n_asked} requests are no flood");
-        assert_eq!(quiet, loud, "the same bits in spite of {n_asked} senseless requests");
+        let n_received = flooder.join().unwrap();
+        assert!(100 < n_received, "{n_received} requests are no flood");
+        assert_eq!(quiet, loud, "the same bits in spite of {n_received} senseless requests");
     });
 }
 
@@ -192,9 +192,9 @@ proptest! {
         let system = Synthetic::new("cylinder");
         let seen = system.snapshot.clone();
         let mut world = World { subject: &mut Dummy(system), seen: &seen };
-        let asker = Asker { offer: offer % offers.len(), writer: [0; 16], number: 1, header: None };
-        let call = Call { asker, body: Cdr { bytes, is_big_endian } };
-        if let Err(reason) = simulator.attend(&call, &mut world) {
+        let asker = RequestId { offer: offer % offers.len(), writer: [0; 16], number: 1, header: None };
+        let call = ServiceRequest { asker, body: Cdr { bytes, is_big_endian } };
+        if let Err(reason) = simulator.handle_requests(&call, &mut world) {
             prop_assert!(reason.contains(": "), "names the service: {}", reason);
         }
     }
@@ -316,7 +316,7 @@ fn rates_of_topics_are_parameters() {
         // Stamps after `from_ns` of the wrenches in the next 100 ticks [ms].
         let mut stamps = || {
             let answer: StepSimulationResponse = step.ask(&StepSimulationRequest { steps: 100 });
-            assert_eq!(answer.result.result, Told::RESULT_OK);
+            assert_eq!(answer.result.result, SimResult::RESULT_OK);
             last += 100;
             let mut found = Vec::new();
             wait_until("the last wrench", || {
@@ -359,7 +359,7 @@ fn names_on_the_command_line_are_those_in_the_graph() {
         assert_eq!(node.n_writers("/left/grip/wrench") + node.n_writers("/jamgrip/pressure"), 0);
         for name in ["/left/grip/things", "/left/grip/step_simulation", "/sim/step_simulation"] {
             let service_type = srv::StepSimulation::TYPE;
-            let offer = Offer { name: name.to_owned(), service_type };
+            let offer = ServiceSpec { name: name.to_owned(), service_type };
             let mut client = RosClient::open(&node, &offer, Way::Enhanced).unwrap();
             wait_until(name, || client.is_matched());
         }

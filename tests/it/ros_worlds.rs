@@ -10,7 +10,7 @@ use jamgrip::{
             shape_msgs::Mesh,
             simulation_interfaces::{
                 GetSimulationStateRequest, GetSimulationStateResponse, LoadWorldRequest,
-                LoadWorldResponse, Resource, Result as Told, SetSimulationStateRequest,
+                LoadWorldResponse, Resource, Result as SimResult, SetSimulationStateRequest,
                 SetSimulationStateResponse, SimulationState, SpawnEntityRequest,
                 SpawnEntityResponse, StepSimulationRequest, StepSimulationResponse, srv,
             },
@@ -68,7 +68,12 @@ fn a_scene_is_filled_while_questions_are_answered() {
             let state = SimulationState { state: SimulationState::STATE_PAUSED };
             let _: SetSimulationStateResponse = set.ask(&SetSimulationStateRequest { state });
             let answer: StepSimulationResponse = step.ask(&StepSimulationRequest { steps: n });
-            assert_eq!(answer.result.result, Told::RESULT_OK, "{}", answer.result.error_message);
+            assert_eq!(
+                answer.result.result,
+                SimResult::RESULT_OK,
+                "{}",
+                answer.result.error_message
+            );
         };
         steps(20);
 
@@ -81,7 +86,7 @@ fn a_scene_is_filled_while_questions_are_answered() {
                 break world.hear();
             }
         };
-        assert_eq!(answer.result.result, Told::RESULT_OK, "{}", answer.result.error_message);
+        assert_eq!(answer.result.result, SimResult::RESULT_OK, "{}", answer.result.error_message);
         assert_eq!(answer.world.name, "other");
         // The filling takes a second or more, an answer some milliseconds.
         assert!(10 < n_answers, "{n_answers} questions were answered meanwhile");
@@ -128,7 +133,7 @@ fn objects_that_come_later_have_topics() {
         let request =
             SpawnEntityRequest { name, entity_resource, initial_pose, ..Default::default() };
         let answer: SpawnEntityResponse = spawn.ask(&request);
-        assert_eq!(answer.result.result, Told::RESULT_OK, "{}", answer.result.error_message);
+        assert_eq!(answer.result.result, SimResult::RESULT_OK, "{}", answer.result.error_message);
         let topic = Topic::input::<PoseStamped>("/jamgrip/object/guest/pose", Qos::reliable(100));
         let poses = node.subscription::<PoseStamped>(&topic).unwrap();
         wait_until("its topics", || {
@@ -136,7 +141,7 @@ fn objects_that_come_later_have_topics() {
             ["pose", "twist", "contact_wrench"].into_iter().all(is_there)
         });
         let answer: StepSimulationResponse = step.ask(&StepSimulationRequest { steps: 40 });
-        assert_eq!(answer.result.result, Told::RESULT_OK, "{}", answer.result.error_message);
+        assert_eq!(answer.result.result, SimResult::RESULT_OK, "{}", answer.result.error_message);
         let mut last = PoseStamped::default();
         wait_until("its last pose", || {
             while let Some((it, _)) = poses.take().unwrap() {

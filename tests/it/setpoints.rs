@@ -5,7 +5,7 @@ use jamgrip::{
     base::{Pose, Real, Vec3, random::Random, random::Stream, real::Twist},
     command::{
         Command, CommandCounts, Limit, Outcome, PoseCommand, Refusal,
-        apply::{Desk, Frames},
+        apply::{CommandProcessor, Frames},
     },
     cosim::{FLANGE, Inputs},
     session::Session,
@@ -23,13 +23,13 @@ fn frames() -> Frames {
     Frames { flange, objects: vec![object] }
 }
 
-fn desk() -> Desk {
-    Desk::new(&coarse::scene(&[]))
+fn processor() -> CommandProcessor {
+    CommandProcessor::new(&coarse::scene(&[]))
 }
 
 /// What becomes of one command.
-fn take(desk: &mut Desk, command: Command, now_ns: u64) -> (Inputs, Outcome) {
-    let (inputs, records) = desk.take(std::slice::from_ref(&command), &frames(), now_ns);
+fn take(processor: &mut CommandProcessor, command: Command, now_ns: u64) -> (Inputs, Outcome) {
+    let (inputs, records) = processor.take(std::slice::from_ref(&command), &frames(), now_ns);
     assert_eq!(records.len(), 1);
     // Debug text is equal for NaN too.
     assert_eq!(format!("{:?}", records[0].command), format!("{command:?}"), "recorded as it came");
@@ -47,15 +47,15 @@ fn both(pose: &PoseCommand) -> [Command; 2] {
 
 /// True if `refused` was refused for `reason`, counted, and left no trace in what is wanted.
 fn refuses(refused: Command, reason: impl Fn(&Refusal) -> bool) {
-    let mut desk = desk();
-    let (before, _) = desk.take(&[], &frames(), TICK_NS);
-    let (after, outcome) = take(&mut desk, refused.clone(), 2 * TICK_NS);
+    let mut processor = processor();
+    let (before, _) = processor.take(&[], &frames(), TICK_NS);
+    let (after, outcome) = take(&mut processor, refused.clone(), 2 * TICK_NS);
     let Outcome::Refused(why) = outcome else { panic!("{refused:?}: {outcome:?}") };
     assert!(reason(&why), "{refused:?}: {why}");
     let counts = CommandCounts { n_refused: 1, ..CommandCounts::default() };
-    assert_eq!(desk.counts(), counts, "{refused:?}");
+    assert_eq!(processor.counts(), counts, "{refused:?}");
     assert_eq!(format!("{after:?}"), format!("{before:?}"), "{refused:?} left a trace");
-    assert!(!desk.is_driven(0));
+    assert!(!processor.is_driven(0));
 }
 
 #[test]
@@ -99,7 +99,7 @@ fn quaternions_that_are_no_rotation_are_refused() {
     }
     // A little off, as single precision is, is taken and made exact.
     let it = PoseCommand { orientation: [0.0, 0.0, 0.0, 1.0005], ..pose(Vec3::z() * 0.101) };
-    let (inputs, outcome) = take(&mut desk(), Command::FlangePose(it), TICK_NS);
+    let (inputs, outcome) = take(&mut processor(), Command::FlangePose(it), TICK_NS);
     assert_eq!(outcome, Outcome::Applied);
     assert!((inputs.flange_target.rotation.coords.norm() - 1.0).abs() < 1e-15);
 }
@@ -129,7 +129,7 @@ fn poses_are_taken_in_the_frame_they_name() {
         ("gripper_flange", Vec3::new(0.01 * Real::cos(0.7), 0.0, 0.101 - 0.01 * Real::sin(0.7))),
     ] {
         let it = PoseCommand { frame_id: frame.to_owned(), ..pose(Vec3::x() * 0.01) };
-        let (inputs, _) = take(&mut desk(), Command::FlangePose(it), TICK_NS);
+        let (inputs, _) = take(&mut processor(), Command::FlangePose(it), TICK_NS);
         let found = inputs.flange_target.translation.vector;
         assert!((found - expected).norm() < 1e-15, "{frame}: {found:?}");
     }
@@ -138,28 +138,29 @@ fn poses_are_taken_in_the_frame_they_name() {
 #[test]
 fn pressure_beyond_the_pump_is_clamped_and_counted() {
     for (asked_pa, set_pa) in [(-200e3, -95e3), (1e9, 20e3)] {
-        let mut desk = desk();
-        let (inputs, outcome) = take(&mut desk, Command::Vacuum { gauge_pa: asked_pa }, TICK_NS);
+        let mut processor = processor();
+        let (inputs, outcome) =
+            take(&mut processor, Command::Vacuum { gauge_pa: asked_pa }, TICK_NS);
         assert_eq!(outcome, Outcome::Limited(Limit::PumpRange { asked_pa, set_pa }));
         assert!(inputs.gauge_setpoint.to_bits() == set_pa.to_bits(), "{}", inputs.gauge_setpoint);
-        assert_eq!(desk.counts(), CommandCounts { n_limited: 1, ..CommandCounts::default() });
+        assert_eq!(processor.counts(), CommandCounts { n_limited: 1, ..CommandCounts::default() });
     }
     for gauge_pa in [-95e3, 0.0, 20e3] {
-        let (_, outcome) = take(&mut desk(), Command::Vacuum { gauge_pa }, TICK_NS);
+        let (_, outcome) = take(&mut processor(), Command::Vacuum { gauge_pa }, TICK_NS);
         assert_eq!(outcome, Outcome::Applied, "{gauge_pa} Pa is within the range");
     }
 }
 
 #[test]
 fn a_pose_jump_is_limited_and_counted() {
-    let mut desk = desk();
+    let mut processor = processor();
     // Half a millimetre per millisecond is the flange's 500 mm/s.
     for tick in 1..=100_u32 {
         let z = 0.101 - 0.5e-3 * f64::from(tick);
-        let (_, outcome) = take(&mut desk, flange_to(z), u64::from(tick) * TICK_NS);
+        let (_, outcome) = take(&mut processor, flange_to(z), u64::from(tick) * TICK_NS);
         assert_eq!(outcome, Outcome::Applied, "tick {tick}");
     }
-    let (inputs, outcome) = take(&mut desk, flange_to(0.101), 101 * TICK_NS);
+    let (inputs, outcome) = take(&mut processor, flange_to(0.101), 101 * TICK_NS);
     let Outcome::Limited(Limit::PoseJump { distance_m, allowed_m }) = outcome else {
         panic!("{outcome:?}")
     };
@@ -167,26 +168,26 @@ fn a_pose_jump_is_limited_and_counted() {
     // It is approached at the limits, not forgotten.
     assert!((inputs.flange_target.translation.z - 0.101).abs() < 1e-15);
     let counts = CommandCounts { n_applied: 100, n_limited: 1, n_refused: 0 };
-    assert_eq!(desk.counts(), counts);
+    assert_eq!(processor.counts(), counts);
 }
 
 #[test]
 fn silence_and_release_end_a_drive() {
-    let mut desk = desk();
+    let mut processor = processor();
     let near = pose(Vec3::new(0.1, 0.2, 0.3));
-    let (inputs, outcome) = take(&mut desk, drive("cylinder", near.clone()), TICK_NS);
+    let (inputs, outcome) = take(&mut processor, drive("cylinder", near.clone()), TICK_NS);
     assert_eq!(outcome, Outcome::Applied);
-    assert!(inputs.drives[0].is_some() && desk.is_driven(0));
+    assert!(inputs.drives[0].is_some() && processor.is_driven(0));
     // Oracle: the scene's time-out of 500 ms after the last command.
-    desk.take(&[], &frames(), 501 * TICK_NS);
-    assert!(desk.is_driven(0), "still within the time-out");
-    let (inputs, _) = desk.take(&[], &frames(), 502 * TICK_NS);
-    assert!(inputs.drives[0].is_none() && !desk.is_driven(0));
-    take(&mut desk, drive("cylinder", near), 600 * TICK_NS);
+    processor.take(&[], &frames(), 501 * TICK_NS);
+    assert!(processor.is_driven(0), "still within the time-out");
+    let (inputs, _) = processor.take(&[], &frames(), 502 * TICK_NS);
+    assert!(inputs.drives[0].is_none() && !processor.is_driven(0));
+    take(&mut processor, drive("cylinder", near), 600 * TICK_NS);
     let release = Command::ObjectRelease { object: "cylinder".to_owned() };
-    let (inputs, outcome) = take(&mut desk, release, 601 * TICK_NS);
+    let (inputs, outcome) = take(&mut processor, release, 601 * TICK_NS);
     assert_eq!(outcome, Outcome::Applied);
-    assert!(inputs.drives[0].is_none() && !desk.is_driven(0));
+    assert!(inputs.drives[0].is_none() && !processor.is_driven(0));
 }
 
 /// Lifts the object off the table towards 100 mm/s, not as far as the bag.
@@ -197,7 +198,7 @@ fn driven(overrides: &[&str]) -> Session {
         let command = drive("cylinder", pose(Vec3::new(0.0, 0.0, z)));
         session.tick(&[command]).unwrap();
     }
-    assert!(session.desk().is_driven(0));
+    assert!(session.processor().is_driven(0));
     session
 }
 
@@ -224,11 +225,11 @@ fn silence_gives_a_driven_object_back_to_gravity() {
     let mut session = driven(&["object.drive_timeout=20 ms"]);
     for _ in 0..20 {
         session.tick(&[]).unwrap();
-        assert!(session.desk().is_driven(0));
+        assert!(session.processor().is_driven(0));
     }
     let held = twist(&session).linear;
     session.tick(&[]).unwrap();
-    assert!(!session.desk().is_driven(0), "free after 20 ms of silence");
+    assert!(!session.processor().is_driven(0), "free after 20 ms of silence");
     // Oracle: free flight. Tolerance: rounding.
     let gained = twist(&session).linear - held;
     assert!((gained + Vec3::z() * 9.81e-3).norm() < 1e-9, "{gained:?}");

@@ -28,7 +28,7 @@ const BUSY: Real = 7e-4;
 const BOX: Boxed = Boxed { n_grains: 300, n_tiles: [1; 3], phase: Phase::Rest };
 
 /// The plant.
-pub(super) struct Standing {
+pub(super) struct IdlePlant {
     session: Session,
     tick: u64,
     tick_ns: u64,
@@ -40,7 +40,7 @@ pub(super) struct Standing {
     shown: RefCell<Samples>,
 }
 
-impl Standing {
+impl IdlePlant {
     /// Beside `session`, which does not tick.
     pub(super) fn new(
         session: Session,
@@ -75,7 +75,7 @@ impl Standing {
     }
 }
 
-impl Subject for Standing {
+impl Subject for IdlePlant {
     fn look(&self) -> Snapshot {
         Plant::snapshot(self, Parts::ALL)
     }
@@ -85,7 +85,7 @@ impl Subject for Standing {
     }
 }
 
-impl Plant for Standing {
+impl Plant for IdlePlant {
     type Fault = Diverged;
 
     fn tick(&mut self, commands: &[Command]) -> Result<(), Diverged> {

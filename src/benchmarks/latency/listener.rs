@@ -30,7 +30,7 @@ const COMMAND_EVERY: Duration = Duration::from_micros(10_300);
 /// ROS 2 is asked for samples this often; the pause adds to what is measured.
 const POLL_EVERY: Duration = Duration::from_micros(20);
 /// How long the others may take to come [s].
-const PATIENCE: Real = 30.0;
+const TIMEOUT: Real = 30.0;
 /// How much longer than the run it listens [s].
 const LONGER: Real = 1.0;
 
@@ -127,7 +127,7 @@ fn command(
     let publisher = node.publisher(topic)?;
     let watch = Stopwatch::start();
     while node.n_readers(&topic.name) == 0 || node.n_writers(&clock.name) == 0 {
-        if PATIENCE < watch.total_s() {
+        if TIMEOUT < watch.total_s() {
             return Err(format!("nobody listens to {}", topic.name).into());
         }
         thread::sleep(COMMAND_EVERY);

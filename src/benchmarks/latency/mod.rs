@@ -23,12 +23,12 @@ use crate::{
     host::{progress_bar::Progress, shutdown::Shutdown},
     io::{fanout::Delivery, sink::RunStatistics},
     node::{
-        Crew, command_sources::Orders, lift_monitor::Judge, lockstep::Gate, outputs::Outlets,
-        schedule::Schedule,
+        RunContext, command_sources::CommandSources, lift_monitor::LiftMonitor, lockstep::Gate,
+        outputs::OutputSinks, schedule::Schedule,
     },
     physics::measure::{real, real_of},
     ros::{
-        discovery::{Extent, Reach},
+        discovery::{DiscoveryExtent, DiscoveryRange},
         node::{RosNode, RosSink},
         subscribe::RosSource,
     },
@@ -36,7 +36,7 @@ use crate::{
     shm::stream::Stream,
     wire::to_ros::Encoder,
 };
-use idle_plant::Standing;
+use idle_plant::IdlePlant;
 pub use listener::listen;
 use listener::{Heard, Samples};
 pub use private_network::PrivateError;
@@ -106,23 +106,23 @@ fn here(case: &Case, options: &Options) -> Result<Figures, BenchError> {
     let scene = lift::scene(&overrides)?;
     let session = lift::session(&scene, options)?;
     let seconds = options.seconds.max(SECONDS_MIN);
-    let mut plant = Standing::new(session, scene.time.tick_ns, options)?;
+    let mut plant = IdlePlant::new(session, scene.time.tick_ns, options)?;
     let prefix = format!("jamgrip_bench_{}", std::process::id());
     let mesh = &plant.session().coupled().model.membrane.mesh;
     let encoder = Arc::new(Encoder::new(&scene, &mesh.triangles, &mesh.positions));
-    let mut crew = crew(&scene, &encoder, &prefix, &plant, seconds).map_err(latency)?;
+    let mut context = context(&scene, &encoder, &prefix, &plant, seconds).map_err(latency)?;
     let child = spawn(&prefix, seconds).map_err(latency)?;
-    let shutdown = crew.shutdown.clone();
+    let shutdown = context.shutdown.clone();
     let listening = std::thread::spawn(move || {
         let heard = heard(child);
         // Without the other process nobody commands, and the run would wait for ever.
         shutdown.request();
         heard
     });
-    let report = crate::node::run(&mut plant, &mut crew);
+    let report = crate::node::run(&mut plant, &mut context);
     report.ending.map_err(|fault| BenchError::Diverged { case: case.name.to_owned(), fault })?;
     let heard = listening.join().expect("a panic is a fault of this program").map_err(latency)?;
-    crew.outlets.close();
+    context.outputs.close();
     let latencies = plant.latencies(&heard).map_err(latency)?;
     let state = &plant.session().coupled().state;
     Ok(Figures {
@@ -138,32 +138,32 @@ fn here(case: &Case, options: &Options) -> Result<Figures, BenchError> {
 }
 
 /// All that is around the plant, in real time.
-fn crew(
+fn context(
     scene: &Scene,
     encoder: &Arc<Encoder>,
     prefix: &str,
-    plant: &Standing,
+    plant: &IdlePlant,
     seconds: Real,
-) -> Result<Crew, LatencyError> {
+) -> Result<RunContext, LatencyError> {
     let closed = |error: &dyn std::fmt::Display| LatencyError::Closed(error.to_string());
     let node = RosNode::join(&reach()).map_err(|it| closed(&it))?;
     let sink = RosSink::new(&node, encoder).map_err(|it| closed(&it))?;
     let source = RosSource::new(&node, encoder).map_err(|it| closed(&it))?;
-    let mut outlets = Outlets::default();
+    let mut outputs = OutputSinks::default();
     let delivery = Delivery::Latest { depth: 500 };
-    outlets.fanout.add(Box::new(sink), delivery).map_err(|it| closed(&it))?;
+    outputs.fanout.add(Box::new(sink), delivery).map_err(|it| closed(&it))?;
     let state = &plant.session().coupled().state;
     let (n_grains, n_vertices) = (state.grains.len(), state.membrane.positions.len());
     let stream = Stream::open(prefix, n_grains, n_vertices).map_err(|it| closed(&it))?;
-    outlets.stream = Some(stream);
+    outputs.stream = Some(stream);
     let end = std::time::Duration::from_secs_f64(seconds).as_nanos();
-    Ok(Crew {
-        orders: Orders::new(scene, vec![Box::new(source)]),
+    Ok(RunContext {
+        command_sources: CommandSources::new(scene, vec![Box::new(source)]),
         gate: Gate::new(Lockstep::OFF),
         front: None,
-        outlets,
+        outputs,
         schedule: Schedule::new(&scene.outputs, scene.time.tick_ns),
-        judge: Judge::default(),
+        lift_monitor: LiftMonitor::default(),
         progress: Progress::new(true),
         shutdown: Shutdown::default(),
         tick_ns: scene.time.tick_ns,
@@ -177,8 +177,8 @@ fn crew(
 }
 
 /// The domain is nobody else's: the network is this process' own.
-fn reach() -> Reach {
-    Reach { domain_id: 0, extent: Extent::Host }
+fn reach() -> DiscoveryRange {
+    DiscoveryRange { domain_id: 0, extent: DiscoveryExtent::Host }
 }
 
 /// This program once more, as the one who listens and commands.

@@ -25,7 +25,7 @@ use crate::{
 };
 pub use error::PeerError;
 use input::{numbers, packing};
-use output::{Lap, read, tail};
+use output::{Repetition, read, tail};
 use tool::{TOOLS, Tool, on_path};
 
 /// What solver threads of ours are nicer than the process.
@@ -57,7 +57,7 @@ pub(super) struct Peers {
     n_threads: usize,
     work: Work,
     n_contacts_min: Real,
-    found: Vec<(Tool, PathBuf, Vec<Lap>)>,
+    found: Vec<(Tool, PathBuf, Vec<Repetition>)>,
     /// What is not installed, with the remedy.
     pub(super) missing: Vec<String>,
 }
@@ -92,26 +92,26 @@ impl Peers {
     }
 
     /// One run of each.
-    pub(super) fn lap(&mut self) -> Result<(), PeerError> {
+    pub(super) fn repetition(&mut self) -> Result<(), PeerError> {
         for k in 0..self.found.len() {
             let (tool, program, _) = &self.found[k];
-            let lap = self.run(*tool, program)?;
-            self.found[k].2.push(lap);
+            let repetition = self.run(*tool, program)?;
+            self.found[k].2.push(repetition);
         }
         Ok(())
     }
 
     /// What came out, beside our own contact-steps per second and thread.
     pub(super) fn figures(&self, ours: Real) -> Vec<PeerFigures> {
-        let of_tool = |(tool, _, laps): &(Tool, PathBuf, Vec<Lap>)| {
+        let of_tool = |(tool, _, repetitions): &(Tool, PathBuf, Vec<Repetition>)| {
             let n_steps = real_of(self.work.n_steps);
-            let speed = |lap: &Lap| {
-                let [before, after] = lap.n_contacts;
-                0.5 * (before + after) * n_steps / lap.wall_s / real(self.n_threads)
+            let speed = |repetition: &Repetition| {
+                let [before, after] = repetition.n_contacts;
+                0.5 * (before + after) * n_steps / repetition.wall_s / real(self.n_threads)
             };
-            let mut speeds: Vec<Real> = laps.iter().map(speed).collect();
+            let mut speeds: Vec<Real> = repetitions.iter().map(speed).collect();
             speeds.sort_by(Real::total_cmp);
-            let last = laps.last()?;
+            let last = repetitions.last()?;
             let theirs = median(&speeds);
             Some(PeerFigures {
                 peer: tool.name().to_owned(),
@@ -126,7 +126,7 @@ impl Peers {
         self.found.iter().filter_map(of_tool).collect()
     }
 
-    fn run(&self, tool: Tool, program: &Path) -> Result<Lap, PeerError> {
+    fn run(&self, tool: Tool, program: &Path) -> Result<Repetition, PeerError> {
         let peer = tool.name();
         let mut command = self.command(tool, program)?;
         command.current_dir(&self.folder.0).stdin(Stdio::null());
@@ -137,10 +137,10 @@ impl Peers {
             let tail = tail(&format!("{said}\n{fault}"));
             return Err(PeerError::Failed { peer, status: output.status, tail });
         }
-        let lap = read(tool, &said)?;
-        let fewest = lap.n_contacts[0].min(lap.n_contacts[1]);
+        let repetition = read(tool, &said)?;
+        let fewest = repetition.n_contacts[0].min(repetition.n_contacts[1]);
         if fewest >= self.n_contacts_min {
-            return Ok(lap);
+            return Ok(repetition);
         }
         Err(PeerError::Empty { peer, found: fewest, expected: self.n_contacts_min })
     }

@@ -5,7 +5,7 @@ use crate::base::Real;
 
 /// One run of a peer.
 #[derive(Clone, Debug)]
-pub(super) struct Lap {
+pub(super) struct Repetition {
     /// What it says of its version.
     pub(super) version: String,
     /// Time for the measured steps, by its own clock [s].
@@ -17,7 +17,7 @@ pub(super) struct Lap {
 }
 
 /// Reads what a peer has printed.
-pub(super) fn read(tool: Tool, said: &str) -> Result<Lap, PeerError> {
+pub(super) fn read(tool: Tool, said: &str) -> Result<Repetition, PeerError> {
     let peer = tool.name();
     let unreadable = |wanted| PeerError::Unreadable { peer, wanted, tail: tail(said) };
     let loop_of = if tool == Tool::Yade { "JAMGRIP loop " } else { "Loop time of " };
@@ -39,7 +39,7 @@ pub(super) fn read(tool: Tool, said: &str) -> Result<Lap, PeerError> {
         ["LAMMPS (", "LIGGGHTS (", "Welcome to Yade"].iter().any(|it| line.starts_with(it))
     };
     let version = said.lines().find(is_version).unwrap_or("unknown").trim().to_owned();
-    Ok(Lap { version, wall_s, n_contacts: [before, after], kinetic_energy })
+    Ok(Repetition { version, wall_s, n_contacts: [before, after], kinetic_energy })
 }
 
 /// The last lines.
@@ -59,9 +59,9 @@ mod tests {
     /// Oracle: the text. The second loop is the measured one.
     #[test]
     fn what_a_peer_says_is_read() {
-        let lap = read(Tool::LammpsHistory, SAID).unwrap();
-        assert_eq!(lap.version, "LAMMPS (22 Jul 2025 - Update 4)");
-        let Lap { wall_s, n_contacts, kinetic_energy, .. } = lap;
+        let repetition = read(Tool::LammpsHistory, SAID).unwrap();
+        assert_eq!(repetition.version, "LAMMPS (22 Jul 2025 - Update 4)");
+        let Repetition { wall_s, n_contacts, kinetic_energy, .. } = repetition;
         let found = format!("{wall_s} {n_contacts:?} {kinetic_energy:e}");
         assert_eq!(found, "0.5 [8637.0, 8647.0] 5.9e-7");
     }

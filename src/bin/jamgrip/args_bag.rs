@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
-use jamgrip::{replay::workers::Hands, runner::outcome::n_processors};
+use jamgrip::{replay::workers::CpuBudget, runner::outcome::n_processors};
 
 use crate::args::{bag_folder, time, time_or_zero};
 
@@ -118,9 +118,9 @@ impl Replay {
     }
 
     /// How the machine is shared out when a recording is verified.
-    pub(crate) fn hands(&self) -> Hands {
+    pub(crate) fn hands(&self) -> CpuBudget {
         let (n_threads, n_jobs) = (self.threads.map(usize::from), self.jobs.map(usize::from));
-        Hands { n_processors: n_processors(), n_threads, n_jobs }
+        CpuBudget { n_processors: n_processors(), n_threads, n_jobs }
     }
 
     /// Changes of the recorded scene, as `key=value`. The old recording's folder is not taken.

@@ -17,10 +17,10 @@ use jamgrip::{
         branch::{self, Branch},
         page,
         play::{self, Played},
-        player_command::{Asked, Cue},
-        recorded_run::Again,
+        player_command::{Asked, PlayerCommand},
+        recorded_run::RecordedRun,
         segment::{Difference, Kind},
-        verify::{self, Verdict},
+        verify::{self, VerifyReport},
     },
     scene::Scene,
     wire::{from_ros::CommandCodec, topics::topics},
@@ -72,7 +72,7 @@ pub(crate) fn run_by(
 fn verify(args: &Replay) -> Result<ExitCode, Box<dyn Error>> {
     let shutdown = Shutdown::listen()?;
     let progress = Progress::new(args.json);
-    let again = Again::open(&args.bag)?;
+    let again = RecordedRun::open(&args.bag)?;
     let verdict = verify::verify(
         &again,
         &verify::Options {
@@ -98,11 +98,11 @@ fn verify(args: &Replay) -> Result<ExitCode, Box<dyn Error>> {
     })
 }
 
-fn tell(out: &mut impl Write, verdict: &Verdict) -> io::Result<()> {
+fn tell(out: &mut impl Write, verdict: &VerifyReport) -> io::Result<()> {
     for remark in &verdict.remarks {
         writeln!(out, "{remark}")?;
     }
-    let Verdict { n_ticks, n_compared, start_tick, real_time_factor, .. } = verdict;
+    let VerifyReport { n_ticks, n_compared, start_tick, real_time_factor, .. } = verdict;
     let ((n_jobs, n_threads), n_checkpoints) = (verdict.shared_out, verdict.n_checkpoints);
     writeln!(
         out,
@@ -125,7 +125,7 @@ fn tell(out: &mut impl Write, verdict: &Verdict) -> io::Result<()> {
 }
 
 fn branch(args: &Replay, from: f64) -> Result<ExitCode, Box<dyn Error>> {
-    let again = Again::open(&args.bag)?;
+    let again = RecordedRun::open(&args.bag)?;
     let options = Options {
         n_threads: args.n_threads(),
         duration: args.end,
@@ -169,7 +169,7 @@ fn play(args: &Replay) -> Result<ExitCode, Box<dyn Error>> {
         std::thread::Builder::new().name("cues".to_owned()).spawn(move || listen(&teller))?;
     }
     let perform =
-        |stage: &mut dyn play::Stage| play::play(&files, &options, stage, &cues, &shutdown);
+        |stage: &mut dyn play::PlayerOutput| play::play(&files, &options, stage, &cues, &shutdown);
     let (played, fault) = on_stage(&options, teller, perform)?;
     let mut stderr = io::stderr().lock();
     for topic in &played.refused {
@@ -203,13 +203,13 @@ type Performance = (Played, Option<String>);
 fn on_stage(
     options: &play::Options,
     teller: mpsc::Sender<Asked>,
-    perform: impl FnOnce(&mut dyn play::Stage) -> io::Result<Played>,
+    perform: impl FnOnce(&mut dyn play::PlayerOutput) -> io::Result<Played>,
 ) -> Result<Performance, Box<dyn Error>> {
-    use jamgrip::{replay::player_node::RosStage, ros::discovery::Reach, scene::Ros};
+    use jamgrip::{replay::player_node::RosPlayerNode, ros::discovery::DiscoveryRange, scene::Ros};
 
     let anywhere = Ros { enabled: true, ..Ros::OFF };
-    let reach = Reach::choose(&anywhere, |name| std::env::var(name).ok())?;
-    let mut stage = RosStage::join(&reach, options.clock_rate.is_some())?;
+    let reach = DiscoveryRange::choose(&anywhere, |name| std::env::var(name).ok())?;
+    let mut stage = RosPlayerNode::join(&reach, options.clock_rate.is_some())?;
     let _prompter = stage.prompted(teller)?;
     let played = perform(&mut stage)?;
     Ok((played, stage.faults.1))
@@ -219,7 +219,7 @@ fn on_stage(
 fn on_stage(
     _: &play::Options,
     _: mpsc::Sender<Asked>,
-    _: impl FnOnce(&mut dyn play::Stage) -> io::Result<Played>,
+    _: impl FnOnce(&mut dyn play::PlayerOutput) -> io::Result<Played>,
 ) -> Result<Performance, Box<dyn Error>> {
     Err("this jamgrip was built without ROS 2 (feature `ros`): there is nowhere to play to".into())
 }
@@ -227,7 +227,7 @@ fn on_stage(
 /// Reads cues until standard input ends or nobody listens.
 fn listen(teller: &mpsc::Sender<Asked>) {
     for line in io::stdin().lock().lines().map_while(Result::ok) {
-        match Cue::parse(&line) {
+        match PlayerCommand::parse(&line) {
             Ok(cue) => {
                 if teller.send(cue.into()).is_err() {
                     return;

@@ -12,7 +12,7 @@ use jamgrip::{
     host::shutdown::Shutdown,
     runner::{
         self, Ending, Options, Task,
-        experiment::{self, Order},
+        experiment::{self, RunRequest},
         folder::Policy,
         outcome::{Outcome, sized_name},
         table::{self, Look},
@@ -34,7 +34,7 @@ pub(crate) fn experiment(args: &Experiment) -> Result<ExitCode, Box<dyn Error>> 
         return list();
     }
     let name = args.name.as_deref().unwrap_or_default();
-    let order = Order {
+    let order = RunRequest {
         experiment: experiment::by_name(name)?,
         size: args.size(),
         overrides: args.set.clone(),
@@ -64,7 +64,8 @@ pub(crate) fn validate(args: &Validate) -> Result<ExitCode, Box<dyn Error>> {
         experiments = chosen.collect::<Result<_, _>>()?;
     }
     let task = |experiment| {
-        let order = Order { experiment, size: Size::Quick, overrides: Vec::new(), scene: None };
+        let order =
+            RunRequest { experiment, size: Size::Quick, overrides: Vec::new(), scene: None };
         let name = sized_name(experiment.name(), Size::Quick);
         Task { order, out: args.out.as_ref().map(|out| out.join(name)) }
     };

@@ -22,7 +22,7 @@ use jamgrip::{
     benchmarks::BenchError,
     host::cache::Cache,
     node::launch::{Finished, Options, launch},
-    runner::error::LabError,
+    runner::error::RunnerError,
     scene::{self, Scene, SceneError},
 };
 use ros_args::RosArgs;
@@ -72,7 +72,7 @@ fn main() -> ExitCode {
         let is_of_command_line = error.is::<SceneError>()
             || error.is::<ros_args::RosArgsError>()
             || error.downcast_ref::<BenchError>().is_some_and(BenchError::is_of_command_line)
-            || error.downcast_ref::<LabError>().is_some_and(LabError::is_of_command_line);
+            || error.downcast_ref::<RunnerError>().is_some_and(RunnerError::is_of_command_line);
         ExitCode::from(if is_of_command_line { WRONG } else { FAILED })
     })
 }

@@ -8,7 +8,7 @@ use super::{
 use crate::{
     base::Real,
     experiments::{
-        findings::{Expected, Findings, Mean, Row, Told},
+        findings::{Expected, Findings, Mean, Report, Row},
         record::Record,
     },
     physics::measure::real,
@@ -138,12 +138,18 @@ pub(super) struct Judge<'a> {
 
 impl Judge<'_> {
     /// Sets a measured value beside what is expected; without one, a note says so.
-    pub(super) fn row(&mut self, told: &Told<'_>, expected: Expected, measured: Option<Real>) {
+    pub(super) fn row(&mut self, told: &Report<'_>, expected: Expected, measured: Option<Real>) {
         self.row_or(told, expected, measured, "");
     }
 
     /// The same; `cause` is told if the row fails.
-    fn row_or(&mut self, told: &Told<'_>, expected: Expected, measured: Option<Real>, cause: &str) {
+    fn row_or(
+        &mut self,
+        told: &Report<'_>,
+        expected: Expected,
+        measured: Option<Real>,
+        cause: &str,
+    ) {
         match measured {
             Some(measured) => {
                 let mut row = Row::new(told, expected, measured);
@@ -173,7 +179,7 @@ fn over_modulus(view: &View<'_>, judge: &mut Judge<'_>) {
     let of = |modulus: Option<&Real>| view.of_modulus(*modulus?, "holding_force");
     let ends = of(moduli.first()).zip(of(moduli.last()));
     judge.row(
-        &Told {
+        &Report {
             id: "C9.falls_with_modulus",
             quantity: "holding force of the softest grains over that of the hardest",
             unit: "1",
@@ -186,7 +192,7 @@ fn over_modulus(view: &View<'_>, judge: &mut Judge<'_>) {
     let several = ends.filter(|(soft, hard)| soft.n > 1 && hard.n > 1);
     if several.is_some() {
         judge.row(
-            &Told {
+            &Report {
                 id: "C9.falls_beyond_scatter",
                 quantity: "difference of the holding forces of softest and hardest grains over its standard error",
                 unit: "1",
@@ -206,7 +212,7 @@ fn over_modulus(view: &View<'_>, judge: &mut Judge<'_>) {
         .collect();
     if points.len() > 2 {
         judge.row(
-            &Told {
+            &Report {
                 id: "C9.falls_steadily",
                 quantity: "smallest rise of the holding force to the next softer grains, over its largest value",
                 unit: "1",
@@ -221,7 +227,7 @@ fn over_modulus(view: &View<'_>, judge: &mut Judge<'_>) {
     if let [.., a, b] = hard.as_slice() {
         let pair = view.of_modulus(*a, "holding_force").zip(view.of_modulus(*b, "holding_force"));
         judge.row(
-            &Told {
+            &Report {
                 id: "C9.hard_plateau",
                 quantity: "difference of the holding forces of the two hardest grains over that of the softest",
                 unit: "1",
@@ -238,7 +244,7 @@ fn over_modulus(view: &View<'_>, judge: &mut Judge<'_>) {
 fn over_pressure(view: &View<'_>, judge: &mut Judge<'_>) {
     let points = view.over_pressure();
     judge.row(
-        &Told {
+        &Report {
             id: "C9.rises_with_vacuum",
             quantity: "smallest rise of the holding force to the next stronger vacuum, over its largest value",
             unit: "1",
@@ -251,7 +257,7 @@ fn over_pressure(view: &View<'_>, judge: &mut Judge<'_>) {
     let full = points.last().copied();
     let none = points.first().copied().filter(|it| it[0].abs() < 1.0);
     judge.row(
-        &Told {
+        &Report {
             id: "C9.no_vacuum",
             quantity: "holding force without vacuum over that at full vacuum",
             unit: "1",
@@ -264,7 +270,7 @@ fn over_pressure(view: &View<'_>, judge: &mut Judge<'_>) {
     let weak = points.iter().copied().find(|it| it[0] > 1.0);
     let weak = weak.filter(|it| full.is_some_and(|full| it[0] < full[0]));
     judge.row_or(
-        &Told {
+        &Report {
             id: "C9.proportional_to_vacuum",
             quantity: "holding force per vacuum at the weakest level over that at the strongest",
             unit: "1",
@@ -282,7 +288,7 @@ fn over_pressure(view: &View<'_>, judge: &mut Judge<'_>) {
 /// Friction and size of the object.
 fn over_object(view: &View<'_>, judge: &mut Judge<'_>) {
     judge.row(
-        &Told {
+        &Report {
             id: "C9.rises_with_friction",
             quantity: "smallest rise of the holding force to the next higher friction, over its largest value",
             unit: "1",
@@ -294,7 +300,7 @@ fn over_object(view: &View<'_>, judge: &mut Judge<'_>) {
     );
     let friction = view.scene.gripper.objects[0].friction;
     judge.row(
-        &Told {
+        &Report {
             id: "C9.pinch_threshold",
             quantity: "contact angle of the grip at its largest pull, over the least that holds by friction",
             unit: "1",
@@ -305,7 +311,7 @@ fn over_object(view: &View<'_>, judge: &mut Judge<'_>) {
         view.protocol("contact_angle_at_best").map(|it| it / measure::pinch_threshold(friction)),
     );
     judge.row(
-        &Told {
+        &Report {
             id: "C9.coulomb_limit",
             quantity: "holding force over what Coulomb friction allows with the normal forces of that instant",
             unit: "1",
@@ -327,7 +333,7 @@ fn over_count(view: &View<'_>, judge: &mut Judge<'_>) {
         return;
     }
     judge.row(
-        &Told {
+        &Report {
             id: "C9.push_rises_with_filling",
             quantity: "smallest rise of the push after relaxation to the next fuller bag, over its largest value",
             unit: "1",
@@ -361,7 +367,7 @@ fn checks(view: &View<'_>, judge: &mut Judge<'_>) {
     });
     for (change, quantity, oracle) in dampings.chain(slowdowns) {
         judge.row_or(
-            &Told {
+            &Report {
                 id: &format!("C9.{}", change.name()),
                 quantity,
                 unit: "1",

@@ -7,7 +7,7 @@ use super::{
 };
 use crate::{
     base::Real,
-    experiments::findings::{Expected, Mean, Told},
+    experiments::findings::{Expected, Mean, Report},
 };
 
 /// Scatter below which the force is as good as constant [N].
@@ -44,7 +44,7 @@ fn before_contact(view: &View<'_>) -> Option<Real> {
 /// (a) to (c): nothing, the push, the relaxation.
 pub(super) fn push(view: &View<'_>, judge: &mut Judge<'_>) {
     judge.row(
-        &Told {
+        &Report {
             id: "C9.fig11_zero",
             quantity: "largest force while the object is below the bag",
             unit: "N",
@@ -56,7 +56,7 @@ pub(super) fn push(view: &View<'_>, judge: &mut Judge<'_>) {
     );
     let full = push_at(view, 0.999);
     judge.row(
-        &Told {
+        &Report {
             id: "C9.fig11_push",
             quantity: "push at the full penetration over that at half of it",
             unit: "1",
@@ -67,7 +67,7 @@ pub(super) fn push(view: &View<'_>, judge: &mut Judge<'_>) {
         full.zip(push_at(view, 0.5)).map(|(full, half)| full / half),
     );
     judge.row(
-        &Told {
+        &Report {
             id: "C9.fig11_relaxation",
             quantity: "push after the relaxation over push at its beginning",
             unit: "1",
@@ -83,7 +83,7 @@ pub(super) fn push(view: &View<'_>, judge: &mut Judge<'_>) {
 pub(super) fn pull(view: &View<'_>, judge: &mut Judge<'_>) {
     let change = last(view, Phase::Hold).zip(last(view, Phase::Relax));
     judge.row(
-        &Told {
+        &Report {
             id: "C9.fig11_evacuation",
             quantity: "change of the force on evacuation over the push before it",
             unit: "1",
@@ -99,7 +99,7 @@ pub(super) fn pull(view: &View<'_>, judge: &mut Judge<'_>) {
     });
     let holding = view.protocol("holding_force");
     judge.row(
-        &Told {
+        &Report {
             id: "C9.fig11_pull",
             quantity: "holding force over the scatter of the force while nothing moves",
             unit: "1",
@@ -110,7 +110,7 @@ pub(super) fn pull(view: &View<'_>, judge: &mut Judge<'_>) {
         holding.zip(noise).map(|(holding, noise)| holding / noise),
     );
     judge.row(
-        &Told {
+        &Report {
             id: "C9.fig11_free",
             quantity: "force on the object at the end over the holding force",
             unit: "1",

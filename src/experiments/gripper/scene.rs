@@ -9,7 +9,7 @@ use crate::{
         schema,
         text::Keys,
         unset,
-        visit::{Quantity, Range, Walk},
+        visit::{Quantity, Range, Visitor},
     },
 };
 
@@ -150,7 +150,7 @@ impl GripperScene {
 }
 
 impl Keys for GripperScene {
-    fn walk(&mut self, walk: &mut impl Walk) {
+    fn walk(&mut self, walk: &mut impl Visitor) {
         let gripper = &mut self.gripper;
         walk.text("name", &mut gripper.name);
         walk.whole("seed", 0, u64::MAX, &mut gripper.seed);
@@ -202,7 +202,7 @@ impl Keys for GripperScene {
 const LENGTHS: Quantity = Quantity { dimension: &LENGTH, range: Range::AboveUpTo(0.0, 10.0) };
 const VACUUM: Quantity = Quantity { dimension: &PRESSURE, range: Range::AtMost(0.0) };
 
-fn protocol(walk: &mut impl Walk, it: &mut Protocol) {
+fn protocol(walk: &mut impl Visitor, it: &mut Protocol) {
     let (speed, time) = (Quantity::above_zero(&SPEED), Quantity::at_least_zero(&TIME));
     walk.quantity("clearance", LENGTHS, &mut it.clearance);
     walk.quantity("insert_speed", speed, &mut it.insert_speed);
@@ -216,7 +216,7 @@ fn protocol(walk: &mut impl Walk, it: &mut Protocol) {
     walk.quantity("ramp_time", Quantity::above_zero(&TIME), &mut it.ramp_time);
 }
 
-fn accelerations(walk: &mut impl Walk, it: &mut Accelerations) {
+fn accelerations(walk: &mut impl Visitor, it: &mut Accelerations) {
     walk.number("insert_speed_factor", Range::Above(0.0), &mut it.insert_speed_factor);
     walk.number("withdraw_speed_factor", Range::Above(0.0), &mut it.withdraw_speed_factor);
     walk.number("withdraw_until", Range::Between(0.0, 0.95), &mut it.withdraw_until);
@@ -225,7 +225,7 @@ fn accelerations(walk: &mut impl Walk, it: &mut Accelerations) {
     walk.flag("vary_relaxed", &mut it.is_varied_relaxed);
 }
 
-fn sweep(walk: &mut impl Walk, it: &mut Sweep) {
+fn sweep(walk: &mut impl Visitor, it: &mut Sweep) {
     schema::whole_usize(walk, "fillings", (1, 1000), &mut it.n_fillings);
     walk.quantities("moduli", Quantity::above_zero(&PRESSURE), &mut it.moduli);
     walk.quantities("pressures", VACUUM, &mut it.pressures);

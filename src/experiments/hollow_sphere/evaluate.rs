@@ -6,7 +6,7 @@ use super::{
     scene::Scene,
 };
 use crate::experiments::{
-    findings::{self, Curve, Expected, Findings, Mean, Plot, Quantity, Row, Series, Told},
+    findings::{self, Curve, Expected, Findings, Mean, Plot, Quantity, Report, Row, Series},
     oracles::shell::{ObjectPressure, shell_object_pressure},
     record::{Column, Record},
 };
@@ -115,7 +115,7 @@ fn rows_of_sweep(sweep: &[&Group<'_>], findings: &mut Findings) {
         sweep.windows(2).map(|pair| pair[0].pressure().0 - pair[1].pressure().0).collect();
     if let Some(smallest) = falls.iter().copied().reduce(f64::min) {
         findings.rows.push(Row::new(
-            &Told {
+            &Report {
                 id: "C10.rises_when_soft",
                 quantity: "smallest fall of the pressure on the object from one modulus to the next \
                            harder one",
@@ -129,7 +129,7 @@ fn rows_of_sweep(sweep: &[&Group<'_>], findings: &mut Findings) {
         let vacuum = last(sweep[0].records[0], "vacuum");
         let fall = sweep[0].pressure().0 - sweep[sweep.len() - 1].pressure().0;
         findings.rows.push(Row::new(
-            &Told {
+            &Report {
                 id: "C10.not_constant",
                 quantity: "pressure on the object, softest less hardest grains, over the vacuum",
                 unit: "1",
@@ -148,7 +148,7 @@ fn rows_of_levels(scene: &Scene, sweep: &[&Group<'_>], findings: &mut Findings) 
     let lowest = all().flat_map(|it| it.column("object_pressure").unwrap_or_default()).copied();
     if let Some(lowest) = lowest.reduce(f64::min) {
         findings.rows.push(Row::new(
-            &Told {
+            &Report {
                 id: "C10.never_pulls",
                 quantity: "smallest pressure on the object at any level",
                 unit: "Pa",
@@ -162,7 +162,7 @@ fn rows_of_levels(scene: &Scene, sweep: &[&Group<'_>], findings: &mut Findings) 
     let softest = sweep.first().into_iter().flat_map(|it| it.records.iter());
     if let Some(worst) = softest.map(|it| disproportion(it)).reduce(f64::max) {
         findings.rows.push(Row::new(
-            &Told {
+            &Report {
                 id: "C10.proportional",
                 quantity: "softest grains: largest distance of p_obj(p_vac) from the straight line \
                            between its ends, over its end",
@@ -180,7 +180,7 @@ fn rows_of_levels(scene: &Scene, sweep: &[&Group<'_>], findings: &mut Findings) 
         radius.max_by(|a, b| distance(*a, scene).total_cmp(&distance(*b, scene)))
     {
         findings.rows.push(Row::new(
-            &Told {
+            &Report {
                 id: "C10.relaxed_radius",
                 quantity: "mean radius of the outer membrane before the vacuum, the worst packing",
                 unit: "m",
@@ -217,7 +217,7 @@ fn disproportion(record: &Record) -> f64 {
 fn rows_of_smooth(scene: &Scene, smooth: &[&Group<'_>], findings: &mut Findings) {
     for group in smooth {
         findings.rows.push(Row::new(
-            &Told {
+            &Report {
                 id: "C10.frictionless_flows",
                 quantity: "pressure on the object over the vacuum, hard grains without friction",
                 unit: "1",
@@ -240,7 +240,7 @@ fn row_of_scaling(unscaled: &[&Group<'_>], sweep: &[&Group<'_>], findings: &mut 
             continue;
         };
         findings.rows.push(Row::new(
-            &Told {
+            &Report {
                 id: "C10.mass_scaling",
                 quantity: "change of the pressure on the object by heavier grains, over the vacuum",
                 unit: "1",

@@ -9,7 +9,7 @@ use crate::{
         schema,
         text::Keys,
         unset,
-        visit::{Quantity, Range, Walk},
+        visit::{Quantity, Range, Visitor},
     },
 };
 
@@ -108,7 +108,7 @@ impl Scene {
 }
 
 impl Keys for Scene {
-    fn walk(&mut self, walk: &mut impl Walk) {
+    fn walk(&mut self, walk: &mut impl Visitor) {
         walk.text("name", &mut self.name);
         walk.whole("seed", 0, u64::MAX, &mut self.seed);
         schema::whole_usize(walk, "n_fillings", (1, 100), &mut self.n_fillings);
@@ -154,7 +154,7 @@ impl Protocol {
         self.close_time + self.rest_time + real(self.n_levels) * self.level_time
     }
 
-    fn walk(&mut self, walk: &mut impl Walk) {
+    fn walk(&mut self, walk: &mut impl Visitor) {
         let time = Quantity::above_zero(&TIME);
         walk.quantity("close_time", time, &mut self.close_time);
         walk.quantity("rest_time", time, &mut self.rest_time);

@@ -20,7 +20,7 @@ mod tests;
 
 use super::{
     Experiment, Plan, Progress, ResumeError, Run, SceneText, StartError,
-    findings::{Expected, Findings, Row, Told},
+    findings::{Expected, Findings, Report, Row},
     record::{Column, Record},
     saved_run,
 };
@@ -191,7 +191,7 @@ type Line = (&'static str, &'static str, &'static str, Expected, &'static str);
 /// Rows of numbers without unit from the scalars of a record.
 fn judge(lines: &[Line], record: &Record, findings: &mut Findings) {
     for (id, quantity, oracle, expected, reason) in lines {
-        let told = Told { id, quantity, unit: "1", oracle, reason };
+        let told = Report { id, quantity, unit: "1", oracle, reason };
         let measured = record.scalar(id).unwrap_or(f64::NAN);
         findings.rows.push(Row::new(&told, *expected, measured));
     }

@@ -8,7 +8,7 @@ use crate::{
         quantity::{ANGLE, DENSITY, IMPULSE, LENGTH, PRESSURE, SPEED, TIME, TORQUE},
         schema,
         text::Keys,
-        visit::{Quantity, Range, Walk},
+        visit::{Quantity, Range, Visitor},
     },
 };
 
@@ -129,7 +129,7 @@ pub(super) const MATERIALS: [&str; 11] = [
 ];
 
 impl Keys for Scene {
-    fn walk(&mut self, walk: &mut impl Walk) {
+    fn walk(&mut self, walk: &mut impl Visitor) {
         schema::whole_usize(walk, "steps_per_contact", (50, 100_000), &mut self.steps_per_contact);
         walk.section("grain", |walk| grain(walk, &mut self.grain));
         walk.section("restitution", |walk| restitution(walk, &mut self.restitution));
@@ -157,7 +157,7 @@ impl Keys for Scene {
     }
 }
 
-fn grain(walk: &mut impl Walk, it: &mut Grain) {
+fn grain(walk: &mut impl Visitor, it: &mut Grain) {
     walk.quantity("radius", Quantity::above_zero(&LENGTH), &mut it.radius);
     schema::material(walk, &mut it.material);
     walk.number("friction", Range::Above(0.0), &mut it.surface.friction);
@@ -166,33 +166,33 @@ fn grain(walk: &mut impl Walk, it: &mut Grain) {
     walk.number("tangential_damping", Range::AtLeast(0.0), &mut it.surface.tangential_damping);
 }
 
-fn restitution(walk: &mut impl Walk, it: &mut Restitution) {
+fn restitution(walk: &mut impl Visitor, it: &mut Restitution) {
     walk.vector("moduli", Quantity::above_zero(&PRESSURE), &mut it.moduli);
     walk.quantity("speed_min", Quantity::above_zero(&SPEED), &mut it.speed_min);
     walk.quantity("speed_max", Quantity::above_zero(&SPEED), &mut it.speed_max);
     schema::whole_usize(walk, "n_speeds", (2, 1000), &mut it.n_speeds);
 }
 
-fn beam_grain(walk: &mut impl Walk, it: &mut BeamGrain) {
+fn beam_grain(walk: &mut impl Visitor, it: &mut BeamGrain) {
     walk.quantity("radius", Quantity::above_zero(&LENGTH), &mut it.radius);
     walk.quantity("youngs_modulus", Quantity::above_zero(&PRESSURE), &mut it.youngs_modulus);
     walk.quantity("dissipation_time", Quantity::above_zero(&TIME), &mut it.dissipation_time);
     walk.quantity("speed", Quantity::above_zero(&SPEED), &mut it.speed);
 }
 
-fn oblique(walk: &mut impl Walk, it: &mut Oblique) {
+fn oblique(walk: &mut impl Visitor, it: &mut Oblique) {
     walk.quantity("youngs_modulus", Quantity::above_zero(&PRESSURE), &mut it.youngs_modulus);
     walk.quantity("speed", Quantity::above_zero(&SPEED), &mut it.speed);
     walk.quantity("angle_step", Quantity::between(&ANGLE, 0.001, 0.2), &mut it.angle_step);
 }
 
-fn rolling(walk: &mut impl Walk, it: &mut Rolling) {
+fn rolling(walk: &mut impl Visitor, it: &mut Rolling) {
     walk.quantity("speed", Quantity::above_zero(&SPEED), &mut it.speed);
     walk.quantity("substep", Quantity::above_zero(&TIME), &mut it.substep);
     schema::whole_usize(walk, "n_creep_steps", (1000, 100_000_000), &mut it.n_creep_steps);
 }
 
-fn membrane(walk: &mut impl Walk, it: &mut Membrane) {
+fn membrane(walk: &mut impl Visitor, it: &mut Membrane) {
     let sheet = &mut it.sheet;
     walk.quantity("thickness", Quantity::above_zero(&LENGTH), &mut sheet.thickness);
     walk.quantity("youngs_modulus", Quantity::above_zero(&PRESSURE), &mut sheet.youngs_modulus);
@@ -205,13 +205,13 @@ fn membrane(walk: &mut impl Walk, it: &mut Membrane) {
     walk.number("friction", Range::Above(0.0), &mut it.friction);
 }
 
-fn laplace(walk: &mut impl Walk, it: &mut Laplace) {
+fn laplace(walk: &mut impl Visitor, it: &mut Laplace) {
     walk.quantity("pressure_max", Quantity::above_zero(&PRESSURE), &mut it.pressure_max);
     schema::whole_usize(walk, "n_pressures", (1, 100), &mut it.n_pressures);
     schema::whole_usize(walk, "frequency", (2, 64), &mut it.frequency);
 }
 
-fn crossing(walk: &mut impl Walk, it: &mut Crossing) {
+fn crossing(walk: &mut impl Visitor, it: &mut Crossing) {
     walk.number("overlap_over_radius", Range::AboveUpTo(0.0, 0.5), &mut it.overlap_over_radius);
     walk.number("dent_over_edge", Range::Between(0.0, 0.3), &mut it.dent_over_edge);
     walk.quantity("step", Quantity::above_zero(&LENGTH), &mut it.step);

@@ -7,7 +7,7 @@
 
 use super::{
     super::{
-        findings::{Curve, Expected, Findings, Quantity, Row, Told},
+        findings::{Curve, Expected, Findings, Quantity, Report, Row},
         record::Record,
     },
     Case, fit, moduli, plots,
@@ -129,7 +129,7 @@ pub(super) fn quantity(name: &str, meaning: &str, value: Real, unit: &str) -> Qu
 fn close_packing(record: &Record, findings: &mut Findings) {
     let Some(at) = jammed(record) else { return missing(&record.case, "U24, U25", findings) };
     findings.rows.push(Row::new(
-        &Told {
+        &Report {
             id: "U24.phi_j",
             quantity: "solid fraction at which equal smooth spheres jam",
             unit: "1",
@@ -140,7 +140,7 @@ fn close_packing(record: &Record, findings: &mut Findings) {
         at.phi,
     ));
     findings.rows.push(Row::new(
-        &Told {
+        &Report {
             id: "U25.isostatic",
             quantity: "contacts per grain without rattlers, extrapolated to no pressure, smooth",
             unit: "1",
@@ -154,7 +154,7 @@ fn close_packing(record: &Record, findings: &mut Findings) {
     let points: Vec<[Real; 2]> = states.iter().map(|s| [s[0], s[1]]).collect();
     if let Some((_, exponent)) = fit::onset(&points, 0.004) {
         findings.rows.push(Row::new(
-            &Told {
+            &Report {
                 id: "U25.pressure_exponent",
                 quantity: "exponent of p over φ − φ_J, onset fitted as well",
                 unit: "1",
@@ -171,7 +171,7 @@ fn close_packing(record: &Record, findings: &mut Findings) {
         .collect();
     if let Some(exponent) = fit::exponent(&excess) {
         findings.rows.push(Row::new(
-            &Told {
+            &Report {
                 id: "U25.contact_exponent",
                 quantity: "exponent of z − 6 over φ − φ_J",
                 unit: "1",
@@ -199,7 +199,7 @@ fn structure(record: &Record, findings: &mut Findings) {
     let (third, second) = (highest(1.66, 1.82), highest(1.9, 2.1));
     let mut row = |id, quantity, oracle, reason, expected, measured| {
         findings.rows.push(Row::new(
-            &Told { id, quantity, unit: "1", oracle, reason },
+            &Report { id, quantity, unit: "1", oracle, reason },
             expected,
             measured,
         ));
@@ -252,7 +252,7 @@ fn friction_rows(jammed: &[Jammed], findings: &mut Findings) {
     };
     let mut row = |id, quantity, oracle, reason, expected, measured| {
         findings.rows.push(Row::new(
-            &Told { id, quantity, unit: "1", oracle, reason },
+            &Report { id, quantity, unit: "1", oracle, reason },
             expected,
             measured,
         ));
@@ -314,7 +314,7 @@ fn growth_rows(scene: &Scene, record: &Record, findings: &mut Findings) {
         .map_or(Real::NAN, |(_, overlap)| *overlap);
     let mut row = |id, quantity, oracle, reason, expected, measured| {
         findings.rows.push(Row::new(
-            &Told { id, quantity, unit: "1", oracle, reason },
+            &Report { id, quantity, unit: "1", oracle, reason },
             expected,
             measured,
         ));
@@ -367,7 +367,7 @@ fn stress_rows(scene: &Scene, record: &Record, findings: &mut Findings) {
         ));
     }
     findings.rows.push(Row::new(
-        &Told {
+        &Report {
             id: "U22.stress",
             quantity: "mean stress of a sample in a membrane over the vacuum's pressure",
             unit: "1",
@@ -391,7 +391,7 @@ fn rest_rows(records: &[Record], findings: &mut Findings) {
         ("U23.kinetic", "kinetic_over_elastic", "largest kinetic over elastic energy", 1e-6),
     ] {
         findings.rows.push(Row::new(
-            &Told {
+            &Report {
                 id,
                 quantity,
                 unit: "1",

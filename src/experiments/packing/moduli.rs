@@ -31,7 +31,7 @@ use super::{
 use crate::{
     base::Real,
     experiments::{
-        findings::{Expected, Findings, Row, Told},
+        findings::{Expected, Findings, Report, Row},
         record::{Column, Record},
     },
 };
@@ -111,7 +111,8 @@ pub(super) fn rows(scene: &Scene, record: &Record, findings: &mut Findings) {
         findings.quantities.push(quantity(name, meaning, value, "Pa"));
     }
     let mut row = |id, quantity, oracle, expected, measured| {
-        let told = Told { id, quantity, unit: "1", oracle, reason: "a range from the literature" };
+        let told =
+            Report { id, quantity, unit: "1", oracle, reason: "a range from the literature" };
         findings.rows.push(Row::new(&told, expected, measured));
     };
     row(

@@ -8,7 +8,7 @@ use crate::{
         quantity::{IMPULSE, LENGTH, PRESSURE, TIME, TORQUE},
         schema,
         text::Keys,
-        visit::{Quantity, Range, Walk},
+        visit::{Quantity, Range, Visitor},
     },
 };
 
@@ -152,7 +152,7 @@ pub(super) fn blank() -> Scene {
 }
 
 impl Keys for Scene {
-    fn walk(&mut self, walk: &mut impl Walk) {
+    fn walk(&mut self, walk: &mut impl Visitor) {
         walk.whole("seed", 0, u64::MAX, &mut self.seed);
         walk.section("grains", |walk| grains(walk, &mut self.grains));
         walk.plain_numbers("frictions", Range::AtLeast(0.0), &mut self.frictions);
@@ -189,7 +189,7 @@ impl Keys for Scene {
     }
 }
 
-fn grains(walk: &mut impl Walk, it: &mut Grains) {
+fn grains(walk: &mut impl Visitor, it: &mut Grains) {
     schema::whole_usize(walk, "count", (100, 200_000), &mut it.count);
     schema::whole_usize(walk, "count_smooth", (100, 200_000), &mut it.count_smooth);
     let radius = Quantity { dimension: &LENGTH, range: Range::AboveUpTo(0.0, 0.1) };
@@ -200,7 +200,7 @@ fn grains(walk: &mut impl Walk, it: &mut Grains) {
     walk.number("tangential_damping", Range::AtLeast(0.0), &mut it.tangential_damping);
 }
 
-fn compression(walk: &mut impl Walk, it: &mut Compression) {
+fn compression(walk: &mut impl Visitor, it: &mut Compression) {
     let (time, pressure) = (Quantity::above_zero(&TIME), Quantity::above_zero(&PRESSURE));
     walk.quantity("substep", time, &mut it.substep);
     walk.number("thin", Range::AboveUpTo(0.0, 0.3), &mut it.thin);
@@ -214,7 +214,7 @@ fn compression(walk: &mut impl Walk, it: &mut Compression) {
     walk.quantity("rest_time_max", time, &mut it.rest_time_max);
 }
 
-fn confined(walk: &mut impl Walk, it: &mut Confined) {
+fn confined(walk: &mut impl Visitor, it: &mut Confined) {
     schema::whole_usize(walk, "count", (50, 100_000), &mut it.count);
     walk.number("friction", Range::AtLeast(0.0), &mut it.friction);
     walk.quantity("pressure", Quantity::above_zero(&PRESSURE), &mut it.pressure);

@@ -10,7 +10,7 @@ use super::{
 use crate::{
     base::Real,
     experiments::{
-        findings::{Curve, Expected, Findings, Quantity, Row, Told},
+        findings::{Curve, Expected, Findings, Quantity, Report, Row},
         record::Record,
     },
     physics::measure::real,
@@ -88,14 +88,14 @@ fn quantities(scene: &Scene, seen: &Seen<'_>, findings: &mut Findings) {
 fn triangles(scene: &Scene, seen: &[Seen<'_>], rows: &mut Vec<Row>) {
     let names = ["triangles_rows", "triangles_across", "triangles_skew", "triangles_heavy"];
     let friction = scene.membrane.surface.friction;
-    let mut add = |told: Told<'_>, expected: Expected, measured: Option<Real>| {
+    let mut add = |told: Report<'_>, expected: Expected, measured: Option<Real>| {
         rows.extend(measured.map(|it| Row::new(&told, expected, it)));
     };
     let off = |it: &Seen<'_>| {
         (it.spread("friction_force").mean / (friction * it.case.weight(scene)) - 1.0).abs()
     };
     add(
-        Told {
+        Report {
             id: "C8.triangle_friction",
             quantity: "friction force over triangles against μ N, worst of three ways and two loads",
             unit: "1",
@@ -110,7 +110,7 @@ fn triangles(scene: &Scene, seen: &[Seen<'_>], rows: &mut Vec<Row>) {
         friction.range() / friction.mean
     };
     add(
-        Told {
+        Report {
             id: "C8.triangle_ripple",
             quantity: "largest less smallest friction force over triangles, over the mean",
             unit: "1",
@@ -124,7 +124,7 @@ fn triangles(scene: &Scene, seen: &[Seen<'_>], rows: &mut Vec<Row>) {
     let sunk =
         |it: &Seen<'_>| expected::overlap(&it.case.law(scene), radius, it.case.weight(scene));
     add(
-        Told {
+        Report {
             id: "C8.triangle_height",
             quantity: "highest less lowest position over triangles, over the overlap",
             unit: "1",
@@ -135,7 +135,7 @@ fn triangles(scene: &Scene, seen: &[Seen<'_>], rows: &mut Vec<Row>) {
         worst(seen, &names, |it| it.spread("height").range() / sunk(it)),
     );
     add(
-        Told {
+        Report {
             id: "C8.triangle_sag",
             quantity: "how deep the ball sinks into triangles against Hertz",
             unit: "1",
@@ -146,7 +146,7 @@ fn triangles(scene: &Scene, seen: &[Seen<'_>], rows: &mut Vec<Row>) {
         worst(seen, &names, |it| ((radius - it.spread("height").mean) / sunk(it) - 1.0).abs()),
     );
     add(
-        Told {
+        Report {
             id: "C8.triangle_stick",
             quantity: "distance over which the ball sticks before it slides, over the law's",
             unit: "1",
@@ -196,7 +196,7 @@ fn hard_spheres(scene: &Scene, seen: &[Seen<'_>], rows: &mut Vec<Row>) {
         let fallen = on_top - (between * between - distance * distance).sqrt();
         let bare = 1e3 * expected::fall(reach, distance);
         rows.push(Row::new(
-            &Told {
+            &Report {
                 id,
                 quantity: &format!("height ripple over hard spheres, down into a {place}"),
                 unit: "m",
@@ -218,7 +218,7 @@ fn hard_spheres(scene: &Scene, seen: &[Seen<'_>], rows: &mut Vec<Row>) {
         let behind = if share < 0.5 { share * edge } else { (share - 1.0) * edge };
         let oracle = expected::friction_on_one(friction, reach, behind);
         rows.push(Row::new(
-            &Told {
+            &Report {
                 id,
                 quantity: &format!("friction force over weight and load on hard spheres, {place}"),
                 unit: "1",
@@ -232,7 +232,7 @@ fn hard_spheres(scene: &Scene, seen: &[Seen<'_>], rows: &mut Vec<Row>) {
     let extreme = |behind: Real| expected::friction_on_one(friction, reach, behind);
     let oracle = extreme(-edge / 2.0) - extreme(edge / 2.0);
     rows.push(Row::new(
-        &Told {
+        &Report {
             id: "C8.particle_friction_range",
             quantity: "largest less smallest friction force over hard spheres, over weight and load",
             unit: "1",
@@ -252,7 +252,7 @@ fn spheres(scene: &Scene, seen: &[Seen<'_>], rows: &mut Vec<Row>) {
         let (height, friction) = deviations(it, &it.expected(scene));
         let short = name.trim_start_matches("spheres_");
         rows.push(Row::new(
-            &Told {
+            &Report {
                 id: &format!("C8.particle_height_{short}"),
                 quantity: &format!("height over spheres {way} against the computed one, rms over range"),
                 unit: "1",
@@ -263,7 +263,7 @@ fn spheres(scene: &Scene, seen: &[Seen<'_>], rows: &mut Vec<Row>) {
             height,
         ));
         rows.push(Row::new(
-            &Told {
+            &Report {
                 id: &format!("C8.particle_friction_{short}"),
                 quantity: &format!(
                     "friction over spheres {way} against the computed one, rms over range"
@@ -284,7 +284,7 @@ fn spheres(scene: &Scene, seen: &[Seen<'_>], rows: &mut Vec<Row>) {
         let Some(it) = named(seen, name) else { continue };
         let period = it.case.period().norm();
         rows.push(Row::new(
-            &Told {
+            &Report {
                 id,
                 quantity: "distance between two tops of the path over spheres",
                 unit: "m",
@@ -304,7 +304,7 @@ fn framed(scene: &Scene, seen: &[Seen<'_>], rows: &mut Vec<Row>) {
     let mean = forces.iter().sum::<Real>() / real(forces.len());
     let friction = scene.membrane.surface.friction * it.case.weight(scene);
     rows.push(Row::new(
-        &Told {
+        &Report {
             id: "C8.framed_friction",
             quantity: "mean friction force over triangles held at the edge only, over μ N",
             unit: "1",
@@ -327,7 +327,7 @@ fn framed(scene: &Scene, seen: &[Seen<'_>], rows: &mut Vec<Row>) {
         None => format!("{told}. The full size tries triangles of half the size"),
     };
     rows.push(Row::new(
-        &Told {
+        &Report {
             id: "C8.framed_ripple",
             quantity: "standard deviation of the friction force over triangles held at the edge only, \
                        over its mean",
@@ -340,7 +340,7 @@ fn framed(scene: &Scene, seen: &[Seen<'_>], rows: &mut Vec<Row>) {
     ));
     let Some(spheres) = named(seen, "spheres_framed") else { return };
     rows.push(Row::new(
-        &Told {
+        &Report {
             id: "C8.framed_smoother",
             quantity: "the same over that of spheres",
             unit: "1",

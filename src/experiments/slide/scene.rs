@@ -8,7 +8,7 @@ use crate::{
         quantity::{FORCE, IMPULSE, LENGTH, SPEED, TIME, TORQUE},
         schema,
         text::Keys,
-        visit::{Quantity, Range, Walk},
+        visit::{Quantity, Range, Visitor},
     },
 };
 
@@ -81,7 +81,7 @@ pub(super) struct Frame {
 }
 
 impl Keys for Scene {
-    fn walk(&mut self, walk: &mut impl Walk) {
+    fn walk(&mut self, walk: &mut impl Visitor) {
         let length = Quantity::above_zero(&LENGTH);
         walk.section("ball", |walk| {
             walk.quantity("radius", length, &mut self.ball.radius);
@@ -125,7 +125,7 @@ impl Keys for Scene {
     }
 }
 
-fn membrane(walk: &mut impl Walk, it: &mut Membrane) {
+fn membrane(walk: &mut impl Visitor, it: &mut Membrane) {
     let length = Quantity::above_zero(&LENGTH);
     walk.quantity("edge", length, &mut it.edge);
     walk.quantity("sphere_radius", length, &mut it.sphere_radius);
@@ -144,7 +144,7 @@ fn membrane(walk: &mut impl Walk, it: &mut Membrane) {
     it.sheet.density = it.material.density;
 }
 
-fn pull(walk: &mut impl Walk, it: &mut Pull) {
+fn pull(walk: &mut impl Visitor, it: &mut Pull) {
     walk.quantity("speed", Quantity::above_zero(&SPEED), &mut it.speed);
     walk.quantity("length", Quantity::above_zero(&LENGTH), &mut it.length);
     walk.quantity("substep", Quantity::above_zero(&TIME), &mut it.substep);

@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{
     experiments::{
-        findings::{Expected, Findings, Quantity, Row, Told},
+        findings::{Expected, Findings, Quantity, Report, Row},
         record::Record,
     },
     physics::measure::{real, real_of},
@@ -55,7 +55,7 @@ pub(super) fn findings(setup: &Setup, records: &[Record]) -> Findings {
     check(setup, records, &mut findings);
     loose(setup, records, &mut findings);
     let n_leaked: u64 = records.iter().map(|it| it.validity.n_leaked).sum();
-    let told = Told {
+    let told = Report {
         id: "C7.no_leak",
         quantity: "specimens whose membrane let a grain through",
         unit: "1",
@@ -135,7 +135,7 @@ impl<'a> Group<'a> {
             let Some(found) = self.of(kind).find_map(|it| it.scalar("n_vertices")) else {
                 continue;
             };
-            let told = Told {
+            let told = Report {
                 id: &format!("C7.vertices_{}.case{}", kind.name(), self.size + 1),
                 quantity: &format!("vertices of the membrane, model with {}", kind.name()),
                 unit: "1",
@@ -154,7 +154,7 @@ impl<'a> Group<'a> {
             let kind = usize::from(choice.kind == Kind::Spheres);
             let expected = TABLE_3[self.size][kind][choice.initial];
             let initial = ["A", "B"][choice.initial];
-            let told = Told {
+            let told = Report {
                 id: &format!("C7.initial_solid_fraction.{}", name(*choice)),
                 quantity: &format!(
                     "solid fraction of the grown grains in the straight membrane, {}, {initial}",
@@ -176,7 +176,7 @@ impl<'a> Group<'a> {
             let values = self.columns(column);
             values.iter().filter_map(|it| it.first()).copied().collect::<Vec<f64>>()
         };
-        let told = Told {
+        let told = Report {
             id: &self.id("isotropic_plates"),
             quantity: "stress difference before shearing over confining pressure, largest",
             unit: "1",
@@ -185,7 +185,7 @@ impl<'a> Group<'a> {
         };
         let worst = largest(first("stress_difference").iter().map(|it| (it / pressure).abs()));
         findings.rows.push(Row::new(&told, Expected::at_most(0.01), worst));
-        let told = Told {
+        let told = Report {
             id: &self.id("isotropic_stress"),
             quantity: "lateral stress of the contacts before shearing over confining pressure and \
                        the membrane's hoop, mean",
@@ -217,7 +217,7 @@ impl<'a> Group<'a> {
             .map(|values| largest(smoothed(values).into_iter()))
             .map(|stress| (stress / (stress + 2.0 * pressure)).asin().to_degrees())
             .collect();
-        let told = Told {
+        let told = Report {
             id: &self.id("mohr_coulomb"),
             quantity: "friction angle at the largest stress difference, mean of all specimens",
             unit: "deg",
@@ -236,7 +236,7 @@ impl<'a> Group<'a> {
             let curves = self.of(kind).filter_map(|it| it.column("stress_difference"));
             mean(curves.map(|values| largest(smoothed(values).into_iter())))
         };
-        let told = Told {
+        let told = Report {
             id: &self.id("same_strength"),
             quantity: "largest stress difference with spheres over that with triangles, means of A \
                        and B",
@@ -271,7 +271,7 @@ impl<'a> Group<'a> {
                       (C7.same_stress_loose), which then rise more slowly than the triangles: the \
                       rise depends on the filling more than on the model; C7 same_strength compares \
                       the plateaus";
-        let told = Told {
+        let told = Report {
             id: &self.id("same_stress"),
             quantity: "distance of both models' mean stress difference over the larger distance of \
                        the initial states A and B",
@@ -280,7 +280,7 @@ impl<'a> Group<'a> {
             reason: &format!("within the scatter of A and B, root mean squares; {reason}"),
         };
         findings.rows.push(Row::new(&told, Expected::at_most(1.0), apart / scatter));
-        let told = Told {
+        let told = Report {
             id: &self.id("same_stress_relative"),
             quantity: "distance of both models' mean stress difference over their mean",
             unit: "1",
@@ -297,7 +297,7 @@ impl<'a> Group<'a> {
             Some((middle.last()? / middle.first()?) / (end.last()? / end.first()?))
         };
         let barrel = mean(self.specimens.iter().filter_map(|it| ratio(it.1)));
-        let told = Told {
+        let told = Report {
             id: &self.id("barrel"),
             quantity: "growth of the membrane's radius in the middle over that at the ends, mean",
             unit: "1",
@@ -309,7 +309,7 @@ impl<'a> Group<'a> {
             let values = record.column("volumetric_strain")?;
             Some(values.last()? - values.iter().copied().fold(f64::INFINITY, f64::min))
         };
-        let told = Told {
+        let told = Report {
             id: &self.id("dilates"),
             quantity: "volumetric strain at the end above its smallest, mean",
             unit: "1",
@@ -320,7 +320,7 @@ impl<'a> Group<'a> {
         findings.rows.push(Row::new(&told, Expected::at_least(1e-4), risen));
         let hoops = self.columns("hoop_pressure");
         let added = largest(hoops.iter().filter_map(|it| it.last()).copied());
-        let told = Told {
+        let told = Report {
             id: &self.id("hoop"),
             quantity: "what the hoop tension of the membrane adds to the confining pressure at the \
                        end, largest",
@@ -341,7 +341,7 @@ fn run_times(record: &Record, size: usize, findings: &mut Findings) {
             taken[which] = wall / time * TABLE_4_TIME;
         }
         let minutes = TABLE_4[size][which];
-        let told = Told {
+        let told = Report {
             id: &format!("C7.run_time_{}.case{}", kind.name(), size + 1),
             quantity: &format!("time to compute 20 ms with {}, one thread", kind.name()),
             unit: "min",
@@ -352,7 +352,7 @@ fn run_times(record: &Record, size: usize, findings: &mut Findings) {
         findings.rows.push(Row::new(&told, Expected::at_most(minutes), taken[which] / 60.0));
     }
     let ratio = taken[1] / taken[0];
-    let told = Told {
+    let told = Report {
         id: &format!("C7.run_time_ratio.case{}", size + 1),
         quantity: "run time with spheres over run time with triangles, in turns on one thread",
         unit: "1",
@@ -392,7 +392,7 @@ fn check(setup: &Setup, records: &[Record], findings: &mut Findings) {
         (0..fast.len().min(slow.len())).filter(|&k| step * real(k) > RISE).collect();
     let apart = mean(later.iter().map(|&k| slow[k] - fast[k]));
     let height = mean(later.iter().map(|&k| fast[k]));
-    let told = Told {
+    let told = Report {
         id: "C7.halving_speed",
         quantity: "change of the stress difference at half the speed, mean over strain, relative",
         unit: "1",
@@ -418,7 +418,7 @@ fn loose(setup: &Setup, records: &[Record], findings: &mut Findings) {
     let later: Vec<usize> = (0..n).filter(|&k| step * real(k) > RISE).collect();
     let apart = mean(later.iter().map(|&k| (loose[k] - 0.5 * (a[k] + b[k])).powi(2))).sqrt();
     let height = mean(later.iter().map(|&k| (0.5 * (a[k] + b[k])).powi(2))).sqrt();
-    let told = Told {
+    let told = Report {
         id: "C7.same_stress_loose",
         quantity: "distance of the stress difference with spheres in a room as full as that of the \
                    triangles, over the latter's mean",

@@ -9,7 +9,7 @@ use crate::{
         schema::{self, whole_usize},
         text::Keys,
         unset,
-        visit::{Quantity, Range, Walk},
+        visit::{Quantity, Range, Visitor},
     },
 };
 
@@ -223,7 +223,7 @@ pub(super) fn blank() -> Setup {
 }
 
 impl Keys for Setup {
-    fn walk(&mut self, walk: &mut impl Walk) {
+    fn walk(&mut self, walk: &mut impl Visitor) {
         let mut name = String::new();
         walk.text("name", &mut name);
         walk.section("grains", |walk| grains(walk, &mut self.grains));
@@ -280,7 +280,7 @@ impl Keys for Setup {
     }
 }
 
-fn grains(walk: &mut impl Walk, it: &mut Grains) {
+fn grains(walk: &mut impl Visitor, it: &mut Grains) {
     let radius = Quantity { dimension: &LENGTH, range: Range::AboveUpTo(0.0, 1.0) };
     walk.quantity("radius_min", radius, &mut it.radius_min);
     walk.quantity("radius_max", radius, &mut it.radius_max);
@@ -290,7 +290,7 @@ fn grains(walk: &mut impl Walk, it: &mut Grains) {
     walk.number("tangential_damping", Range::AtLeast(0.0), &mut it.tangential_damping);
 }
 
-fn membrane(walk: &mut impl Walk, it: &mut Membrane) {
+fn membrane(walk: &mut impl Visitor, it: &mut Membrane) {
     let length = Quantity { dimension: &LENGTH, range: Range::AboveUpTo(0.0, 1.0) };
     walk.quantity("thickness", length, &mut it.thickness);
     schema::material(walk, &mut it.material);
@@ -306,7 +306,7 @@ fn membrane(walk: &mut impl Walk, it: &mut Membrane) {
     walk.number("tangential_damping", Range::AtLeast(0.0), &mut it.tangential_damping);
 }
 
-fn size(walk: &mut impl Walk, it: &mut Size) {
+fn size(walk: &mut impl Visitor, it: &mut Size) {
     let length = Quantity { dimension: &LENGTH, range: Range::AboveUpTo(0.0, 1.0) };
     walk.quantity("radius", length, &mut it.radius);
     walk.quantity("height", length, &mut it.height);
@@ -315,7 +315,7 @@ fn size(walk: &mut impl Walk, it: &mut Size) {
     walk.section("spheres", |walk| net(walk, &mut it.spheres));
 }
 
-fn net(walk: &mut impl Walk, it: &mut Net) {
+fn net(walk: &mut impl Visitor, it: &mut Net) {
     whole_usize(walk, "n_around", (3, 10_000), &mut it.n_around);
     whole_usize(walk, "n_rows", (2, 10_000), &mut it.n_rows);
     let [a, b] = &mut it.n_grains;
@@ -323,7 +323,7 @@ fn net(walk: &mut impl Walk, it: &mut Net) {
     whole_usize(walk, "n_grains_b", (1, 200_000), b);
 }
 
-fn growth(walk: &mut impl Walk, it: &mut Growth) {
+fn growth(walk: &mut impl Visitor, it: &mut Growth) {
     let modulus = Quantity::above_zero(&PRESSURE);
     walk.quantity("youngs_modulus", modulus, &mut it.youngs_modulus);
     walk.number("friction", Range::AtLeast(0.0), &mut it.friction);
@@ -332,7 +332,7 @@ fn growth(walk: &mut impl Walk, it: &mut Growth) {
     walk.quantity("pressure_stop", modulus, &mut it.pressure_stop);
 }
 
-fn confining(walk: &mut impl Walk, it: &mut Confining) {
+fn confining(walk: &mut impl Visitor, it: &mut Confining) {
     walk.quantity("pressure", Quantity::above_zero(&PRESSURE), &mut it.pressure);
     walk.quantity("ramp", Quantity::above_zero(&TIME), &mut it.ramp);
     walk.quantity("servo_speed", Quantity::above_zero(&SPEED), &mut it.servo_speed);
@@ -343,7 +343,7 @@ fn confining(walk: &mut impl Walk, it: &mut Confining) {
     walk.quantity("rest_time_max", Quantity::above_zero(&TIME), &mut it.rest_time_max);
 }
 
-fn shear(walk: &mut impl Walk, it: &mut Shear) {
+fn shear(walk: &mut impl Visitor, it: &mut Shear) {
     walk.quantity("speed", Quantity::above_zero(&SPEED), &mut it.speed);
     walk.number("speed_factor", Range::Above(0.0), &mut it.speed_factor);
     walk.quantity("start_time", Quantity::above_zero(&TIME), &mut it.start_time);

@@ -71,7 +71,7 @@ impl Encoder {
     }
 
     /// The same with topics for objects that came later, behind all others. Topics never go.
-    pub fn with_guests<'a>(&self, names: impl Iterator<Item = &'a str>) -> Self {
+    pub fn with_spawned<'a>(&self, names: impl Iterator<Item = &'a str>) -> Self {
         let mut all = self.clone();
         for name in names {
             if !all.objects.iter().any(|it| it.0 == name) {
