@@ -8,6 +8,7 @@ pub mod fault; // what can be wrong
 pub mod plain; // YAML that is no scene
 pub mod print; // scene to text
 pub mod quantity; // "2 mm"
+pub mod reference; // keys for documentation and editors
 pub mod resource; // objects that others name
 pub mod ros_parameters; // files of parameters
 pub mod text; // text to scene
@@ -18,6 +19,7 @@ mod extent;
 mod mesh_file;
 mod read;
 pub(crate) mod schema;
+mod schema_outputs;
 mod tree;
 mod urdf;
 pub(crate) mod walk;
