@@ -86,8 +86,8 @@ pub fn json_schema() -> String {
         for part in parts {
             at = &mut at["properties"][part];
         }
-        // A section stands twice: as an alternative, and with its keys.
-        if at["properties"].get(name).is_none() {
+        // An alternative has created an empty section already; its keys follow.
+        if !matches!(key.kind, Kind::Section) || at["properties"].get(name).is_none() {
             at["properties"][name] = key.kind.to_json(&description);
         }
         if REQUIRED.contains(&key.path.as_str()) {
@@ -165,7 +165,7 @@ impl Kind {
         match self {
             Self::Section => String::new(),
             Self::Quantity(kind, word) => format!("{}{}", kind.describe(), or(word)),
-            Self::Quantities(kind, Some(n)) => format!("{n} × {}", kind.describe()),
+            Self::Quantities(kind, Some(_)) => format!("[x, y, z], {}", kind.describe()),
             Self::Quantities(kind, None) => format!("list of {}", kind.describe()),
             Self::Points(kind) => format!("list of points [x, y, z], {}", kind.describe()),
             Self::Number(range) => numbers("number", *range),
