@@ -1,5 +1,5 @@
-//! The documentation: every link leads somewhere, every page is in the book, and generated pages are
-//! up to date.
+//! The documentation: every link and path leads somewhere, every page is in the book, and generated
+//! pages are up to date.
 //!
 //! To regenerate pages: `JAMGRIP_UPDATE=1 cargo test --release --test it book`, then read the diff.
 
@@ -94,6 +94,28 @@ fn every_relative_link_leads_to_a_file_and_a_heading() {
     }
     assert!(broken.is_empty(), "broken links:\n{}", broken.join("\n"));
 }
+
+/// Oracle: the files that are there.
+#[test]
+fn every_path_in_backticks_exists() {
+    const FOLDERS: [&str; 8] =
+        ["src/", "tests/", "benches/", "launch_configs/", "msgs/", "examples/", "bags/", "docs/"];
+    let mut missing = Vec::new();
+    // The changelog names files of older versions too.
+    for document in documents().iter().filter(|it| !it.ends_with("CHANGELOG.md")) {
+        let text = fs::read_to_string(document).unwrap();
+        let spans = text.lines().flat_map(|line| line.split('`').skip(1).step_by(2));
+        for span in spans.filter(|it| FOLDERS.iter().any(|folder| it.starts_with(folder))) {
+            if !span.contains([' ', '<', '*']) && span != RUN_FOLDER && !Path::new(span).exists() {
+                missing.push(format!("{}: `{span}`", document.display()));
+            }
+        }
+    }
+    assert!(missing.is_empty(), "missing files:\n{}", missing.join("\n"));
+}
+
+/// The folder of a recording, as the pages write it.
+const RUN_FOLDER: &str = "bags/SCENE_TIME";
 
 /// Oracle: the files in `docs`.
 #[test]
