@@ -8,7 +8,10 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use jamgrip::scene::reference;
+use jamgrip::{
+    scene::{self, reference},
+    wire::topics::{NODE, topics},
+};
 
 /// Markdown files whose links are checked.
 fn documents() -> Vec<PathBuf> {
@@ -133,6 +136,18 @@ fn the_summary_lists_every_page_once() {
 fn the_readme_is_short() {
     let n_lines = fs::read_to_string("README.md").unwrap().lines().count();
     assert!(n_lines <= 130, "{n_lines} lines");
+}
+
+/// Oracle: the list of topics in the code.
+#[test]
+fn every_topic_is_described() {
+    let scene = scene::load(Path::new("launch_configs/pick_and_lift.yaml"), &[]).unwrap();
+    let page = fs::read_to_string("docs/ros.md").unwrap();
+    let object = format!("/{}/", scene.objects[0].name);
+    for topic in topics(&scene) {
+        let name = topic.name.replace(NODE, "~").replace(&object, "/<name>/");
+        assert!(page.contains(&format!("`{name}`")), "docs/ros.md does not describe {name}");
+    }
 }
 
 /// Oracle: the schema that reads scenes.
