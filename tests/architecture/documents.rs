@@ -51,16 +51,17 @@ fn paths_in_comments_exist() {
 
 #[test]
 fn paths_and_links_are_found() {
-    let text = "See `src/lib.rs`, `cargo test src/x`, `src/*.rs`, `src/<name>.rs` and `msgs/a:12`.\n\
+    let text = "See `src/lib.rs`, `cargo test src/x`, `src/*.rs`, `src/<name>.rs`, `bags/A_B` and `msgs/a:12`.\n\
                 ```text\nsrc/not.rs\n```\n[a](docs/a.md#part) [b](https://example.org/x) [c](#here)\n\
                 ![d](b.svg) ``";
     assert_eq!(paths(text), ["src/lib.rs", "msgs/a"]);
     assert_eq!(links(text), ["docs/a.md", "b.svg"]);
 }
 
-/// Every Markdown file for people.
+/// Every Markdown file for people, but the changelog, which names files of older versions too.
 fn documents() -> Vec<PathBuf> {
-    let in_root = |it: &PathBuf| it.extension().is_some_and(|it| it == "md");
+    let in_root =
+        |it: &PathBuf| it.extension().is_some_and(|it| it == "md") && !it.ends_with("CHANGELOG.md");
     let root = std::fs::read_dir(".").unwrap().map(|it| it.unwrap().path()).filter(in_root);
     let folders = ["docs", "bags", "msgs", "examples", "launch_configs", "tests", ".github"];
     root.chain(folders.iter().flat_map(|it| files_in(it, &["md"]))).collect()
@@ -73,7 +74,13 @@ fn paths(text: &str) -> Vec<&str> {
         .filter(|it| FOLDERS.iter().any(|folder| it.starts_with(folder)))
         .filter(|it| !it.contains([' ', '<', '*', '{', '…', '(', '$']))
         .map(|it| it.split(':').next().unwrap())
+        .filter(|it| !it.split('/').any(is_placeholder))
         .collect()
+}
+
+/// True for a part of a path that stands for many, such as `NAME`.
+fn is_placeholder(part: &str) -> bool {
+    !part.is_empty() && part.chars().all(|it| it.is_ascii_uppercase() || it == '_')
 }
 
 /// Targets of links that are files, without the place inside.
