@@ -1,5 +1,7 @@
 //! What a source file names although it may not.
 
+use std::collections::BTreeSet;
+
 use crate::{
     paths::{self, Mention},
     rules::{BANS, Ban, FOREIGN, UNSAFE, is_in},
@@ -13,10 +15,16 @@ pub(crate) fn violations(file: &str, text: &str, order: &[String]) -> Vec<String
         Err(fault) => return vec![format!("{file}: {fault}")],
     };
     let mut found = Vec::new();
+    // Once in each file is enough.
+    let mut foreign_found = BTreeSet::new();
     for it in &read.mentions {
         let place = format!("{file}:{}: `{}`", it.line, it.path.join("::"));
         found.extend(against_order(file, it, order).map(|why| format!("{place}: {why}")));
-        found.extend(against_foreign(file, it).map(|why| format!("{place}: {why}")));
+        if let Some((name, why)) = against_foreign(file, it)
+            && foreign_found.insert(name)
+        {
+            found.push(format!("{place}: {why}"));
+        }
         for ban in BANS.iter().filter(|ban| !is_in(file, ban.except)) {
             if is_banned(file, it, ban) {
                 found.push(format!("{place}: {}", ban.why));
@@ -59,9 +67,9 @@ fn against_order(file: &str, mention: &Mention, order: &[String]) -> Option<Stri
     is_below.then(|| format!("`{room}` may not use `{other}`, which is below it in src/lib.rs"))
 }
 
-fn against_foreign(file: &str, mention: &Mention) -> Option<String> {
+fn against_foreign(file: &str, mention: &Mention) -> Option<(&'static str, String)> {
     let (path, places) = foreign(mention)?;
-    (!is_in(file, places)).then(|| format!("`{path}` belongs in {places:?}"))
+    (!is_in(file, places)).then(|| (path, format!("`{path}` belongs in {places:?}")))
 }
 
 /// The entry of the table that decides about a path.
