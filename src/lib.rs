@@ -5,6 +5,7 @@
 pub mod base; // words that everything shares
 pub mod scene; // text to checked numbers
 pub mod physics; // grains, membrane, chamber
+pub mod measure; // what a state shows
 pub mod cosim; // one tick of the coupled system
 pub mod command; // what the outside may ask
 pub mod session; // one run in memory

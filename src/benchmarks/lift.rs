@@ -9,7 +9,10 @@ use super::{
     soundness::{Seen, check_lift},
 };
 use crate::{
-    base::{Real, lanes},
+    base::{
+        Real, lanes,
+        real::{real, real_of},
+    },
     cosim::compile::Compiled,
     node::{
         judge::Judge,
@@ -19,10 +22,7 @@ use crate::{
         schedule::Schedule,
         start::{self, Started},
     },
-    physics::{
-        measure::{real, real_of},
-        membrane::mesh::Mesh,
-    },
+    physics::membrane::mesh::Mesh,
     scene::{self, Scene, SceneError},
     session::Session,
     snapshot::take,

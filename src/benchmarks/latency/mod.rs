@@ -19,12 +19,14 @@ use serde::{Deserialize, Serialize};
 
 use super::{BenchError, Case, Figures, Options, lift};
 use crate::{
-    base::Real,
+    base::{
+        Real,
+        real::{real, real_of},
+    },
     node::{
         Crew, judge::Judge, lockstep::Gate, orders::Orders, outlets::Outlets, progress::Progress,
         schedule::Schedule, shutdown::Shutdown,
     },
-    physics::measure::{real, real_of},
     scene::{Lockstep, Scene},
     sinks::{
         RunStatistics,

@@ -17,11 +17,11 @@ use serde_json::{Value, json};
 
 use super::{figures::median, laps::Work, packing::Boxed, process::niceness, soundness::Limits};
 use crate::{
-    base::Real,
-    physics::{
-        System,
-        measure::{real, real_of},
+    base::{
+        Real,
+        real::{real, real_of},
     },
+    physics::System,
 };
 use answer::{Lap, read, tail};
 pub use fault::PeerError;

@@ -8,15 +8,18 @@ use super::{
     keys::{Protocol, Scene},
 };
 use crate::{
-    base::{Real, real::count},
+    base::{
+        Real,
+        real::{count, real},
+    },
     experiments::{
         Progress, ResumeError, Run, StartError, kept,
         record::{Column, Record},
     },
+    measure::{self, rest::unbalanced_force},
     physics::{
         Scratch, System,
         health::Diverged,
-        measure::{self, real, rest::unbalanced_force},
         packing::{Grown, Growth, grow},
     },
 };

@@ -21,6 +21,7 @@ use crate::{
         random::{Random, Stream},
         real::Twist,
     },
+    measure::{enclosed_volume, packing, stress},
     physics::{
         Model, System,
         boundary::{
@@ -29,7 +30,6 @@ use crate::{
         },
         contact::law::{self, PairLaw},
         health::Diverged,
-        measure::{enclosed_volume, packing, stress},
         membrane::{CARRIER_ID, FREE, MembraneModel, Sheet, mesh::Mesh},
         model::ChamberModel,
         packing::{Grown, Growth, Recipe, Room, first_scale, grow, scatter, sphere_volume},

@@ -7,12 +7,11 @@ use super::{
     seen::{Seen, deviations},
 };
 use crate::{
-    base::Real,
+    base::{Real, real::real},
     experiments::{
         findings::{Curve, Expected, Findings, Quantity, Row, Told},
         record::Record,
     },
-    physics::measure::real,
 };
 
 /// Everything that the records show.

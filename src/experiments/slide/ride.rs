@@ -10,11 +10,15 @@ use super::{
     scene::{Pull, Scene},
 };
 use crate::{
-    base::{Pose, Real, Vec3, real::Twist},
+    base::{
+        Pose, Real, Vec3,
+        real::{Twist, real, real_of},
+    },
     experiments::{
         Progress, ResumeError, Run, StartError, kept,
         record::{Column, Record},
     },
+    measure::packing,
     physics::{
         Controls, Model, Scratch, State, System,
         boundary::{
@@ -23,7 +27,6 @@ use crate::{
         },
         contact::{self, law::PairLaw, sums},
         health::Diverged,
-        measure::{packing, real, real_of},
         membrane::{CARRIER_ID, FREE, MembraneModel, MembraneState, SheetContact, critical_step},
         model::ChamberModel,
         state::{Grains, Springs},

@@ -17,11 +17,11 @@ use super::{
     specimen::{BOTTOM, Recipe, TOP},
 };
 use crate::{
-    base::Real,
+    base::{Real, real::real},
+    measure,
     physics::{
         System,
         health::Diverged,
-        measure::{self, real},
         packing::{
             Grown, Growth, Laws,
             grow::{self, Progress as Grow},

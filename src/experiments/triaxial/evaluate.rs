@@ -8,11 +8,11 @@ use super::{
     timing_name,
 };
 use crate::{
+    base::real::{real, real_of},
     experiments::{
         findings::{Expected, Findings, Quantity, Row, Told},
         record::Record,
     },
-    physics::measure::{real, real_of},
 };
 
 const KINDS: [Kind; 2] = [Kind::Triangles, Kind::Spheres];

@@ -7,12 +7,10 @@ use serde::{Deserialize, Serialize};
 
 use super::gauges;
 use crate::{
-    base::Real,
+    base::{Real, real::real},
     experiments::record::{Column, Record, Scalar, Validity},
-    physics::{
-        System,
-        measure::{self, real},
-    },
+    measure,
+    physics::System,
 };
 
 /// Columns with their units.

@@ -7,9 +7,9 @@ use super::{
     specimen::{Choice, Kind, Recipe},
 };
 use crate::{
-    base::Real,
+    base::{Real, real::real},
     experiments::{Progress, ResumeError, Run, Stepped, kept, record::Record},
-    physics::{health::Diverged, measure::real, membrane::mesh::MeshFault, state::State},
+    physics::{health::Diverged, membrane::mesh::MeshFault, state::State},
 };
 
 /// Contacts and vertices that a slice goes over: about a tenth of a second.
