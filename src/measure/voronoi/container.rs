@@ -1,6 +1,6 @@
 //! What bounds the cells: a box, walls, a closed surface of triangles.
 //!
-//! A surface need not be convex. A cell C of a sphere centered at O is clipped exactly:
+//! A surface need not be convex. A cell C is clipped exactly, seen from any point O:
 //!
 //! ```text
 //! V(C ∩ M) = w V(C) − Σ_f s_f V(C ∩ K_f ∩ B_f)
@@ -59,6 +59,9 @@ struct Surface<'a> {
     near: Near<'static>,
     /// No vertex is farther than this from the centroid of its facet (m).
     radius_max: Real,
+    /// Planes that have the whole surface below them: unit normal and height (m). Cells on the outside are
+    /// open until these close them, long before the corners of the box.
+    hull: Vec<(Vec3, Real)>,
 }
 
 impl<'a> Container<'a> {
@@ -73,8 +76,8 @@ impl<'a> Container<'a> {
     }
 
     /// The inside of the closed surface of `triangles`, counterclockwise seen from outside, with vertices
-    /// at `positions` (m). It may be concave and have several parts; for a surface with rims, close these
-    /// with triangles first. The membrane's mid-surface is the bound, not the side that grains touch.
+    /// at `positions` (m). It may be concave and have several parts; `with_lids` closes a surface
+    /// with rims. The membrane's mid-surface is the bound, not the side that grains touch.
     ///
     /// # Errors
     /// If an edge has not exactly one triangle on either side.
@@ -96,7 +99,13 @@ impl<'a> Container<'a> {
             centroids.push(centroid);
         }
         let near = Near::new(&centroids, radius_max, None);
-        let surface = Some(Surface { positions, triangles, near, radius_max });
+        let hull = diagonals().map(|normal| {
+            let highest =
+                positions.iter().map(|v| normal.dot(v)).fold(Real::NEG_INFINITY, Real::max);
+            (normal, highest + margin)
+        });
+        let hull = hull.collect();
+        let surface = Some(Surface { positions, triangles, near, radius_max, hull });
         Ok(Self { corners, period: None, planes: &[], surface })
     }
 
@@ -130,6 +139,13 @@ impl<'a> Container<'a> {
         cell
     }
 
+    /// Takes away some of what lies outside the surface, if there is one.
+    pub(super) fn close(&self, cell: &mut Polyhedron, center: &Vec3, cutter: &mut Cutter) {
+        for (normal, height) in self.surface.iter().flat_map(|surface| &surface.hull) {
+            cell.cut(normal, height - normal.dot(center), None, cutter);
+        }
+    }
+
     /// Volume (m³) of the part of `cell` inside the surface; adds its faces.
     pub(super) fn clip(
         &self,
@@ -142,17 +158,20 @@ impl<'a> Container<'a> {
             faces.add(cell, 1.0);
             return cell.volume();
         };
-        let reach = cell.reach();
+        faces.is_clipped = true;
+        // Any point serves as the apex of the cones; beside the center it is in no facet's plane.
+        let apex = Vec3::new(0.61, 0.35, 0.71) * (1e-3 * surface.radius_max);
+        let reach = cell.reach() + apex.norm();
         let mut facets = Vec::new();
         surface.near.visit(center, reach + surface.radius_max, |f, _| facets.push(f));
         facets.retain(|&f| surface.is_within(f, center, reach));
-        let winding = surface.winding(center, &self.corners);
+        facets.sort_unstable();
+        let winding = surface.winding(&(center + apex), &self.corners);
         let mut volume = winding * cell.volume();
         faces.add(cell, winding);
-        facets.sort_unstable();
         for f in facets {
             let corners = surface.corners(f).map(|it| it - center);
-            if let Some((sign, part)) = beyond(cell, &corners, f, cutter) {
+            if let Some((sign, part)) = beyond(cell, &apex, &corners, f, cutter) {
                 volume -= sign * part.volume();
                 faces.subtract(&part, sign);
             }
@@ -161,9 +180,11 @@ impl<'a> Container<'a> {
     }
 }
 
-/// The part of `cell` beyond facet `f` with `corners`, all relative to the cell's center, and its sign.
+/// The part of `cell` beyond facet `f` with `corners`, seen from `apex`, and its sign; all relative to the
+/// cell's center.
 fn beyond(
     cell: &Polyhedron,
+    apex: &Vec3,
     corners: &[Vec3; 3],
     f: usize,
     cutter: &mut Cutter,
@@ -171,19 +192,28 @@ fn beyond(
     let [a, b, c] = corners;
     let normal = (b - a).cross(&(c - a)).try_normalize(0.0)?;
     let height = normal.dot(a);
-    let sign = height.signum();
-    let away = sign * normal;
-    if !cell.extends_beyond(&away, sign * height) {
+    let sign = (height - normal.dot(apex)).signum();
+    let mut cuts = [(-sign * normal, -sign * height); 4];
+    for (cut, [p, q]) in cuts[1..].iter_mut().zip([[a, b], [b, c], [c, a]]) {
+        // An apex in line with an edge sees no cone.
+        let side = (p - apex).cross(&(q - apex)).try_normalize(0.0)? * -sign;
+        *cut = (side, side.dot(apex));
+    }
+    if cuts.iter().any(|(side, offset)| !cell.has_part_below(side, *offset)) {
         return None;
     }
     let mut part = cell.clone();
-    part.cut(&-away, -sign * height, Some(Neighbor::Facet(f)), cutter);
-    for [p, q] in [[a, b], [b, c], [c, a]] {
-        // A center in the plane of an edge and of the facet sees no cone.
-        let side = p.cross(q).try_normalize(0.0)? * -sign;
-        part.cut(&side, 0.0, None, cutter);
+    for (k, (side, offset)) in cuts.iter().enumerate() {
+        part.cut(side, *offset, (k == 0).then_some(Neighbor::Facet(f)), cutter);
     }
     (!part.is_empty()).then_some((sign, part))
+}
+
+/// Unit vectors to the edges and corners of a cube.
+fn diagonals() -> impl Iterator<Item = Vec3> {
+    let steps = [-1.0, 0.0, 1.0];
+    let all = (0..27).map(move |k| Vec3::new(steps[k % 3], steps[k / 3 % 3], steps[k / 9]));
+    all.filter(|it| it.norm_squared() > 1.5).map(|it| it.normalize())
 }
 
 /// Each directed edge must have its reverse, once.
@@ -255,6 +285,8 @@ pub(super) struct Faces {
     whole: Vec<Face>,
     /// What is taken from them, and facets.
     changes: BTreeMap<Neighbor, Real>,
+    /// True if a surface may have taken faces away.
+    is_clipped: bool,
 }
 
 impl Faces {
@@ -274,15 +306,15 @@ impl Faces {
 
     /// The faces that have an area.
     pub(super) fn into_list(mut self) -> Vec<Face> {
-        if self.changes.is_empty() {
+        if !self.is_clipped {
             return self.whole;
         }
-        let size = self.whole.iter().map(|face| face.area).fold(0.0, Real::max);
         for face in &mut self.whole {
             face.area += self.changes.remove(&face.neighbor).unwrap_or(0.0);
         }
         let rest = self.changes.into_iter().map(|(neighbor, area)| Face { neighbor, area });
         let mut faces: Vec<Face> = self.whole.into_iter().chain(rest).collect();
+        let size = faces.iter().map(|face| face.area).fold(0.0, Real::max);
         // What is left of a face that was taken away is rounding.
         faces.retain(|face| face.area.abs() > 1e-12 * size);
         faces

@@ -12,12 +12,18 @@
 //!
 //! Source: Imai, Iri & Murota, SIAM J. Comput. 14 (1985) 93; Rycroft, Chaos 19 (2009) 041111 (voro++).
 //!
-//! DECISION
+//! Own clipping instead of a crate, after a trial on 19 652 cells (lattices with noise, equal and unequal
+//! radii; random points): `voro_rs` 0.3, which binds voro++, gives the same volumes to 3e-14 and the same
+//! faces in 0.42 s, this module in 0.31 s on one core. The binding needs a C++ compiler for each target and
+//! knows no triangulated container; `meshless_voronoi` 0.7 and `vorothree` 0.0.1 know no radii. Their
+//! licenses (BSD-3-Clause-LBNL, MIT, Apache-2.0) would all do.
 
 mod container;
 mod polyhedron;
+mod rims;
 
 pub use container::{Container, OpenSurface, Plane};
+pub use rims::with_lids;
 
 use std::f64::consts::PI;
 
@@ -62,7 +68,11 @@ pub struct Cell {
 /// (`base::parallel::lead`).
 pub fn laguerre_cells(positions: &[Vec3], radii: &[Real], container: &Container<'_>) -> Vec<Cell> {
     let [low, high] = container.corners();
-    let spacing = ((high - low).product() / real(positions.len().max(1))).cbrt();
+    let n_spheres = real(positions.len().max(1));
+    let in_box = ((high - low).product() / n_spheres).cbrt();
+    let in_packing = 2.2 * radii.iter().sum::<Real>() / n_spheres;
+    // Spheres in contact may fill only a part of the box.
+    let spacing = if in_packing > 0.0 { in_packing.min(in_box) } else { in_box };
     let tessellation = Tessellation {
         near: Near::new(positions, spacing, container.period()),
         radii,
@@ -128,7 +138,11 @@ impl Tessellation<'_> {
                     end = safe(cell);
                 }
             }
-            (done, reach) = (reach, (2.0 * reach).min(end.max(reach)));
+            if done < 0.0 && reach < end {
+                self.container.close(cell, center, cutter);
+                end = safe(cell);
+            }
+            (done, reach) = (reach, (1.6 * reach).min(end.max(reach)));
         }
     }
 

@@ -94,9 +94,9 @@ impl Polyhedron {
         self.faces.iter().filter_map(|face| Some((face.neighbor?, self.area_vector(face).norm())))
     }
 
-    /// True if a vertex lies where `normal · x > offset` (m).
-    pub(super) fn extends_beyond(&self, normal: &Vec3, offset: Real) -> bool {
-        self.vertices.iter().any(|vertex| normal.dot(vertex) > offset)
+    /// True if a vertex lies where `normal · x < offset` (m).
+    pub(super) fn has_part_below(&self, normal: &Vec3, offset: Real) -> bool {
+        self.vertices.iter().any(|vertex| normal.dot(vertex) < offset)
     }
 
     fn first(&self, face: &Face) -> Vec3 {
