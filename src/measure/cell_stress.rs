@@ -22,7 +22,8 @@ use super::{
 use crate::base::{Mat3, Real, Vec3, real::real};
 
 /// Stress (Pa), world axes, in each cell of `grid`; `None` in a cell that no branch crosses. In a box
-/// that repeats with `period` (m) along the world axes, all images count.
+/// that repeats with `period` (m) along the world axes, all images count. A branch that runs in the face
+/// between two cells counts to one of them.
 pub fn cell_stress(grid: &Grid, branches: &[Branch], period: Option<&Vec3>) -> Vec<Option<Mat3>> {
     let world = bounds(grid);
     let mut stress = vec![None; grid.n_cells()];

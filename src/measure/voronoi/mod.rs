@@ -12,10 +12,19 @@
 //!
 //! Source: Imai, Iri & Murota, SIAM J. Comput. 14 (1985) 93; Rycroft, Chaos 19 (2009) 041111 (voro++).
 //!
+//! ```
+//! use jamgrip::{base::Vec3, measure::voronoi::{Container, Neighbor, laguerre_cells}};
+//!
+//! let positions = [Vec3::new(0.2, 0.5, 0.5), Vec3::new(0.8, 0.5, 0.5)];
+//! let cells = laguerre_cells(&positions, &[0.2, 0.1], &Container::cuboid(Vec3::zeros(), Vec3::repeat(1.0)));
+//! assert!((cells[0].volume - 0.525).abs() < 1e-12);
+//! assert!(cells[0].faces.iter().any(|face| face.neighbor == Neighbor::Sphere(1)));
+//! ```
+//!
 //! Own clipping instead of a crate, after a trial on 19 652 cells (lattices with noise, equal and unequal
 //! radii; random points): `voro_rs` 0.3, which binds voro++, gives the same volumes to 3e-14 and the same
-//! faces in 0.42 s, this module in 0.31 s on one core. The binding needs a C++ compiler for each target and
-//! knows no triangulated container; `meshless_voronoi` 0.7 and `vorothree` 0.0.1 know no radii. Their
+//! faces in 0.38 to 0.49 s, this module in 0.27 to 0.49 s on one core. The binding needs a C++ compiler for
+//! each target and knows no triangulated container; `meshless_voronoi` 0.7 and `vorothree` 0.0.1 know no radii. Their
 //! licenses (BSD-3-Clause-LBNL, MIT, Apache-2.0) would all do.
 
 mod container;
@@ -73,6 +82,8 @@ pub fn laguerre_cells(positions: &[Vec3], radii: &[Real], container: &Container<
     let in_packing = 2.2 * radii.iter().sum::<Real>() / n_spheres;
     // Spheres in contact may fill only a part of the box.
     let spacing = if in_packing > 0.0 { in_packing.min(in_box) } else { in_box };
+    // A flat box has no spacing of its own.
+    let spacing = spacing.max(1e-3 * (high - low).norm());
     let tessellation = Tessellation {
         near: Near::new(positions, spacing, container.period()),
         radii,

@@ -151,7 +151,8 @@ impl Polyhedron {
             cutter.heights.iter_mut().for_each(|height| *height -= step);
             (highest, lowest) = (highest - step, lowest - step);
         }
-        // A cut that rounding never lets be is one that takes nothing but rounding.
+        // Not reached on lattices disturbed by 1e-3 to 1e-17 of their edge. A cut left out here would show
+        // in the sum of the volumes.
         false
     }
 }

@@ -118,6 +118,8 @@ fn a_hidden_sphere_has_an_empty_cell() {
     let cells = laguerre_cells(&twice, &[0.2, 0.2], &cuboid);
     assert_eq!((cells[0].volume, cells[1].volume), (8.0, 0.0));
     assert!(laguerre_cells(&[], &[], &cuboid).is_empty());
+    let flat = Container::cuboid(Vec3::repeat(-1.0), Vec3::new(1.0, 1.0, -1.0));
+    assert!(total(&laguerre_cells(&hidden, &[0.1; 3], &flat)).abs() < 1e-15);
 }
 
 /// Oracle: the box less the corner of volume 1/6 that the wall cuts off, and the wall's triangle of area √3/2.
