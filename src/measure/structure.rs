@@ -349,4 +349,23 @@ mod tests {
         let expected = 18.0 / (4.0 * PI * 4.0);
         assert!((cut[12] / expected - 1.0).abs() < 1e-12, "{} {expected}", cut[12]);
     }
+
+    /// Oracle: all pairs, one by one, of points that have strayed into other periods.
+    #[test]
+    fn the_search_finds_every_pair_once() {
+        let mut random = Random::new(6, Stream::Position);
+        let period = Vec3::new(1.0, 1.3, 0.9);
+        let positions: Vec<Vec3> =
+            (0..300).map(|_| Vec3::from_fn(|_, _| random.between(-3.0, 3.0))).collect();
+        let (mut n_found, mut n_pairs) = (0, 0);
+        let n_centers =
+            each_distance(&positions, &Region::Periodic(period), 0.44, |_, _, _| n_found += 1);
+        for a in &positions {
+            for b in &positions {
+                let distance = closest_image(a - b, &period).norm();
+                n_pairs += usize::from(0.0 < distance && distance < 0.44);
+            }
+        }
+        assert_eq!((n_centers, n_found), (300, n_pairs));
+    }
 }
