@@ -119,7 +119,7 @@ impl Boxed {
     pub(super) fn size(&self) -> Vec3 {
         let edge = self.edge();
         let lid = if self.phase == Phase::Flow { OPENED } else { 1.0 };
-        let n = self.n_tiles.map(crate::physics::measure::real);
+        let n = self.n_tiles.map(crate::base::real::real);
         Vec3::new(n[0] * edge, n[1] * edge, n[2] * edge * lid)
     }
 
@@ -203,7 +203,7 @@ impl Boxed {
     fn mirrored(&self, tile: &Grains) -> Grains {
         let (edge, [nx, ny, nz]) = (self.edge(), self.n_tiles);
         let along = |k: usize, x: Real| {
-            let from = crate::physics::measure::real(k) * edge;
+            let from = crate::base::real::real(k) * edge;
             if k.is_multiple_of(2) { from + x } else { from + edge - x }
         };
         let mut positions = Vec::with_capacity(tile.len() * nx * ny * nz);
@@ -269,7 +269,7 @@ fn drag(system: &mut System, share: Real) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::physics::measure::{normal_forces, rest::unbalanced_force};
+    use crate::measure::{normal_forces, rest::unbalanced_force};
 
     /// Oracle: the head of this file. Tolerance 1e-9: the overlap, a hundredth of the radius, is a
     /// difference of coordinates of 0.5 m, known to 1e-16 of that.

@@ -2,12 +2,10 @@
 //! very fast.
 
 use crate::{
-    base::Real,
+    base::{Real, real::real},
+    measure::{kinetic_energy, packing},
     node::lift_monitor::LiftMetrics,
-    physics::{
-        Model, Scratch, State,
-        measure::{kinetic_energy, packing, real},
-    },
+    physics::{Model, Scratch, State},
 };
 
 /// What a state is like.

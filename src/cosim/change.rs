@@ -9,7 +9,10 @@ use super::{
     rapier_world::RapierWorld,
 };
 use crate::{
-    base::{Pose, Real, Vec3, real::Twist},
+    base::{
+        Pose, Real, Vec3,
+        real::{Twist, real},
+    },
     command::change::ChangeRefused,
     physics::{
         State,
@@ -17,7 +20,6 @@ use crate::{
             body::BodyMotion,
             shape::{Bulk, Surface},
         },
-        measure::real,
         model::{BodyModel, BodySurface},
     },
     scene::{Object, Scene},

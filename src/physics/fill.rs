@@ -12,7 +12,6 @@ use super::{
     boundary::body::BodyMotion,
     contact::law::PairLaw,
     health::{self, Diverged},
-    measure::real,
     membrane::{CARRIER_ID, MembraneState, mesh::Mesh},
     neighbours::weigh_pairs,
     packing::sphere_volume,
@@ -23,7 +22,7 @@ use crate::{
     base::{
         Real, Vec3,
         random::{Random, Stream},
-        real::{Twist, count},
+        real::{Twist, count, real},
     },
     scene::Scene,
 };

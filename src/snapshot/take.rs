@@ -8,7 +8,7 @@ use super::{
 use crate::{
     base::{Real, Vec3, real::Wrench},
     cosim::{Coupled, FLANGE},
-    physics::measure,
+    measure,
     session::Session,
 };
 

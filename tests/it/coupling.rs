@@ -7,7 +7,8 @@ use jamgrip::{
     base::{Pose, Real, Vec3, parallel},
     command::Command,
     cosim::{Coupled, FLANGE, Inputs},
-    physics::{Controls, Scratch, State, measure, substep},
+    measure,
+    physics::{Controls, Scratch, State, substep},
     session::Session,
     snapshot::{Parts, take},
 };

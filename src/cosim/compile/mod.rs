@@ -17,7 +17,7 @@ use crate::{
         Pose, Real, Vec3,
         digest::Digest,
         parallel,
-        real::{Twist, count},
+        real::{Twist, count, real},
     },
     physics::{
         Model, State,
@@ -31,7 +31,6 @@ use crate::{
             law::{self, PairLaw},
         },
         critical_step,
-        measure::real,
         membrane::{MembraneModel, Sheet, mesh::Mesh},
         model::{BodyModel, BodySurface, ChamberModel},
     },

@@ -4,12 +4,10 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use super::phase::Phase;
 use crate::{
-    base::{Real, Vec3},
+    base::{Real, Vec3, real::real},
     experiments::record::{Column, Record},
-    physics::{
-        System,
-        measure::{self, real},
-    },
+    measure,
+    physics::System,
 };
 
 /// Share of the normal force on the object that lies within the contact angle; the rest may come

@@ -1,7 +1,10 @@
 //! One or two grains with a plane or a sheet, by hand, moved by the substeps of the simulation.
 
 use crate::{
-    base::{Pose, Real, Vec3, real::Twist},
+    base::{
+        Pose, Real, Vec3,
+        real::{Twist, real},
+    },
     experiments::{oracles::impact::Collision, record::Record},
     physics::{
         Controls, Model, Scratch, State, System,
@@ -10,7 +13,6 @@ use crate::{
             wall::{WallModel, WallShape},
         },
         contact::law::{PairLaw, Surface},
-        measure::real,
         membrane::{CARRIER_ID, MembraneModel, MembraneState, Sheet, mesh::Mesh},
         model::ChamberModel,
         state::{Grains, Springs},

@@ -8,12 +8,11 @@ use super::{
     scene::Scene,
 };
 use crate::{
-    base::{Real, Vec3},
+    base::{Real, Vec3, real::real},
     experiments::{
         findings::{Expected, Findings},
         record::Record,
     },
-    physics::measure::real,
 };
 
 pub(super) struct Conservation;

@@ -16,6 +16,7 @@ use crate::{
     base::{
         Real, Vec3,
         random::{Random, Stream},
+        real::real,
     },
     experiments::{
         findings::{Curve, Expected, Findings},
@@ -23,7 +24,6 @@ use crate::{
     },
     physics::{
         contact::law::Surface,
-        measure::real,
         membrane::{MembraneModel, mesh::Mesh},
     },
 };

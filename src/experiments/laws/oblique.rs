@@ -46,7 +46,7 @@ impl Law for Oblique {
     fn measure(&self, scene: &Scene, point: usize, record: &mut Record) {
         let n = n_angles(scene);
         if point < n {
-            swept(scene, crate::physics::measure::real(point + 1), record);
+            swept(scene, crate::base::real::real(point + 1), record);
         } else if let Some([degrees, e_t, spin]) = TABLE.get(point - n) {
             let found = fly(scene, degrees.to_radians(), 0.0, record);
             worst(record, "U4.table", found[0] / e_t - 1.0);

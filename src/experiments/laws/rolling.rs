@@ -8,15 +8,12 @@ use super::{
     scene::Scene,
 };
 use crate::{
-    base::{Real, Vec3},
+    base::{Real, Vec3, real::real},
     experiments::{
         findings::{Curve, Expected, Findings, Kind, Plot, Series},
         record::Record,
     },
-    physics::{
-        contact::law::{PairLaw, Surface},
-        measure::real,
-    },
+    physics::contact::law::{PairLaw, Surface},
 };
 
 pub(super) struct Rolling;

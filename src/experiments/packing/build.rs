@@ -8,14 +8,10 @@ use crate::{
     base::{
         Real, Vec3,
         random::{Random, Stream},
+        real::real,
     },
-    physics::{
-        System,
-        contact::law::PairLaw,
-        measure::{kinetic_energy, real, rest},
-        packing::sphere_volume,
-        state,
-    },
+    measure::{kinetic_energy, rest},
+    physics::{System, contact::law::PairLaw, packing::sphere_volume, state},
 };
 
 /// Unbalanced force over mean contact force below which grains are at rest.

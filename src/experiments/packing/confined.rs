@@ -22,6 +22,7 @@ use crate::{
         random::{Random, Stream},
         real::Twist,
     },
+    measure::{enclosed_volume, packing, stress},
     physics::{
         Model, System,
         boundary::{
@@ -30,7 +31,6 @@ use crate::{
         },
         contact::law::{self, PairLaw},
         health::Diverged,
-        measure::{enclosed_volume, packing, stress},
         membrane::{CARRIER_ID, FREE, MembraneModel, Sheet, mesh::Mesh},
         model::ChamberModel,
         packing::{Grown, Growth, Recipe, Room, first_scale, grow, scatter, sphere_volume},

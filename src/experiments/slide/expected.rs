@@ -70,8 +70,8 @@ const N_ROUNDS: usize = 4;
 impl Bed<'_> {
     /// The ball at `n` places over `period` [m] from the origin.
     pub(super) fn curve(&self, period: Real, n: usize) -> Vec<Rest> {
-        let step = period / crate::physics::measure::real(n);
-        let at = |k: usize| self.along * (step * crate::physics::measure::real(k));
+        let step = period / crate::base::real::real(n);
+        let at = |k: usize| self.along * (step * crate::base::real::real(k));
         let mut slopes = vec![0.0; n];
         let mut rests = Vec::new();
         for _ in 0..N_ROUNDS {

@@ -10,12 +10,16 @@ use super::{
     scene::{Pull, Scene},
 };
 use crate::{
-    base::{Pose, Real, Vec3, real::Twist},
+    base::{
+        Pose, Real, Vec3,
+        real::{Twist, real, real_of},
+    },
     experiments::{
         Progress, ResumeError, Run, StartError,
         record::{Column, Record},
         saved_run,
     },
+    measure::packing,
     physics::{
         Controls, Model, Scratch, State, System,
         boundary::{
@@ -24,7 +28,6 @@ use crate::{
         },
         contact::{self, law::PairLaw, sums},
         health::Diverged,
-        measure::{packing, real, real_of},
         membrane::{CARRIER_ID, FREE, MembraneModel, MembraneState, SheetContact, critical_step},
         model::ChamberModel,
         state::{Grains, Springs},

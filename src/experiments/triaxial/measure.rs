@@ -12,11 +12,11 @@
 
 use super::build::{BOTTOM, TOP};
 use crate::{
-    base::{Real, Vec3},
+    base::{Real, Vec3, real::real},
+    measure,
     physics::{
         System,
         contact::sums,
-        measure::{self, real},
         membrane::{pressure, stretch},
     },
 };

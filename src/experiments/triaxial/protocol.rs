@@ -17,11 +17,11 @@ use super::{
     time_series::Logbook,
 };
 use crate::{
-    base::Real,
+    base::{Real, real::real},
+    measure as packing_measure,
     physics::{
         System,
         health::Diverged,
-        measure::{self as packing_measure, real},
         packing::{
             Grown, Growth, Laws,
             grow::{self, Progress as Grow},

@@ -5,7 +5,7 @@
 //! other bodies in, sets `Neighbours::is_built` to false. History outlives rebuilds: pairs stay sorted, and springs move by merge.
 
 mod body_list;
-mod cell_grid;
+pub(crate) mod cell_grid;
 mod crossings;
 mod skin;
 mod sphere_list;

@@ -23,14 +23,13 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::pressure::normal_pressure;
 use crate::{
-    base::Real,
-    physics::{
-        Model, System,
-        contact::law::PairLaw,
-        measure::{real, real_of, stress},
-        neighbours::weigh_pairs,
+    base::{
+        Real,
+        real::{real, real_of},
     },
+    physics::{Model, System, contact::law::PairLaw, neighbours::weigh_pairs},
 };
 
 /// Growth per relaxation time √(m/(p d)).
@@ -197,7 +196,7 @@ impl Growth {
         let grown = self.progress.scale * (self.recipe.rate * dt * push.clamp(-1.0, 1.0)).exp();
         self.resize(system, grown.min(self.recipe.scale_last));
         system.step();
-        let pressure = stress::normal_pressure(&system.state, &system.scratch, self.recipe.volume);
+        let pressure = normal_pressure(&system.state, &system.scratch, self.recipe.volume);
         self.progress.pressure = pressure;
         self.progress.n_substeps += 1;
         self.judge();
@@ -308,7 +307,6 @@ mod tests {
                 wall::{WallModel, WallShape},
             },
             contact::law::Surface,
-            measure::grain_volume,
             packing::{Room, first_scale, scatter, sphere_volume},
             state::Grains,
         },
@@ -384,7 +382,8 @@ mod tests {
             }
         }
         let jammed = growth.progress();
-        let solid = grain_volume(&system.state) / EDGE.powi(3);
+        let grains = system.state.grains.radii.iter();
+        let solid = grains.map(|&r| sphere_volume(r)).sum::<Real>() / EDGE.powi(3);
         assert_eq!(jammed.grown, Grown::Jammed);
         assert!((std::f64::consts::FRAC_PI_6..0.63).contains(&solid), "{solid}");
         assert!((jammed.pressure / 500.0 - 1.0).abs() < 0.2, "{}", jammed.pressure);

@@ -9,9 +9,8 @@
 //! Source of u and I: da Cruz et al. (2005); of the criteria: E_kin/U below 1e-6 as well, since a
 //! grain in flight has no unbalanced force.
 
-use super::real;
 use crate::{
-    base::Real,
+    base::{Real, real::real},
     physics::{
         Model, Scratch, State,
         contact::{law::PairLaw, sums},

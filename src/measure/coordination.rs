@@ -5,9 +5,8 @@
 //! Taking rattlers away takes contacts from their neighbours, so this is repeated until all have
 //! enough. Isostatic counts without rattlers: 6 without friction, 4 with infinite friction.
 
-use super::real;
 use crate::{
-    base::Real,
+    base::{Real, real::real},
     physics::{Scratch, State},
 };
 

@@ -1,13 +1,34 @@
-//! What can be read off a state: energies, volumes, coordination, validity. Changes nothing.
+//! What can be read off a state: energies, volumes, contacts, fields, structure. Changes nothing.
+//!
+//! Fields, radial distribution functions and Voronoi cells take plain slices of positions and radii, so
+//! they serve any system and any recording:
+//!
+//! ```
+//! use jamgrip::{base::Vec3, measure::{fields::Overlaps, grid::Grid}};
+//!
+//! let (positions, radii) = ([Vec3::new(0.5, 0.5, 0.5)], [0.25]);
+//! let grid = Grid::aligned(&Vec3::zeros(), &Vec3::repeat(1.0), [2, 1, 1])?;
+//! let overlaps = Overlaps::new(&grid, &positions, &radii, None);
+//! let velocity = overlaps.mean(&[Vec3::new(0.0, 0.0, 0.1)]);
+//! assert_eq!(velocity[0], Some(Vec3::new(0.0, 0.0, 0.1)));
+//! # Ok::<(), jamgrip::measure::grid::GridError>(())
+//! ```
 
+pub mod cell_stress; // stress, cell by cell
 pub mod coordination; // who carries load
+pub mod fields; // density, velocity, displacement, cell by cell
+pub mod grid; // the cells
+mod near; // who is close by
 pub mod overlap; // sphere and box, exactly
 pub mod rest; // is it at rest?
 pub mod stress; // what the contacts carry
 pub mod structure; // how grains are arranged
+pub mod voronoi; // the space that belongs to each grain
 
-use super::{Model, Scratch, State, membrane::pressure};
-use crate::base::Real;
+use crate::{
+    base::{Real, real::real},
+    physics::{Model, Scratch, State, membrane::pressure},
+};
 
 /// State of the packing.
 #[derive(Clone, Copy, Debug, Default)]
@@ -122,16 +143,4 @@ pub fn mass(model: &Model, state: &State) -> Real {
 /// Volume enclosed by membrane and flange [m³].
 pub fn enclosed_volume(model: &Model, state: &State) -> Real {
     pressure::volume(&model.membrane.mesh, &state.membrane.positions)
-}
-
-/// A number of substeps, or of anything that is counted for long, as a real number.
-#[expect(clippy::cast_precision_loss, reason = "counts stay far below 2^53")]
-pub fn real_of(count: u64) -> Real {
-    count as Real
-}
-
-/// A count as a real number.
-#[expect(clippy::cast_precision_loss, reason = "counts stay far below 2^53")]
-pub fn real(count: usize) -> Real {
-    count as Real
 }
