@@ -15,11 +15,8 @@ use crate::{
             body::BodyMotion,
             wall::{WallModel, WallShape},
         },
-        contact::{
-            law::{PairLaw, Surface},
-            stiffness_at_vertex,
-        },
-        critical_step::critical_step,
+        critical_step::{critical_step, stiffness_at_vertex},
+        law::{PairLaw, Surface},
         membrane::{
             CARRIER_ID, FREE, MembraneModel, Sheet,
             bar::Bar,

@@ -19,7 +19,7 @@ use crate::{
             wall::{WallModel, WallShape},
         },
         contact::law::{PairLaw, Surface},
-        neighbours::weigh_pairs,
+        neighbours::update_pair_masses,
         packing::{
             Grown, Growth, Recipe, Room, first_scale, numbering::along_curve, scatter,
             scatter::NoRoom, sphere_volume,
@@ -170,7 +170,7 @@ impl Boxed {
             drag(&mut system, DRAG[0]);
         }
         system.state.grains.masses = masses_of(&system.state.grains);
-        weigh_pairs(&system.state, &mut system.scratch.neighbours);
+        update_pair_masses(&system.state, &mut system.scratch.neighbours);
         come_to_rest(&mut system, N_REST[0]);
         Ok(system.state)
     }

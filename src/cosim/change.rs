@@ -232,8 +232,11 @@ fn carry(state: &mut State, pose: &Pose) {
         membrane.positions[i] = place(&membrane.positions[i]);
     }
     let springs = &mut state.springs;
-    for spring in
-        springs.pairs.iter_mut().chain(&mut springs.walls).chain(&mut springs.spheres.springs)
+    for spring in springs
+        .pairs
+        .iter_mut()
+        .chain(&mut springs.walls.springs)
+        .chain(&mut springs.spheres.springs)
     {
         *spring = turn * *spring;
     }

@@ -14,7 +14,7 @@ use super::{
     health::{self, Diverged},
     measure::real,
     membrane::{CARRIER_ID, MembraneState, mesh::Mesh},
-    neighbours::weigh_pairs,
+    neighbours::update_pair_masses,
     packing::sphere_volume,
     state::{Grains, Springs},
     substep,
@@ -315,7 +315,7 @@ impl Filling {
             self.state.grains.radii[i] = scale * radius;
             self.state.grains.masses[i] = sphere_volume(scale * radius) * self.recipe.density;
         }
-        weigh_pairs(&self.state, &mut self.scratch.neighbours);
+        update_pair_masses(&self.state, &mut self.scratch.neighbours);
     }
 
     /// The stage after `stage`, without those that have nothing to do.
@@ -418,7 +418,7 @@ fn scatter(scene: &Scene, recipe: &Recipe) -> State {
             radii,
         },
         membrane,
-        springs: Springs::none(n, 1, 0),
+        springs: Springs::none(n, 0),
         pair_ids: Vec::new(),
         gauge: 0.0,
         walls: vec![BodyMotion { pose, twist: Twist::zero() }],

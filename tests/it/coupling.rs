@@ -83,7 +83,7 @@ fn what_the_sheet_gets_the_object_gives() {
     for (body, of_body) in sample_forces.chunks(n_samples).enumerate() {
         let centre = controls.bodies[body].pose.translation.vector;
         let (mut force, mut torque, mut size) = (Vec3::zeros(), Vec3::zeros(), 0.0);
-        for sample in of_body.iter().filter(|sample| sample.overlap > 0.0) {
+        for sample in of_body.iter().filter(|sample| sample.flags.touches()) {
             force += sample.force;
             torque += (sample.point - centre).cross(&sample.force);
             size += sample.force.norm();

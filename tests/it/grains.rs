@@ -210,7 +210,7 @@ fn two_unequal_grains_conserve_momentum_and_angular_momentum() {
         let mut touched = 0;
         for _ in 0..3000 {
             rig.step();
-            touched += usize::from(rig.scratch.pair_forces.iter().any(|p| p.overlap > 0.0));
+            touched += usize::from(rig.scratch.pair_flags.iter().any(|it| it.touches()));
         }
         assert!(touched > 100, "the grains meet");
         assert!((rig.state.grains.velocities[1] - Vec3::zeros()).norm() > 0.1, "and part");
@@ -239,8 +239,8 @@ fn an_elastic_stack_keeps_its_energy_over_a_hundred_contacts() {
         let (mut n_contacts, mut touches, mut worst) = (0, false, 0.0_f64);
         while n_contacts < 100 {
             rig.step();
-            let touching = rig.scratch.wall_forces.iter().any(|p| p.normal > 0.0)
-                || rig.scratch.pair_forces.iter().any(|p| p.overlap > 0.0);
+            let touching = rig.scratch.wall_forces.iter().any(|it| it.flags.touches())
+                || rig.scratch.pair_flags.iter().any(|it| it.touches());
             n_contacts += usize::from(touching && !touches);
             if !touching && !touches {
                 let energy = potential(&rig) + rig.kinetic_energy();

@@ -64,7 +64,7 @@ impl Rig {
         let state = State {
             grains: Grains::default(),
             membrane: MembraneState::at_rest(&mesh),
-            springs: Springs::none(0, 1, 0),
+            springs: Springs::none(0, 0),
             pair_ids: Vec::new(),
             gauge: 0.0,
             walls: vec![BodyMotion { pose: flange, twist: Twist::zero() }],
@@ -116,7 +116,7 @@ impl Rig {
         grains.masses.push(4.0 / 3.0 * std::f64::consts::PI * radius.powi(3) * density);
         self.model.radius_max = self.model.radius_max.max(radius);
         self.model.radius_mean = radius;
-        self.state.springs = Springs::none(grains.positions.len(), 1, 0);
+        self.state.springs = Springs::none(grains.positions.len(), 0);
         self.scratch = Scratch::new(&self.model);
     }
 

@@ -30,7 +30,7 @@ fn rig(n: i32, surface: Surface, dt: Real) -> Rig {
 
 /// The contacts that carry load.
 fn loaded(rig: &Rig) -> Vec<SphereForce> {
-    rig.scratch.sphere_forces.iter().filter(|it| it.overlap > 0.0).copied().collect()
+    rig.scratch.sphere_forces.iter().filter(|it| it.flags.touches()).copied().collect()
 }
 
 fn shared_radius() -> Real {

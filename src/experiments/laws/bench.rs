@@ -76,7 +76,7 @@ impl Bench {
         let state = State {
             grains: Grains::default(),
             membrane: MembraneState::at_rest(&membrane.mesh),
-            springs: Springs::none(0, 1, 0),
+            springs: Springs::none(0, 0),
             pair_ids: Vec::new(),
             gauge: 0.0,
             walls: walls.clone(),
@@ -119,7 +119,7 @@ impl Bench {
         model.radius_max = model.radius_max.max(radius);
         model.radius_mean = radius;
         model.skin = 0.1 * model.radius_max;
-        state.springs = Springs::none(grains.positions.len(), 1, 0);
+        state.springs = Springs::none(grains.positions.len(), 0);
         *scratch = Scratch::new(model);
     }
 
@@ -153,10 +153,8 @@ impl Bench {
     /// Normal force between the grains, or of the plane [N].
     pub(super) fn normal_force(&self) -> Real {
         match self.grains().len() {
-            1 => self.system.scratch.wall_forces[0].normal,
-            _ => {
-                self.system.scratch.pair_forces.first().map_or(0.0, |pair| pair.signed_normal.abs())
-            }
+            1 => self.system.scratch.wall_forces.first().map_or(0.0, |wall| wall.normal),
+            _ => self.system.scratch.pair_forces.first().map_or(0.0, |pair| pair.normal),
         }
     }
 

@@ -96,8 +96,8 @@ fn stack(scene: &Scene, record: &mut Record) {
     while n_contacts < 100 {
         bench.step();
         let scratch = &bench.system.scratch;
-        let touching = scratch.wall_forces.iter().any(|it| it.normal > 0.0)
-            || scratch.pair_forces.iter().any(|it| it.overlap > 0.0);
+        let touching = scratch.wall_forces.iter().any(|it| it.flags.touches())
+            || scratch.pair_flags.iter().any(|it| it.touches());
         n_contacts += usize::from(touching && !touched);
         if !touching && !touched {
             worst = worst.max((energy(&bench) / start - 1.0).abs());
@@ -170,7 +170,7 @@ fn turn_pair(scene: &Scene, shear_over_overlap: Real) -> ([Vec3; 2], Real) {
         bench.step();
         let pair = &bench.system.scratch.pair_forces[0];
         let found = pair.force - along * pair.force.dot(&along);
-        normal = pair.signed_normal.abs();
+        normal = pair.normal;
         if step == 0 {
             tangential[0] = found;
         }

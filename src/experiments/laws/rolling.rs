@@ -167,7 +167,7 @@ fn shear(scene: &Scene, record: &mut Record) {
             grains.spins[0] = Vec3::zeros();
             bench.step();
         }
-        -bench.system.scratch.wall_forces[0].force.x
+        -bench.system.scratch.wall_forces.first().map_or(0.0, |wall| wall.force.x)
     };
     record.set("C1.shear_stiffness", sheared(0.5 * full) / (mindlin * 0.5 * full), "1");
     record.set("C1.coulomb", sheared(5.0 * full) / (surface.friction * normal), "1");

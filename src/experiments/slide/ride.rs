@@ -21,7 +21,7 @@ use crate::{
             body::BodyMotion,
             wall::{WallModel, WallShape},
         },
-        contact::{self, law::PairLaw, sums},
+        contact::{law::PairLaw, sums},
         health::Diverged,
         measure::{packing, real, real_of},
         membrane::{CARRIER_ID, FREE, MembraneModel, MembraneState, SheetContact, critical_step},
@@ -306,7 +306,7 @@ fn model(scene: &Scene, case: &Case, patch: Patch) -> Model {
         let holder = |&is_on_rim: &bool| if is_on_rim { CARRIER_ID } else { FREE };
         membrane.holders = membrane.mesh.is_on_rim.iter().map(holder).collect();
         membrane.scale_rest_lengths(1.0 / (1.0 + scene.frame.stretch));
-        let stiffness = contact::stiffness(&law, contact_radius, case.weight(scene));
+        let stiffness = law.stiffness(contact_radius, case.weight(scene));
         let longest = SAFETY * critical_step::critical_step(&membrane, stiffness);
         substep = substep.min(longest);
     } else {
@@ -335,7 +335,7 @@ fn state(scene: &Scene, model: &Model, start: Vec3) -> State {
     State {
         grains: Grains::at_rest(vec![start], vec![scene.ball.radius], vec![mass(scene)]),
         membrane: MembraneState::at_rest(&model.membrane.mesh),
-        springs: Springs::none(1, model.walls.len(), 0),
+        springs: Springs::none(1, 0),
         pair_ids: Vec::new(),
         gauge: 0.0,
         walls: vec![BodyMotion { pose: Pose::identity(), twist: Twist::zero() }],

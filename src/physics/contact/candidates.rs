@@ -50,10 +50,10 @@ fn wake(lists: &Neighbours, scratch: &mut CandidateScratch) {
     let mut n_awake = 0;
     // The grains with candidates, and these, follow each other in all lists.
     let mut k = 0;
-    for &grain in &lists.sheet_grains {
+    for &grain in &lists.membrane_grains {
         let end = lists.triangle_starts[grain as usize + 1];
-        for (place, wake_at) in (k..end).zip(&lists.wake_at[k as usize..end as usize]) {
-            awake[n_awake] = place;
+        for (index, wake_at) in (k..end).zip(&lists.wake_at[k as usize..end as usize]) {
+            awake[n_awake] = index;
             // Without a branch, and so that a travel that is no number wakes all.
             n_awake += usize::from(!is_more(*wake_at, lists.travel));
         }

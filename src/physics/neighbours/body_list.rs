@@ -13,7 +13,7 @@ use crate::{
 };
 
 /// Builds the lists anew if they may have become incomplete. `travel` is how far the vertices have
-/// gone in all, at most and relative to the carrier [m].
+/// gone in all, at most and relative to the carrier (m).
 pub(super) fn refresh(
     model: &Model,
     controls: &Controls,
@@ -80,7 +80,7 @@ fn is_complete(
     lists.is_built && lists.near.len() == controls.bodies.len() && is_near.all(|it| it)
 }
 
-/// Signed distance of a point [m], or something less that is not below `enough` [m].
+/// Signed distance of a point (m), or something less that is not below `enough` (m).
 fn distance_at_least(body: &BodyModel, motion: &BodyMotion, point: &Vec3, enough: Real) -> Real {
     let arm = point - motion.pose.translation.vector;
     let beyond = arm.norm() - body.bounding_radius;

@@ -1,7 +1,7 @@
-//! Has the centre of a grain crossed the sheet?
+//! Has the centre of a grain crossed the membrane?
 //!
-//! Asked at every build of the lists, of the grains whose centre is closer to the sheet than the
-//! skin. Between two builds grain and sheet together move by less than the skin, so nothing can
+//! Asked at every build of the lists, of the grains whose centre is closer to the membrane than the
+//! skin. Between two builds grain and membrane together move by less than the skin, so nothing can
 //! cross and get out of that reach unseen. The sign of the distance to the nearest point is that of
 //! the normal of the face, of the mean normal at an edge, of the mean weighted with angles at a
 //! vertex (Bærentzen & Aanæs 2005), exact for every closed surface. Beside a rim nobody crosses.
@@ -23,14 +23,14 @@ use crate::{
 /// Triangles that one thread looks at at a time.
 const CHUNK: usize = 128;
 
-/// A grain near the sheet.
+/// A grain near the membrane.
 struct Near {
     grain: u32,
     distance_squared: Real,
     is_outside: bool,
 }
 
-/// The first grain whose centre is on the outer side of the sheet.
+/// The first grain whose centre is on the outer side of the membrane.
 pub(super) fn first(model: &Model, grid: &CellGrid, state: &State) -> Option<usize> {
     let n_triangles = model.membrane.mesh.triangles.len();
     let mut chunks: Vec<Vec<Near>> = Vec::new();
@@ -69,11 +69,11 @@ fn near_triangle(
             return;
         }
         let closest = closest_on_triangle(position, corners);
-        let from_sheet = position - closest.point;
-        let distance_squared = from_sheet.norm_squared();
+        let from_membrane = position - closest.point;
+        let distance_squared = from_membrane.norm_squared();
         if distance_squared < model.skin * model.skin {
             let normal = outward(model, &state.membrane.positions, triangle, closest.feature);
-            let is_outside = normal.is_some_and(|normal| normal.dot(&from_sheet) > 0.0);
+            let is_outside = normal.is_some_and(|normal| normal.dot(&from_membrane) > 0.0);
             found.push(Near { grain, distance_squared, is_outside });
         }
     });
@@ -101,7 +101,7 @@ fn outward(model: &Model, positions: &[Vec3], triangle: usize, feature: Feature)
     }
 }
 
-/// Angle of a triangle at one of its vertices [rad].
+/// Angle of a triangle at one of its vertices (rad).
 fn angle_at(vertex: u32, positions: &[Vec3], triangle: &[u32; 3]) -> Real {
     let at = |id: u32| positions[id as usize];
     let sides: Vec<Vec3> =

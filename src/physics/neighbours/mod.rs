@@ -47,7 +47,10 @@ fn refresh_grains(model: &Model, state: &mut State, scratch: &mut Scratch) {
         Some(period) => verlet_list::wrap(&state.grains.positions, period),
         None => state.grains.positions.clone(),
     };
-    let grid = cell_grid::CellGrid::new(&positions, 2.0 * model.radius_max + lists.skin);
+    let grid = cell_grid::CellGrid::new(
+        &positions,
+        2.0 * model.radius_max + model.grain_law.range() + lists.skin,
+    );
     verlet_list::build(model, &grid, &positions, state, lists);
     match model.membrane.contact {
         SheetContact::Triangles => {
@@ -62,7 +65,7 @@ fn refresh_grains(model: &Model, state: &mut State, scratch: &mut Scratch) {
     }
     forget_patches(lists, &mut state.springs.patches, &mut scratch.patch_forces);
     wall_list::build(model, state, lists, &mut scratch.wall_forces);
-    weigh_pairs(state, lists);
+    update_pair_masses(state, lists);
     lists.grain_positions.clone_from(&state.grains.positions);
     lists.vertex_positions.clone_from(&state.membrane.positions);
     lists.carrier_position = state.carrier_position();
@@ -74,7 +77,7 @@ fn refresh_grains(model: &Model, state: &mut State, scratch: &mut Scratch) {
     lists.n_builds += 1;
 }
 
-/// How far anybody has come or grown since the last build [m].
+/// How far anybody has come or grown since the last build (m).
 fn used(model: &Model, state: &State, lists: &Neighbours) -> Real {
     if !lists.is_built {
         return 0.0;
@@ -96,7 +99,7 @@ fn forget_patches(lists: &Neighbours, springs: &mut [Patches], forces: &mut Vec<
 }
 
 /// Effective radii and masses of the listed pairs; to be called again whenever radii or masses change.
-pub fn weigh_pairs(state: &State, lists: &mut Neighbours) {
+pub fn update_pair_masses(state: &State, lists: &mut Neighbours) {
     let parallel = |a: f64, b: f64| a * b / (a + b);
     let of_pairs = |quantity: &[f64]| {
         let ids = state.pair_ids.iter().map(|ids| ids.map(|id| id as usize));

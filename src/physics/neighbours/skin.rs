@@ -30,7 +30,7 @@ const TOO_THICK: Real = 2.0;
 /// The thinnest skin, as a share of the model's, which is the thickest.
 const THINNEST: Real = 1.0 / 8.0;
 
-/// The skin [m] that costs least if it goes on as since the last build, in which `used` [m] of the skin
+/// The skin (m) that costs least if it goes on as since the last build, in which `used` (m) of the skin
 /// were used up.
 pub(super) fn cheapest(model: &Model, lists: &Neighbours, used: Real) -> Real {
     let n = lists.n_since_build.max(1);
@@ -50,7 +50,7 @@ pub(super) fn is_too_thick(model: &Model, lists: &Neighbours, used: Real) -> boo
 mod tests {
     use super::*;
     use crate::{
-        physics::contact::law::{PairLaw, Surface},
+        physics::law::{PairLaw, Surface},
         scene::Material,
     };
 
