@@ -1,4 +1,4 @@
-//! How long a substep may be.
+//! The longest stable substep.
 //!
 //! ```text
 //! critical step = min(0.3 T_R, t_membrane),   T_R = π R √(ρ/G) / (0.1631 ν + 0.8766)
@@ -20,7 +20,7 @@ use super::{
 };
 use crate::{base::Real, scene::Material};
 
-/// Share of the Rayleigh time that a packing under full vacuum bears.
+/// Share of the Rayleigh time at which a packing under full vacuum is stable.
 pub const RAYLEIGH_SHARE: Real = 0.3;
 
 /// Rayleigh time of a grain of `radius` (m); in s.

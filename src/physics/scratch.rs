@@ -31,13 +31,13 @@ pub struct Scratch {
     pub vertex_forces: Vec<Vec3>,
     /// Internal forces and pressure. Written by `membrane::forces`.
     pub membrane: MembraneScratch,
-    /// Wrench of the membrane on each body about its centre of mass, this substep (N), (N m).
+    /// Wrench of the membrane on each body about its center of mass, this substep (N), (N m).
     /// Written by `contact::on_membrane`.
     pub body_wrenches: Vec<Wrench>,
     /// Wrench of membrane, grains and air on each wall about its origin, world axes, this substep
     /// (N), (N m). Written by `contact::on_walls`.
     pub wall_wrenches: Vec<Wrench>,
-    /// Grains whose centre left the bag, if any. Written by `contact::on_membrane` and, if grains
+    /// Grains whose center left the bag, if any. Written by `contact::on_membrane` and, if grains
     /// touch vertex spheres, by `neighbours`.
     pub leaked: Option<usize>,
 }
@@ -219,7 +219,7 @@ pub struct CandidateScratch {
     /// Where those of each grain of `Neighbours::membrane_grains` begin.
     pub awake_starts: Vec<usize>,
     /// Of each: squared distance (m²), weights of the closest point, the vector from there to the
-    /// grain's centre (m), the number of the feature.
+    /// grain's center (m), the number of the feature.
     pub found: Vec<[Real; 8]>,
 }
 
@@ -259,7 +259,7 @@ pub struct PatchForces {
     pub torque: Vec3,
     /// The contacts.
     pub contacts: [PatchForce; N_PATCHES],
-    /// True if the centre of the grain is outside the bag.
+    /// True if the center of the grain is outside the bag.
     pub is_outside: bool,
 }
 
@@ -319,7 +319,7 @@ pub struct SphereForce {
 pub struct WallForce {
     /// Force on the grain (N).
     pub force: Vec3,
-    /// Contact point relative to the grain's centre (m).
+    /// Contact point relative to the grain's center (m).
     pub arm: Vec3,
     /// Overlap (m), zero without contact, negative where the wall attracts the grain from a distance.
     pub overlap: Real,

@@ -31,7 +31,7 @@ pub struct State {
 /// The grains.
 #[derive(Clone, Debug, Default)]
 pub struct Grains {
-    /// Positions of the centres (m). Written by `integrate`.
+    /// Positions of the centers (m). Written by `integrate`.
     pub positions: Vec<Vec3>,
     /// Velocities (m/s). Written by `integrate`.
     pub velocities: Vec<Vec3>,

@@ -1,12 +1,12 @@
 //! Contacts between the membrane and rigid bodies.
 //!
-//! The membrane meets a body in material points of its own: every vertex, and the centroid of
-//! every facet for what pokes through between vertices. A vertex with signed distance φ < 0 has the
-//! overlap ξ = −φ; a centroid has only what its corners do not see already,
-//! ξ = −φ − ⅓ Σ max(0, ξ_corner), so that the force grows from zero when a corner or an edge of
-//! the body comes up between three vertices. The samples are fixed to the membrane, so their friction
-//! springs need no hand-over. The law is the one of all other contacts; the effective radius is a
-//! property of the body's model.
+//! The membrane touches a body at sample points that are fixed to the membrane: every vertex, and the
+//! centroid of every facet, which detects what pokes through between vertices. A vertex at the signed
+//! distance φ < 0 has the overlap ξ = −φ. A centroid has only the overlap that its corners do not have
+//! already, ξ = −φ − ⅓ Σ max(0, ξ_corner), so the force grows from zero when a corner or an edge of the body
+//! comes up between three vertices. Because the samples are fixed to the membrane, friction springs stay
+//! with them. The law is that of the other contacts, without cohesion; the effective radius is a property of
+//! the body's model.
 
 use crate::{
     base::{Real, Vec3, parallel},
@@ -59,7 +59,7 @@ struct MembranePoint {
     position: Vec3,
     velocity: Vec3,
     mass: Real,
-    /// Overlap that the facet's corners see already (m).
+    /// Overlap that the facet's corners have already (m).
     known_overlap: Real,
 }
 

@@ -6,10 +6,11 @@
 //! the rule of priorities (face before edge before vertex) of Götz (2024), section 3.2.3, stated
 //! by depth, so that force, direction and point are continuous when a grain moves over an edge.
 //!
-//! In the valley between two triangles both faces can hold a local minimum; how they share out the
-//! force stands in `sharing`.
+//! In the valley between two triangles both faces can hold a local minimum; `sharing` says how they share
+//! the force.
 //!
-//! The friction spring belongs to the patch, not to the triangle: it is handed on by direction.
+//! The friction spring belongs to the patch, not to the triangle: a patch inherits the spring of the patch
+//! whose normal was closest to its own.
 
 use arrayvec::ArrayVec;
 
@@ -95,7 +96,7 @@ impl Grain<'_> {
         self.grains.radii[self.i]
     }
 
-    /// From the closest point to the centre (m).
+    /// From the closest point to the center (m).
     fn arm(&self, contact: &Touched) -> Vec3 {
         let [.., x, y, z, _] = self.found[contact.index];
         Vec3::new(x, y, z)
@@ -120,8 +121,8 @@ impl Grain<'_> {
         patches.n = minima.len();
         result.n = minima.len();
         result.torque = Vec3::zeros();
-        // The deepest come first. What the membrane's nearest point does not see outside is inside, whatever
-        // a fold behind it sees.
+        // The deepest come first. Only the nearest point decides on which side the grain is: a fold behind it
+        // may have the grain on its outer side.
         let nearest = minima.first().map(|it| &touched[it.index]);
         result.is_outside = nearest.is_some_and(|it| self.is_outside(it, &self.arm(it), touched));
         for (slot, minimum) in minima.iter().enumerate() {
@@ -163,7 +164,7 @@ impl Grain<'_> {
             let across = &mesh.neighbours_of_triangle[contact.triangle as usize];
             for (later, other) in touched.iter().enumerate().skip(index + 1) {
                 let is_across = across.map(|it| it == other.triangle);
-                // Without a branch: whether two of those touched are neighbours follows no rule.
+                // Branch-free: whether two touched triangles are neighbors is not predictable.
                 let edge = u8::from(is_across[1]) + 2 * u8::from(is_across[2]);
                 edges[n_edges] = [short(index), short(later), edge];
                 n_edges += usize::from(is_across[0] | is_across[1] | is_across[2]);
@@ -175,7 +176,7 @@ impl Grain<'_> {
         }
     }
 
-    /// Squared distance of the grain's centre from an edge of a triangle that it touches (m²).
+    /// Squared distance of the grain's center from an edge of a triangle that it touches (m²).
     fn height_squared(&self, contact: &Touched, edge: u8) -> Real {
         if contact.feature == Feature::Edge(edge) {
             return contact.distance_squared;
@@ -223,8 +224,8 @@ impl Grain<'_> {
         (result, arm.cross(&force.tangential))
     }
 
-    /// True if the centre is on the outer side of the triangles that share the feature it touches. All
-    /// of them must agree, since around a saddle's vertex some always see the centre on their outer
+    /// True if the center is on the outer side of the triangles that share the feature it touches. All
+    /// of them must agree, since around a saddle's vertex some always see the center on their outer
     /// side.
     fn is_outside(&self, contact: &Touched, from_membrane: &Vec3, touched: &[Touched]) -> bool {
         let triangles = &self.model.membrane.mesh.triangles;
@@ -233,7 +234,7 @@ impl Grain<'_> {
                 triangles[triangle as usize].map(|vertex| self.membrane.positions[vertex as usize]);
             (b - a).cross(&(c - a)).dot(from_membrane) > 0.0
         };
-        // Most contacts are inside: one look at their own triangle is enough.
+        // Most contacts are inside; their own triangle is enough to tell.
         if !sees_outside(contact.triangle) {
             return false;
         }

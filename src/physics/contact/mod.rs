@@ -1,6 +1,6 @@
-//! Who touches, and how hard: one pass writes the force of every possible contact, then whoever
-//! is touched sums its own contacts in a fixed order. No atomics, so the bits do not depend on
-//! the number of threads.
+//! Contact forces. One pass writes the force of every listed contact; then every grain, vertex, wall and body
+//! sums its own contacts in a fixed order. There are no atomics, so the bits do not depend on the number of
+//! threads.
 
 pub mod bodies;
 mod candidates; // where a grain is closest to the membrane
@@ -13,5 +13,5 @@ pub mod sums;
 mod tests;
 pub mod walls;
 
-// Where laws were before; callers are to name `physics::law`.
+// The former path of `physics::law`.
 pub use super::law;

@@ -1,6 +1,6 @@
-//! How one grain's contacts with the sheet share out its force, so that it has no jumps.
+//! How one grain's contacts with the membrane share out its force, so that it has no jumps.
 //!
-//! A grain touches the sheet where its distance to the sheet has local minima. When the grain moves, a
+//! A grain touches the membrane where its distance to the membrane has local minima. When the grain moves, a
 //! minimum can be lost: it runs over a saddle into a deeper place beside it. By then its force must
 //! have faded out.
 //!
@@ -9,17 +9,17 @@
 //! h_i = min_j w_ij / (w_ij + w_ji),   w_ij = √(b_ij² − d_i²)
 //!
 //! ξ_i  overlap of minimum i                                                       (m)
-//! d_i  distance of the grain's centre from it                                     (m)
+//! d_i  distance of the grain's center from it                                     (m)
 //! b_ij height of the saddle between i and j: the least that the largest distance on a way over the
-//!      sheet from i to j can be; R if every way leaves the grain                  (m)
+//!      membrane from i to j can be; R if every way leaves the grain                  (m)
 //! w_ij what separates i from the saddle to j; on flat triangles the way there       (m)
 //! s_ij likeness: 1 if the normals differ by up to 10°, 0.05 from 45° on
 //! ```
 //!
-//! Two minima in a shallow valley have s = 1: they are one patch of a smooth sheet, their c add up to
+//! Two minima in a shallow valley have s = 1: they are one patch of a smooth membrane, their c add up to
 //! 1, and the force passes from one to the other as the grain crosses the valley. Two sides of a fold
 //! have nearly their full force each until one of them is about to be lost. A minimum that is alone
-//! has c = 1: on a flat sheet nothing is shared. All of it is continuous in the grain's place, since
+//! has c = 1: on a flat membrane nothing is shared. All of it is continuous in the grain's place, since
 //! heights of saddles are. It is not the gradient of an energy, as little as other rules of sharing;
 //! what was measured: a jammed bag comes to rest to 10⁻¹³ J, and an object that swings in it decays.
 //!
@@ -46,7 +46,7 @@ pub(super) const N_TOUCHED: usize = 24;
 /// Edges that so many triangles can share.
 const N_SADDLES: usize = 3 * N_TOUCHED / 2;
 
-/// A local minimum of a grain's distance to the sheet.
+/// A local minimum of a grain's distance to the membrane.
 #[derive(Clone, Copy)]
 pub(super) struct Minimum {
     /// Its index in the list of touched triangles.
@@ -63,7 +63,7 @@ pub(super) struct Minimum {
 #[derive(Clone, Copy)]
 pub(super) struct Saddles {
     n: usize,
-    /// Squared distances of the grain's centre from the edges (m²); infinite from `n` on.
+    /// Squared distances of the grain's center from the edges (m²); infinite from `n` on.
     heights_squared: [Real; N_SADDLES],
     /// Indices of both triangles in the list of touched ones.
     between: [[u8; 2]; N_SADDLES],

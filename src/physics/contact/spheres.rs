@@ -8,9 +8,9 @@
 //!
 //! | symbol | meaning | unit |
 //! |---|---|---|
-//! | R, m, x, ω | radius, mass, centre and spin of the grain | m, kg, m, rad/s |
+//! | R, m, x, ω | radius, mass, center and spin of the grain | m, kg, m, rad/s |
 //! | r, m_v, x_v | radius of the spheres, mass and position of the vertex | m, kg, m |
-//! | b | from the grain's centre to the contact point | m |
+//! | b | from the grain's center to the contact point | m |
 //!
 //! Source: Götz (2024), section 3.3, "MFS Partikel", after de Bono, McDowell & Wanatowski (2012);
 //! springs, hinges and the air's load are those of the triangle membrane. A vertex has a position

@@ -1,5 +1,4 @@
-//! Contact forces summed for those who are touched: each grain, each vertex, each body, each
-//! wall. Every sum has a fixed order.
+//! Sums of contact forces on each grain, vertex, body and wall. Every sum has a fixed order.
 
 use crate::{
     base::{
@@ -40,13 +39,13 @@ impl Kernel for PairSums<'_> {
     fn run<L: Lanes>(self) {
         let lists = &self.scratch.neighbours;
         let rows: &[[Real; 8]] = bytemuck::cast_slice(&self.scratch.pair_forces);
-        // Told where the compiler does not see it: it would make an addition and a subtraction of each
-        // row's parts, one waiting for the other.
+        // Hidden from the compiler, which would otherwise turn each row into an addition and a subtraction,
+        // one waiting for the other.
         let reversed = std::hint::black_box(-1.0);
         for (i, written) in (self.first..).zip(self.sums) {
             let mut sum = [0.0; 8];
             let radius = self.radii[i];
-            // A pair without contact has rows of zeros, which is cheaper than asking.
+            // The row of a pair that is not in contact is zero: adding it is cheaper than a branch.
             let first = lists.first_starts[i] as usize..lists.first_starts[i + 1] as usize;
             for row in &rows[first] {
                 sum = with_row(sum, row, 1.0, radius);

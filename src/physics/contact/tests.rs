@@ -42,7 +42,7 @@ fn system(law: PairLaw, positions: &[Vec3], walls: &[(WallShape, Vec3)]) -> Syst
     System::at_rest(model, walls.iter().map(|&(_, origin)| fixed(origin)).collect(), grains)
 }
 
-/// True if a grain of weight m g still hangs after 20 ms on what pulls with `pull_over_weight` m g: on a
+/// True if a grain of weight m g still hangs after 60 ms on what pulls with `pull_over_weight` m g: on a
 /// grain that is held, or on a ceiling.
 fn hangs(on_ceiling: bool, pull_over_weight: Real) -> bool {
     let law = law(pull_over_weight * MASS * GRAVITY);
@@ -55,7 +55,7 @@ fn hangs(on_ceiling: bool, pull_over_weight: Real) -> bool {
         system(law, &[touching, Vec3::zeros()], &[])
     };
     system.model.gravity = Vec3::z() * -GRAVITY;
-    for _ in 0..20_000 {
+    for _ in 0..60_000 {
         system.step();
         if !on_ceiling {
             system.state.grains.positions[1] = Vec3::zeros();

@@ -1,12 +1,11 @@
 //! Contact laws: what two bodies do to each other where they touch.
 //!
-//! A law has three parts, each a model of its own: a force along the normal, a tangential force, and
-//! cohesion, which may act a little beyond contact. Passes over contacts are generic over the law, and
-//! `PairLaw::with` chooses it once per pass, so no law pays for another. A new law is a file beside
-//! `hertz_mindlin` and an arm of that `match`.
+//! A law consists of three parts: a force along the normal, a tangential force, and cohesion, which may act
+//! beyond contact. Passes over contacts are generic over the law. `PairLaw::with` selects it once per pass, so
+//! no law slows another one down. A new law is a file beside `hertz_mindlin` and an arm of that `match`.
 //!
-//! A contact remembers its tangential spring, which turns with the bodies, and as many further numbers
-//! as its law asks for, `Memory`: whether a liquid bridge exists, or how much liquid it holds.
+//! The history of a contact is its tangential spring, which rotates with the bodies, and the numbers that the
+//! law declares as its `Memory`, for example whether a liquid bridge exists or how much liquid it holds.
 
 mod hertz_mindlin;
 #[cfg(test)]
@@ -22,9 +21,9 @@ use crate::{
     scene::{self, Material},
 };
 
-/// A law of contact between two bodies.
+/// A contact law.
 pub trait ContactLaw: Copy + Send + Sync {
-    /// What a contact remembers besides its tangential spring.
+    /// History of a contact besides its tangential spring.
     type Memory: Memory;
 
     /// How far beyond contact a force may act (m).
@@ -44,8 +43,7 @@ pub trait ContactLaw: Copy + Send + Sync {
     fn stiffness(&self, radius: Real, force: Real) -> Real;
 }
 
-/// Numbers that a contact remembers besides its spring: `[Real; N]`. All zero means that there is
-/// nothing to remember.
+/// History of a contact besides its spring: `[Real; N]`, all zero if there is none.
 pub trait Memory: bytemuck::Pod + Send + Sync {
     /// The same in lanes.
     type Lanes<L: Lanes>: Copy;

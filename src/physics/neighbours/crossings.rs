@@ -1,10 +1,10 @@
-//! Has the centre of a grain crossed the membrane?
+//! Has the center of a grain crossed the membrane?
 //!
-//! Asked at every build of the lists, of the grains whose centre is closer to the membrane than the
-//! skin. Between two builds grain and membrane together move by less than the skin, so nothing can
-//! cross and get out of that reach unseen. The sign of the distance to the nearest point is that of
-//! the normal of the face, of the mean normal at an edge, of the mean weighted with angles at a
-//! vertex (Bærentzen & Aanæs 2005), exact for every closed surface. Beside a rim nobody crosses.
+//! Checked at every build of the lists, for grains whose center is closer to the membrane than the skin.
+//! Between two builds grain and membrane together move by less than the skin, so no grain can cross and leave
+//! that distance undetected. The sign of the distance to the nearest point is given by the normal of the face,
+//! the mean normal at an edge, or the angle-weighted mean at a vertex (Bærentzen & Aanæs 2005), which is exact
+//! for every closed surface. Grains beside a rim do not count.
 
 use std::collections::BTreeMap;
 
@@ -20,7 +20,7 @@ use crate::{
     },
 };
 
-/// Triangles that one thread looks at at a time.
+/// Number of triangles in one parallel task.
 const CHUNK: usize = 128;
 
 /// A grain near the membrane.
@@ -30,7 +30,7 @@ struct Near {
     is_outside: bool,
 }
 
-/// The first grain whose centre is on the outer side of the membrane.
+/// The first grain whose center is on the outer side of the membrane.
 pub(super) fn first(model: &Model, grid: &CellGrid, state: &State) -> Option<usize> {
     let n_triangles = model.membrane.mesh.triangles.len();
     let mut chunks: Vec<Vec<Near>> = Vec::new();
@@ -79,7 +79,7 @@ fn near_triangle(
     });
 }
 
-/// A normal on whose side whatever is nearest to the feature lies; `None` on a rim.
+/// A normal that tells on which side of the feature the nearest grains lie; `None` on a rim.
 fn outward(model: &Model, positions: &[Vec3], triangle: usize, feature: Feature) -> Option<Vec3> {
     let mesh = &model.membrane.mesh;
     let unit = |t: u32| area_normal(positions, &mesh.triangles[t as usize]).normalize();

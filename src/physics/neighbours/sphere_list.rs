@@ -10,7 +10,7 @@ use crate::{
     physics::{Model, State, scratch::Neighbours, state::ListedSprings},
 };
 
-/// Vertices whose grains one thread looks up at a time.
+/// Number of vertices in one parallel task.
 const CHUNK: usize = 128;
 
 /// Lists all spheres of `radius` (m) closer to a grain than contact plus skin; springs of those

@@ -6,7 +6,7 @@ use crate::{
     physics::{Model, State, membrane::contact_geometry::closest_on_triangle, scratch::Neighbours},
 };
 
-/// Triangles whose grains one thread looks up at a time.
+/// Number of triangles in one parallel task.
 const CHUNK: usize = 128;
 
 /// Lists, for each grain, the triangles closer than contact plus skin, ascending.

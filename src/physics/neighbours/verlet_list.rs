@@ -1,4 +1,4 @@
-//! Pairs of grains that may touch, sorted, with the springs of the pairs that go on.
+//! Sorted list of pairs of grains that may be in contact, with the history of pairs listed before.
 
 use super::cell_grid::{CellGrid, id};
 use crate::{
@@ -6,7 +6,7 @@ use crate::{
     physics::{Model, State, scratch::Neighbours},
 };
 
-/// Grains whose partners one thread looks up at a time.
+/// Number of grains in one parallel task.
 const CHUNK: usize = 128;
 
 /// The images of `positions` in the box from the origin to `period`.
@@ -41,7 +41,7 @@ pub(super) fn build(
     state.pair_ids = ids;
 }
 
-/// All that is needed to look for partners.
+/// Input of the search for partners.
 struct Search<'a> {
     model: &'a Model,
     /// Distance beyond contact (m).
