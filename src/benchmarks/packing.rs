@@ -263,7 +263,7 @@ fn come_to_rest(system: &mut System, n_steps: [u64; 2]) {
 /// Lets each grain keep a share of its velocities.
 fn drag(system: &mut System, share: Real) {
     let grains = &mut system.state.grains;
-    grains.velocities.iter_mut().chain(&mut grains.spins).for_each(|it| *it *= share);
+    grains.velocities.iter_mut().chain(&mut grains.angular_velocities).for_each(|it| *it *= share);
 }
 
 #[cfg(test)]

@@ -223,7 +223,7 @@ fn carry(state: &mut State, pose: &Pose) {
     let grains = &mut state.grains;
     for i in 0..grains.positions.len() {
         grains.velocities[i] = velocity(&grains.velocities[i], &grains.positions[i]);
-        grains.spins[i] = turn * (grains.spins[i] - flange.twist.angular);
+        grains.angular_velocities[i] = turn * (grains.angular_velocities[i] - flange.twist.angular);
         grains.positions[i] = place(&grains.positions[i]);
     }
     let membrane = &mut state.membrane;

@@ -71,7 +71,7 @@ pub fn write(state: &State) -> Vec<u8> {
     let numbers = Numbers {
         grain_positions: arrays(&state.grains.positions),
         grain_velocities: arrays(&state.grains.velocities),
-        grain_spins: arrays(&state.grains.spins),
+        grain_spins: arrays(&state.grains.angular_velocities),
         radii: state.grains.radii.clone(),
         masses: state.grains.masses.clone(),
         vertex_positions: arrays(&state.membrane.positions),
@@ -192,7 +192,7 @@ pub fn read(bytes: &[u8]) -> Result<State, SavedStateError> {
         grains: Grains {
             positions: vectors(&numbers.grain_positions),
             velocities: vectors(&numbers.grain_velocities),
-            spins: vectors(&numbers.grain_spins),
+            angular_velocities: vectors(&numbers.grain_spins),
             radii: numbers.radii,
             masses: numbers.masses,
         },

@@ -413,7 +413,7 @@ fn scatter(scene: &Scene, recipe: &Recipe) -> State {
         grains: Grains {
             positions: local.iter().map(in_world).collect(),
             velocities: vec![Vec3::zeros(); n],
-            spins: vec![Vec3::zeros(); n],
+            angular_velocities: vec![Vec3::zeros(); n],
             masses: radii.iter().map(|&r| sphere_volume(r) * recipe.density).collect(),
             radii,
         },

@@ -82,13 +82,13 @@ fn advance_grains(
     carried: &Carried,
 ) -> [Real; 2] {
     let dt = model.substep;
-    let Grains { positions, velocities, spins, radii, masses } = &mut state.grains;
+    let Grains { positions, velocities, angular_velocities, radii, masses } = &mut state.grains;
     let (radii, masses) = (&*radii, &*masses);
     parallel::largest_of_three(
         positions,
         velocities,
-        spins,
-        |start, positions, velocities, spins| {
+        angular_velocities,
+        |start, positions, velocities, angular_velocities| {
             let mut sums = [[0.0; 8]; PART];
             let sums = &mut sums[..positions.len()];
             lanes::widest(PairSums { scratch, radii, first: start, sums });
@@ -99,7 +99,7 @@ fn advance_grains(
                 let (mass, radius) = (masses[i], radii[i]);
                 let (before, velocity) = (positions[k], &mut velocities[k]);
                 *velocity += force * (dt / mass) + carried.gain;
-                spins[k] += torque * (dt / (0.4 * mass * radius * radius));
+                angular_velocities[k] += torque * (dt / (0.4 * mass * radius * radius));
                 positions[k] += *velocity * dt;
                 let built = &scratch.neighbours.grain_positions[i];
                 carried.record_displacement(built, &before, &positions[k], &mut furthest);

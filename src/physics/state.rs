@@ -36,7 +36,7 @@ pub struct Grains {
     /// Velocities (m/s). Written by `integrate`.
     pub velocities: Vec<Vec3>,
     /// Angular velocities (rad/s). Written by `integrate`.
-    pub spins: Vec<Vec3>,
+    pub angular_velocities: Vec<Vec3>,
     /// Radii (m); they change only while grains grow. Written by `fill`.
     pub radii: Vec<Real>,
     /// Masses (kg). Written by `fill`.
@@ -47,8 +47,8 @@ impl Grains {
     /// At rest at `positions` (m).
     pub fn at_rest(positions: Vec<Vec3>, radii: Vec<Real>, masses: Vec<Real>) -> Self {
         let velocities = vec![Vec3::zeros(); positions.len()];
-        let spins = velocities.clone();
-        Self { positions, velocities, spins, radii, masses }
+        let angular_velocities = velocities.clone();
+        Self { positions, velocities, angular_velocities, radii, masses }
     }
 
     /// Number of grains.
@@ -157,7 +157,7 @@ impl State {
     pub fn digest(&self, digest: &mut Digest) {
         digest.vectors(&self.grains.positions);
         digest.vectors(&self.grains.velocities);
-        digest.vectors(&self.grains.spins);
+        digest.vectors(&self.grains.angular_velocities);
         digest.reals(&self.grains.radii);
         digest.vectors(&self.membrane.positions);
         digest.vectors(&self.membrane.velocities);

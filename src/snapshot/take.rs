@@ -57,7 +57,7 @@ pub fn view<'a>(session: &'a Session, seen: &'a Snapshot) -> View<'a> {
         snapshot: seen,
         grain_positions: &state.grains.positions,
         grain_velocities: &state.grains.velocities,
-        grain_spins: &state.grains.spins,
+        grain_spins: &state.grains.angular_velocities,
         grain_radii: &state.grains.radii,
         grain_normal_forces: session.normal_forces(),
         vertex_positions: &state.membrane.positions,

@@ -56,7 +56,8 @@ fn momenta(coupled: &Coupled) -> (Vec3, Vec3) {
         add(model.membrane.masses[v], &sheet.positions[v], &sheet.velocities[v]);
     }
     for i in 0..grains.len() {
-        angular += grains.spins[i] * (0.4 * grains.masses[i] * grains.radii[i].powi(2));
+        angular +=
+            grains.angular_velocities[i] * (0.4 * grains.masses[i] * grains.radii[i].powi(2));
     }
     (linear, angular)
 }

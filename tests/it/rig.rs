@@ -111,7 +111,7 @@ impl Rig {
         let grains = &mut self.state.grains;
         grains.positions.push(position);
         grains.velocities.push(velocity);
-        grains.spins.push(Vec3::zeros());
+        grains.angular_velocities.push(Vec3::zeros());
         grains.radii.push(radius);
         grains.masses.push(4.0 / 3.0 * std::f64::consts::PI * radius.powi(3) * density);
         self.model.radius_max = self.model.radius_max.max(radius);
@@ -133,7 +133,7 @@ impl Rig {
             let momentum = grains.velocities[i] * grains.masses[i];
             linear += momentum;
             angular += grains.positions[i].cross(&momentum)
-                + grains.spins[i] * (0.4 * grains.masses[i] * grains.radii[i].powi(2));
+                + grains.angular_velocities[i] * (0.4 * grains.masses[i] * grains.radii[i].powi(2));
         }
         (linear, angular)
     }
@@ -144,7 +144,7 @@ impl Rig {
         let of_grain = |i: usize| {
             let inertia = 0.4 * grains.masses[i] * grains.radii[i].powi(2);
             0.5 * grains.masses[i] * grains.velocities[i].norm_squared()
-                + 0.5 * inertia * grains.spins[i].norm_squared()
+                + 0.5 * inertia * grains.angular_velocities[i].norm_squared()
         };
         (0..grains.len()).map(of_grain).sum()
     }

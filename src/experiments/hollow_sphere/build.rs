@@ -173,7 +173,7 @@ fn scattered(
         grains: Grains {
             positions,
             velocities: vec![Vec3::zeros(); n],
-            spins: vec![Vec3::zeros(); n],
+            angular_velocities: vec![Vec3::zeros(); n],
             masses: final_radii.iter().map(|&r| sphere_volume(r) * density).collect(),
             radii,
         },

@@ -186,7 +186,7 @@ impl Ride {
         *v = self.along * speed;
         *x = before + *v * dt;
         (x.z, v.z) = (height, fall);
-        grains.spins[0] = Vec3::zeros();
+        grains.angular_velocities[0] = Vec3::zeros();
         self.n_done += 1;
         if !self.behind.is_empty() && (*x - self.start).dot(&self.along) >= self.period {
             self.set_back();

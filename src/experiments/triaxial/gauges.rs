@@ -92,7 +92,8 @@ pub(super) fn grain_energy(system: &System) -> Real {
     let grains = &system.state.grains;
     let twice = |i: usize| {
         let gyration = 0.4 * grains.radii[i] * grains.radii[i];
-        let (v, w) = (grains.velocities[i].norm_squared(), grains.spins[i].norm_squared());
+        let (v, w) =
+            (grains.velocities[i].norm_squared(), grains.angular_velocities[i].norm_squared());
         grains.masses[i] * (v + gyration * w)
     };
     0.5 * (0..grains.len()).map(twice).sum::<Real>()

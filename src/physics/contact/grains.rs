@@ -34,7 +34,7 @@ fn gather(grains: &Grains, rows: &mut Vec<GrainRow>) {
     rows.resize(grains.len(), GrainRow::default());
     parallel::for_each(rows, |i, row| {
         let (position, velocity, angular_velocity) =
-            (&grains.positions[i], &grains.velocities[i], &grains.spins[i]);
+            (&grains.positions[i], &grains.velocities[i], &grains.angular_velocities[i]);
         row.place = [position.x, position.y, position.z, grains.radii[i]];
         row.velocity = [velocity.x, velocity.y, velocity.z, 0.0];
         row.angular_velocity = [angular_velocity.x, angular_velocity.y, angular_velocity.z, 0.0];

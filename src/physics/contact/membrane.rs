@@ -202,7 +202,8 @@ impl Grain<'_> {
         }
         // The contact point lies on the membrane, so that both sides have the same lever.
         let arm = -contact.from_membrane;
-        let velocity = grains.velocities[i] + grains.spins[i].cross(&arm) - membrane_velocity;
+        let velocity =
+            grains.velocities[i] + grains.angular_velocities[i].cross(&arm) - membrane_velocity;
         let contact_state = ContactState {
             touches: true,
             overlap: contact.overlap,

@@ -77,7 +77,7 @@ impl Pair<'_> {
         let overlap = reach - distance;
         let normal = separation * distance.recip();
         let arm = normal * -(grains.radii[grain] - overlap / 2.0);
-        let velocity = grains.velocities[grain] + grains.spins[grain].cross(&arm)
+        let velocity = grains.velocities[grain] + grains.angular_velocities[grain].cross(&arm)
             - membrane.velocities[vertex];
         let parallel = |a: Real, b: Real| a * b / (a + b);
         let contact = ContactState {

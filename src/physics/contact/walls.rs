@@ -91,7 +91,7 @@ impl<C: ContactLaw> Wall<'_, C> {
         let force = near.and_then(|(distance, normal)| {
             let overlap = radius - distance;
             let arm = normal * -(radius - overlap / 2.0);
-            let velocity = grains.velocities[i] + grains.spins[i].cross(&arm)
+            let velocity = grains.velocities[i] + grains.angular_velocities[i].cross(&arm)
                 - self.motion.twist.at(&(from_wall + arm));
             let contact = ContactState {
                 touches: distance < radius,

@@ -95,7 +95,7 @@ pub fn kinetic_energy(model: &Model, state: &State) -> Real {
         .map(|i| {
             let inertia = 0.4 * grains.masses[i] * grains.radii[i].powi(2);
             0.5 * grains.masses[i] * grains.velocities[i].norm_squared()
-                + 0.5 * inertia * grains.spins[i].norm_squared()
+                + 0.5 * inertia * grains.angular_velocities[i].norm_squared()
         })
         .sum();
     let masses = &model.membrane.masses;
