@@ -128,7 +128,7 @@ impl ContactFlags {
 pub struct Neighbours {
     /// False before the first build.
     pub is_built: bool,
-    /// Distance beyond contact within which grains were listed at the last build (m).
+    /// Distance beyond contact and the range of the law within which grains were listed at the last build (m).
     pub skin: Real,
     /// Substeps since the last build.
     pub n_since_build: u64,

@@ -1,6 +1,6 @@
 //! Constants of the contact between two materials, and the choice of their law.
 
-use super::{ContactLaw, Hertz, HertzMindlin, Memory, Mindlin, NoCohesion, Parts};
+use super::{ContactLaw, Hertz, HertzMindlin, Mindlin, NoCohesion, Parts};
 use crate::{
     base::Real,
     scene::{self, Material},
@@ -97,11 +97,6 @@ impl PairLaw {
         self.with(Range)
     }
 
-    /// How many numbers a contact remembers besides its spring.
-    pub fn memory_width(&self) -> usize {
-        self.with(MemoryWidth)
-    }
-
     /// See `ContactLaw::stiffness`.
     pub fn stiffness(&self, radius: Real, force: Real) -> Real {
         self.with(Stiffness { radius, force })
@@ -114,15 +109,6 @@ impl UnderLaw for Range {
     type Output = Real;
     fn run<C: ContactLaw>(self, law: &C) -> Real {
         law.range()
-    }
-}
-
-struct MemoryWidth;
-
-impl UnderLaw for MemoryWidth {
-    type Output = usize;
-    fn run<C: ContactLaw>(self, _: &C) -> usize {
-        C::Memory::WIDTH
     }
 }
 

@@ -111,13 +111,12 @@ fn a_bridge_forms_at_touch_holds_and_breaks() {
 }
 
 #[test]
-fn a_law_tells_its_range_memory_and_stiffness() {
+fn a_law_has_a_range_and_the_stiffness_of_its_normal_part() {
     // Oracle: by hand; Hertz, F = 4/3 E* √R* ξ^3/2, so dF/dξ = 3/2 F/ξ, to rounding.
     let surface = Surface { friction: 0.5, dissipation_time: 0.0, tangential_damping: 0.0 };
     let law = bridged(surface, 0.01, 2e-5);
     let plain = PairLaw { cohesion: Cohesion::None, ..law };
     assert_eq!([law.range().to_bits(), plain.range().to_bits()], [2e-5_f64.to_bits(), 0]);
-    assert_eq!([law.memory_width(), plain.memory_width()], [1, 0]);
     let (radius, overlap): (Real, Real) = (1e-3, 1e-5);
     let force = 4.0 / 3.0 * law.modulus * radius.sqrt() * overlap.powf(1.5);
     assert!((law.stiffness(radius, force) / (1.5 * force / overlap) - 1.0).abs() < 1e-12);
