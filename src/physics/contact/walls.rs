@@ -87,35 +87,39 @@ impl<C: ContactLaw> Wall<'_, C> {
         let from_wall = grains.positions[i] - self.motion.pose.translation.vector;
         let nearest = self.shape.distance(&from_wall);
         let reach = radius + self.law.range();
-        let near = nearest.filter(|(distance, _)| *distance < reach);
-        let force = near.and_then(|(distance, normal)| {
-            let overlap = radius - distance;
-            let arm = normal * -(radius - overlap / 2.0);
-            let velocity = grains.velocities[i] + grains.angular_velocities[i].cross(&arm)
-                - self.motion.twist.at(&(from_wall + arm));
-            let contact = ContactState {
-                touches: distance < radius,
-                overlap,
-                normal: normal.into(),
-                velocity: velocity.into(),
-                radius,
-                mass: grains.masses[i],
-            };
-            let force = ScalarForce::of(&self.law.force(&contact, self.dt, history));
-            let presses = force.normal != 0.0;
-            let flags =
-                if presses { ContactFlags::contact(force.slides) } else { ContactFlags::NONE };
-            force.acts.then(|| WallForce {
-                force: normal * force.normal + force.tangential,
-                arm,
-                overlap,
-                normal: force.normal,
-                flags,
-            })
-        });
-        force.unwrap_or_else(|| {
-            *history = History { spring: Vector::zero(), memory: C::Memory::nothing() };
-            WallForce::default()
-        })
+        let Some((distance, normal)) = nearest.filter(|(distance, _)| *distance < reach) else {
+            return Self::none(history);
+        };
+        let overlap = radius - distance;
+        let arm = normal * -(radius - overlap / 2.0);
+        let velocity = grains.velocities[i] + grains.angular_velocities[i].cross(&arm)
+            - self.motion.twist.at(&(from_wall + arm));
+        let contact = ContactState {
+            touches: distance < radius,
+            overlap,
+            normal: normal.into(),
+            velocity: velocity.into(),
+            radius,
+            mass: grains.masses[i],
+        };
+        let force = ScalarForce::of(&self.law.force(&contact, self.dt, history));
+        if !force.acts {
+            return Self::none(history);
+        }
+        let is_loaded = force.normal != 0.0;
+        WallForce {
+            force: normal * force.normal + force.tangential,
+            arm,
+            overlap,
+            normal: force.normal,
+            flags: if is_loaded { ContactFlags::contact(force.slides) } else { ContactFlags::NONE },
+        }
+    }
+
+    /// No contact, and nothing that it remembers.
+    #[inline(always)]
+    fn none(history: &mut History<f64, C::Memory>) -> WallForce {
+        *history = History { spring: Vector::zero(), memory: C::Memory::nothing() };
+        WallForce::default()
     }
 }
