@@ -199,8 +199,9 @@ impl<C: ContactLaw> Pairs<'_, C> {
             L::to_rows_of_3([x, y, z], springs);
             C::Memory::store(history.memory, acts, memories);
             L::to_rows_of_8(force, &mut results.forces[here.clone()]);
-            let flags = spread(acts.bits()) * u64::from(ContactFlags::TOUCHES)
-                | spread(slides.and(acts).bits()) * u64::from(ContactFlags::SLIDES);
+            let touching = spread(acts.bits()) * u64::from(ContactFlags::TOUCHES);
+            let sliding = spread(slides.and(acts).bits()) * u64::from(ContactFlags::SLIDES);
+            let flags = touching | sliding;
             results.flags[here].copy_from_slice(&flags.to_le_bytes()[..L::N]);
             k += L::N;
         }
