@@ -33,13 +33,11 @@ pub struct Branch {
 pub fn branches(model: &Model, state: &State, scratch: &Scratch) -> Vec<Branch> {
     let positions = &state.grains.positions;
     let mut branches = Vec::new();
-    for (pair, [i, j]) in scratch.pair_forces.iter().zip(&state.pair_ids) {
-        if pair.overlap > 0.0 {
-            let end = positions[*i as usize];
-            let apart = end - positions[*j as usize];
-            let branch = model.period.map_or(apart, |period| closest_image(apart, &period));
-            branches.push(Branch { end, branch, force: pair.force });
-        }
+    for (pair, [i, j]) in scratch.touching_pairs(state) {
+        let end = positions[*i as usize];
+        let separation = end - positions[*j as usize];
+        let branch = model.period.map_or(separation, |period| closest_image(separation, &period));
+        branches.push(Branch { end, branch, force: pair.force });
     }
     let mesh = &model.membrane.mesh;
     for (patches, &end) in scratch.patch_forces.iter().zip(positions) {
@@ -60,8 +58,8 @@ pub fn branches(model: &Model, state: &State, scratch: &Scratch) -> Vec<Branch> 
             branches.push(Branch { end, branch: apart.normalize() * reach, force: sphere.force });
         }
     }
-    for (k, wall) in scratch.wall_forces.iter().enumerate().filter(|(_, it)| it.normal > 0.0) {
-        let end = positions[k % positions.len()];
+    for (wall, [_, i]) in scratch.touching_walls(state) {
+        let end = positions[i];
         branches.push(Branch { end, branch: -wall.arm, force: wall.force });
     }
     branches

@@ -14,10 +14,8 @@ use jamgrip::{
     },
     physics::{
         Model, System,
-        contact::{
-            grains::closest_image,
-            law::{PairLaw, Surface},
-        },
+        contact::grains::closest_image,
+        law::{PairLaw, Surface},
         packing::{Grown, Growth, Recipe, Room, pressure::normal_pressure, scatter, sphere_volume},
         state::Grains,
     },

@@ -14,7 +14,7 @@ use crate::{
         findings::{Curve, Expected, Findings, Kind, Plot, Series},
         record::Record,
     },
-    physics::contact::law::Surface,
+    physics::law::Surface,
     scene::Material,
 };
 

@@ -11,7 +11,7 @@ use crate::{
         real::real,
     },
     measure::{kinetic_energy, rest},
-    physics::{System, contact::law::PairLaw, packing::sphere_volume, state},
+    physics::{System, law::PairLaw, packing::sphere_volume, state},
 };
 
 /// Unbalanced force over mean contact force below which grains are at rest.
@@ -56,7 +56,7 @@ pub(super) fn drag(system: &mut System, drag_time: Real) {
     let left = (-system.model.substep / drag_time).exp();
     let grains = &mut system.state.grains;
     grains.velocities.iter_mut().for_each(|it| *it *= left);
-    grains.spins.iter_mut().for_each(|it| *it *= left);
+    grains.angular_velocities.iter_mut().for_each(|it| *it *= left);
 }
 
 /// Kinetic damping (Cundall 1976): grains and membrane move freely until their kinetic energy has
@@ -99,7 +99,7 @@ impl Settling {
 fn stop(system: &mut System) -> Real {
     let grains = &mut system.state.grains;
     grains.velocities.fill(Vec3::zeros());
-    grains.spins.fill(Vec3::zeros());
+    grains.angular_velocities.fill(Vec3::zeros());
     system.state.membrane.velocities.fill(Vec3::zeros());
     0.0
 }

@@ -24,7 +24,7 @@
 
 use crate::{
     base::{Real, Vec3},
-    physics::contact::law::PairLaw,
+    physics::law::PairLaw,
 };
 
 /// Overlap [m] of a Hertz contact of effective radius `radius` [m] under `load` [N].
@@ -126,7 +126,7 @@ pub(super) fn friction_on_one(friction: Real, reach: Real, behind: Real) -> Real
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{physics::contact::law::Surface, scene::Material};
+    use crate::{physics::law::Surface, scene::Material};
 
     /// Oracle: the closed forms of one sphere, which the general sum must meet; tolerance: a
     /// difference quotient over 1/4000 of a period.

@@ -13,7 +13,7 @@ use crate::{
             body::BodyMotion,
             wall::{WallModel, WallShape},
         },
-        contact::law::{PairLaw, Surface},
+        law::{PairLaw, Surface},
         state::Grains,
     },
     scene::Material,

@@ -11,17 +11,17 @@ use crate::{
 pub fn normal_pressure(state: &State, scratch: &Scratch, volume: Real) -> Real {
     let radii = &state.grains.radii;
     let mut sum = 0.0;
-    for (pair, [i, j]) in scratch.pair_forces.iter().zip(&state.pair_ids) {
+    for (pair, [i, j]) in scratch.touching_pairs(state) {
         let branch = radii[*i as usize] + radii[*j as usize] - pair.overlap;
-        sum += pair.signed_normal.abs() * branch;
+        sum += pair.normal * branch;
     }
     for (patches, radius) in scratch.patch_forces.iter().zip(radii) {
         for patch in &patches.contacts[..patches.n] {
             sum += patch.normal * (radius - patch.overlap);
         }
     }
-    for (wall, radius) in scratch.wall_forces.iter().zip(radii.iter().cycle()) {
-        sum += wall.normal * (radius - wall.overlap / 2.0);
+    for (wall, [_, i]) in scratch.touching_walls(state) {
+        sum += wall.normal * (radii[i] - wall.overlap / 2.0);
     }
     sum / (3.0 * volume)
 }
