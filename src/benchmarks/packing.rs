@@ -8,17 +8,13 @@
 
 use crate::{
     base::{
-        Pose, Real, Vec3,
+        Real, Vec3,
         random::{Random, Stream},
-        real::Twist,
     },
     physics::{
-        Model, System,
-        boundary::{
-            body::BodyMotion,
-            wall::{WallModel, WallShape},
-        },
-        contact::law::{PairLaw, Surface},
+        System, SystemBuilder,
+        builder::Wall,
+        contact::law::Surface,
         neighbours::weigh_pairs,
         packing::{
             Grown, Growth, Recipe, Room, first_scale, numbering::along_curve, scatter,
@@ -220,27 +216,18 @@ impl Boxed {
     }
 }
 
-/// Grains in the box from the origin to `size` [m], gravity downwards.
+/// Grains in the box from the origin to `size` (m), gravity downwards.
 fn system(grains: Grains, size: &Vec3) -> System {
-    let law = PairLaw::between(&MATERIAL, &MATERIAL, SURFACE);
     let largest = grains.radii.iter().copied().fold(RADII[1], Real::max);
-    let mut model = Model::of_grains(law, COARSE_SUBSTEP, largest, 0.5 * (RADII[0] + RADII[1]));
-    model.gravity = Vec3::new(0.0, 0.0, -GRAVITY);
-    model.skin = SKIN_SHARE * largest;
-    let mut walls = Vec::new();
-    for axis in 0..3 {
-        let mut far = Vec3::zeros();
-        far[axis] = size[axis];
-        for (place, sign) in [(Vec3::zeros(), 1.0), (far, -1.0)] {
-            let mut normal = Vec3::zeros();
-            normal[axis] = sign;
-            let law = PairLaw::against_rigid(&MATERIAL, SURFACE);
-            model.walls.push(WallModel { shape: WallShape::Plane { normal }, law });
-            let pose = Pose::translation(place.x, place.y, place.z);
-            walls.push(BodyMotion { pose, twist: Twist::zero() });
-        }
-    }
-    System::at_rest(model, walls, grains)
+    let mut builder = SystemBuilder::of_material(&MATERIAL, SURFACE);
+    builder
+        .gravity(Vec3::new(0.0, 0.0, -GRAVITY))
+        .substep(COARSE_SUBSTEP)
+        .radii_up_to(largest, 0.5 * (RADII[0] + RADII[1]))
+        .skin(SKIN_SHARE * largest)
+        .grains(grains)
+        .walls(Wall::sides(Vec3::zeros(), *size));
+    builder.build().expect("six planes and finite grains fit each other")
 }
 
 fn masses(radii: &[Real]) -> Vec<Real> {

@@ -8,16 +8,15 @@
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Controls, Model, Scratch, State,
+    Controls, Model, State, System,
     boundary::body::BodyMotion,
     contact::law::PairLaw,
-    health::{self, Diverged},
+    health::Diverged,
     measure::real,
     membrane::{CARRIER_ID, MembraneState, mesh::Mesh},
     neighbours::weigh_pairs,
     packing::sphere_volume,
     state::{Grains, Springs},
-    substep,
 };
 use crate::{
     base::{
@@ -133,11 +132,8 @@ pub struct Filling {
     /// The system while it is filled, and when it is.
     soft: Model,
     goal: Model,
-    /// That of the present stage.
-    model: Model,
-    controls: Controls,
-    state: State,
-    scratch: Scratch,
+    /// With the model of the present stage.
+    system: System,
     place: Place,
     recipe: Recipe,
 }
@@ -209,9 +205,8 @@ impl Filling {
         let [soft, goal] = models.map(|it| Model { bodies: Vec::new(), ..it.clone() });
         let controls =
             Controls { gauge_setpoint: 0.0, walls: state.walls.clone(), bodies: Vec::new() };
-        let scratch = Scratch::new(&goal);
-        let model = goal.clone();
-        let mut filling = Self { soft, goal, model, controls, state, scratch, place, recipe };
+        let system = System::new(goal.clone(), controls, state);
+        let mut filling = Self { soft, goal, system, place, recipe };
         filling.enter();
         filling
     }
@@ -237,7 +232,7 @@ impl Filling {
 
     /// The state so far.
     pub fn state(&self) -> &State {
-        &self.state
+        &self.system.state
     }
 
     /// True when everything has come to rest.
@@ -247,7 +242,7 @@ impl Filling {
 
     /// The state at the end.
     pub fn into_state(self) -> State {
-        self.state
+        self.system.state
     }
 
     /// Most substeps that the whole filling can take.
@@ -268,16 +263,16 @@ impl Filling {
     fn enter(&mut self) {
         let stage = self.place.stage;
         let is_soft = stage <= Stage::Closing;
-        self.model = if is_soft { self.soft.clone() } else { self.goal.clone() };
+        self.system.model = if is_soft { self.soft.clone() } else { self.goal.clone() };
         if stage <= Stage::Falling {
-            self.model.membrane.holders.fill(CARRIER_ID);
-            self.model.held_positions.clone_from(&self.recipe.held_shape);
+            self.system.model.membrane.holders.fill(CARRIER_ID);
+            self.system.model.held_positions.clone_from(&self.recipe.held_shape);
         }
         if stage == Stage::Growing {
             let smooth = |law: &mut PairLaw| law.friction = 0.0;
-            smooth(&mut self.model.grain_law);
-            self.model.walls.iter_mut().for_each(|wall| smooth(&mut wall.law));
-            smooth(&mut self.model.membrane_law);
+            smooth(&mut self.system.model.grain_law);
+            self.system.model.walls.iter_mut().for_each(|wall| smooth(&mut wall.law));
+            smooth(&mut self.system.model.membrane_law);
         }
         if Stage::Closing < stage {
             self.close(1.0);
@@ -287,7 +282,7 @@ impl Filling {
     /// Rest lengths when `share` of the closing is over.
     fn close(&mut self, share: Real) {
         let [first, last] = self.recipe.rest_lengths;
-        self.model.membrane.scale_rest_lengths(first + (last - first) * share);
+        self.system.model.membrane.scale_rest_lengths(first + (last - first) * share);
     }
 
     /// Laws when `share` of the hardening is over: moduli rise by equal factors in equal times.
@@ -301,9 +296,9 @@ impl Filling {
             }
         };
         let (soft, goal) = (&self.soft, &self.goal);
-        self.model.grain_law = between(&soft.grain_law, &goal.grain_law);
-        self.model.membrane_law = between(&soft.membrane_law, &goal.membrane_law);
-        for (k, wall) in self.model.walls.iter_mut().enumerate() {
+        self.system.model.grain_law = between(&soft.grain_law, &goal.grain_law);
+        self.system.model.membrane_law = between(&soft.membrane_law, &goal.membrane_law);
+        for (k, wall) in self.system.model.walls.iter_mut().enumerate() {
             wall.law = between(&soft.walls[k].law, &goal.walls[k].law);
         }
     }
@@ -312,10 +307,11 @@ impl Filling {
     fn grow(&mut self, share: Real) {
         let scale = self.recipe.first.powf(1.0 - share);
         for (i, &radius) in self.recipe.final_radii.iter().enumerate() {
-            self.state.grains.radii[i] = scale * radius;
-            self.state.grains.masses[i] = sphere_volume(scale * radius) * self.recipe.density;
+            self.system.state.grains.radii[i] = scale * radius;
+            self.system.state.grains.masses[i] =
+                sphere_volume(scale * radius) * self.recipe.density;
         }
-        weigh_pairs(&self.state, &mut self.scratch.neighbours);
+        weigh_pairs(&self.system.state, &mut self.system.scratch.neighbours);
     }
 
     /// The stage after `stage`, without those that have nothing to do.
@@ -335,11 +331,11 @@ impl Filling {
             Stage::Hardening => self.harden(share),
             Stage::Falling | Stage::Resting | Stage::Settled => {}
         }
-        substep(&self.model, &self.controls, &mut self.state, &mut self.scratch);
+        self.system.step();
         let mut is_over = k + 1 == n_substeps;
         if k.is_multiple_of(LOOK_EVERY) {
-            health::check(&self.state, &self.scratch, 0)?;
-            is_over |= stage == Stage::Resting && speed(&self.state) < REST_SPEED;
+            self.system.check(0)?;
+            is_over |= stage == Stage::Resting && speed(&self.system.state) < REST_SPEED;
         }
         self.place.k += 1;
         if is_over {
@@ -422,5 +418,6 @@ fn scatter(scene: &Scene, recipe: &Recipe) -> State {
         pair_ids: Vec::new(),
         gauge: 0.0,
         walls: vec![BodyMotion { pose, twist: Twist::zero() }],
+        wall_memory: Vec::new(),
     }
 }

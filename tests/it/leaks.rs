@@ -8,7 +8,7 @@ use jamgrip::{
             body::BodyMotion,
             wall::{WallModel, WallShape},
         },
-        contact::law::{PairLaw, Surface},
+        contact::law::Surface,
         health::{self, Diverged},
         membrane::{CARRIER_ID, FREE, SheetContact, mesh::Mesh},
         state::Springs,
@@ -70,7 +70,7 @@ fn bed(mesh: Mesh, contact: SheetContact, radius: Real) -> Rig {
     let down = WallShape::Plane { normal: -Vec3::z() };
     for (shape, height) in [(WallShape::Tube { radius: TUBE }, 0.0), (down, top)] {
         let motion = BodyMotion { pose: Pose::translation(0.0, 0.0, height), twist: Twist::zero() };
-        rig.model.walls.push(WallModel { shape, law: PairLaw { ..law } });
+        rig.model.walls.push(WallModel::fixed(shape, law));
         rig.controls.walls.push(motion);
         rig.state.walls.push(motion);
     }

@@ -7,7 +7,7 @@ use super::{
 };
 use crate::{
     base::{Pose, Real, Vec3, real::Twist},
-    cosim::compile::{CompileError, Compiled},
+    cosim::compile::{self, CompileError, Gripper},
     physics::{Controls, Model, State, System, boundary::body::BodyMotion, measure::real},
 };
 
@@ -45,10 +45,8 @@ impl Ready {
 
     /// The system of this grip, beginning with `state`.
     pub(super) fn system(&self, mut state: State) -> System {
-        let mesh = &self.model.membrane.mesh;
-        let n_samples = mesh.n_vertices() + mesh.triangles.len();
         // The bag was filled without any body.
-        state.springs.bodies.resize(n_samples, Vec3::zeros());
+        state.springs.bodies.resize(self.model.n_samples(), Vec3::zeros());
         let object = BodyMotion { pose: Pose::identity(), twist: Twist::zero() };
         let controls =
             Controls { gauge_setpoint: 0.0, walls: state.walls.clone(), bodies: vec![object] };
@@ -134,7 +132,7 @@ impl Ready {
 
 /// The model of a scene, without the table, the substeps in a tick, and the tick [s].
 pub(super) fn compile(scene: &GripperScene) -> Result<(Model, usize, Real), CompileError> {
-    let Compiled { mut model, plan, .. } = Compiled::new(&scene.gripper, 1)?;
+    let Gripper { mut model, plan, .. } = compile::gripper(&scene.gripper)?;
     model.bodies.truncate(1);
     Ok((model, plan.n_substeps, plan.tick))
 }

@@ -29,7 +29,7 @@ use crate::{
         random::{Random, Stream},
     },
     physics::{
-        Model, System,
+        Model, System, SystemBuilder,
         contact::grains::closest_image,
         health::Diverged,
         measure::{
@@ -149,11 +149,12 @@ impl Boxed {
         let friction = friction(scene, case);
         let law = sample::grain_law(&scene.grains, friction);
         let (mean, largest) = (scene.grains.radius_mean(), scene.grains.radius_max);
-        let mut model = Model::of_grains(law, scene.compression.substep, largest, mean);
-        model.period = Some(period);
+        let mut builder = SystemBuilder::new(law);
+        builder.substep(scene.compression.substep).radii_up_to(largest, mean).period(period);
         // Dense grains hardly move: short lists are soon built anew, and soon gone through.
-        model.skin = 0.1 * mean;
-        let recipe = recipe(scene, &model, volume, friction);
+        builder.skin(0.1 * mean).grains(grains);
+        let system = builder.build()?;
+        let recipe = recipe(scene, &system.model, volume, friction);
         let growth = Growth::new(recipe, final_radii.clone(), scale);
         let mut record = Record { case: case.name(), seed: scene.seed, ..Record::default() };
         record.columns = COLUMNS.iter().map(|(name, unit)| Column::new(name, unit)).collect();
@@ -167,7 +168,6 @@ impl Boxed {
             n_probed: 0,
             record,
         };
-        let system = System::at_rest(model, Vec::new(), grains);
         let (scene, case) = (scene.clone(), case);
         Ok(Self { scene, case, final_radii, volume, growth, system, place })
     }

@@ -17,9 +17,10 @@ use super::{
     specimen::{BOTTOM, Recipe, TOP},
 };
 use crate::{
-    base::Real,
+    base::{Real, Vec3, real::Twist},
     physics::{
         System,
+        boundary::motion::{Load, Servo, WallMotion},
         health::Diverged,
         measure::{self, real},
         packing::{
@@ -281,11 +282,15 @@ impl Test {
         let (damping, pressure) = (confining.damping, confining.pressure * share);
         let (gain, fastest) = (confining.servo_speed, confining.servo_speed_max);
         self.system.controls.gauge_setpoint = -pressure;
-        let speed = |force: Real| {
-            let missing = (pressure - force / self.course.area) / confining.pressure;
-            (gain * missing).clamp(-fastest, fastest)
+        let servo = Servo {
+            axis: Vec3::z(),
+            load: Load::Pressure { area: self.course.area },
+            target: pressure,
+            full_scale: confining.pressure,
+            gain,
+            speed_max: fastest,
         };
-        let speeds = self.course.plate_forces.map(speed);
+        let speeds = self.course.plate_forces.map(|force| servo.speed(force));
         self.drive(speeds);
         self.advance();
         self.damp(damping);
@@ -309,9 +314,11 @@ impl Test {
 
     /// Speeds of the lower and the upper plate towards the grains [m/s].
     fn drive(&mut self, [bottom, top]: [Real; 2]) {
-        let walls = &mut self.system.controls.walls;
-        walls[BOTTOM as usize].twist.linear.z = bottom;
-        walls[TOP as usize].twist.linear.z = -top;
+        for (wall, speed) in [(BOTTOM, bottom), (TOP, -top)] {
+            let linear = Vec3::new(0.0, 0.0, speed);
+            let twist = Twist { linear, angular: Vec3::zeros() };
+            self.system.model.walls[wall as usize].motion = WallMotion::Velocity(twist);
+        }
     }
 
     /// Lets all speeds decay at `rate` [1/s] for a substep.

@@ -138,7 +138,7 @@ impl Linear<'_> {
     fn apply(&self, [stiff, damp]: [Real; 2], x: &[Vec3]) -> Vec<Vec3> {
         let model = self.model;
         let mut y: Vec<Vec3> = x.iter().map(|x| x * (stiff * self.contact_stiffness)).collect();
-        for (link, fold) in model.links.iter().zip(&self.folds) {
+        for (k, (link, fold)) in model.links.iter().zip(&self.folds).enumerate() {
             let at = link.vertices.map(|v| v as usize);
             let [_, _, r3, r4] = link.corners(self.positions);
             let edge = r4 - r3;
@@ -151,8 +151,9 @@ impl Linear<'_> {
             let Some(fold) = fold else { continue };
             // d(sin θ/2)/dθ = cos(θ/2)/2.
             let half_cosine = (1.0 - fold.half_sine * fold.half_sine).max(0.0).sqrt();
-            let elastic = 0.5 * half_cosine * model.sheet.bending_stiffness * fold.slenderness;
-            let hinge = stiff * elastic + damp * model.sheet.bending_damping * length;
+            let [stiffness, damping] = model.bending_of(k);
+            let elastic = 0.5 * half_cosine * stiffness * fold.slenderness;
+            let hinge = stiff * elastic + damp * damping * length;
             let turn = fold.project(link.corners(x).map(|x| Vector::from(*x)));
             for (vertex, force) in at.into_iter().zip(fold.spread(hinge * turn)) {
                 y[vertex] += Vec3::from(force);

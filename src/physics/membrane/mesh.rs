@@ -160,6 +160,12 @@ pub enum MeshFault {
         /// Rows.
         n_rows: usize,
     },
+    /// A disc without a ring of vertices.
+    #[error("a disc needs 1 ring of vertices at least, not {n_rings}")]
+    TooFewRings {
+        /// Rings.
+        n_rings: usize,
+    },
     /// A frequency without a ring of edges on the equator.
     #[error("subdivision frequency {frequency} is not an even number of at least 2")]
     Frequency {

@@ -7,6 +7,8 @@ mod icosphere;
 mod parts;
 mod tube;
 pub mod bar;
+mod disc;
+pub mod shape; // all of them by name
 pub mod stretch;
 pub mod bridson_2003;
 pub mod pressure;
@@ -84,7 +86,7 @@ impl Sheet {
 pub struct MembraneModel {
     /// Who neighbours whom, and the reference shape.
     pub mesh: Mesh,
-    /// What the sheet is made of.
+    /// What the membrane is made of; of several parts, the first.
     pub sheet: Sheet,
     /// Mass of each vertex: ρ d times a third of the areas at it [kg].
     pub masses: Vec<Real>,
@@ -97,6 +99,8 @@ pub struct MembraneModel {
     links: Vec<Link>,
     /// Twice the reference areas at each hinge [m²] if these are to be taken; else empty.
     first_areas: [Vec<Real>; 2],
+    /// Elastic [N m] and dissipative [N s] bending constant of each hinge if parts differ; else empty.
+    bending: [Vec<Real>; 2],
 }
 
 /// An edge with all that its forces need, in one place in memory.
@@ -202,6 +206,20 @@ pub struct MembraneScratch {
 }
 
 impl MembraneModel {
+    /// No membrane.
+    pub fn none() -> Self {
+        let mesh = Mesh::new(Vec::new(), Vec::new()).expect("an empty mesh has no fault");
+        let sheet = Sheet {
+            thickness: 0.0,
+            youngs_modulus: 0.0,
+            density: 0.0,
+            spring_damping: 0.0,
+            bending_stiffness: 0.0,
+            bending_damping: 0.0,
+        };
+        Self::new(mesh, sheet)
+    }
+
     /// Makes `sheet` in the shape of `mesh`, free of stress there; the carrier holds its rims, and
     /// grains touch its triangles.
     pub fn new(mesh: Mesh, sheet: Sheet) -> Self {
@@ -241,6 +259,7 @@ impl MembraneModel {
             contact: SheetContact::Triangles,
             links,
             first_areas: [Vec::new(), Vec::new()],
+            bending: [Vec::new(), Vec::new()],
             sheet,
             mesh,
         }

@@ -298,15 +298,12 @@ mod tests {
     use super::*;
     use crate::{
         base::{
-            Pose, Vec3,
+            Vec3,
             random::{Random, Stream},
-            real::Twist,
         },
         physics::{
-            boundary::{
-                body::BodyMotion,
-                wall::{WallModel, WallShape},
-            },
+            SystemBuilder,
+            builder::Wall,
             contact::law::Surface,
             measure::grain_volume,
             packing::{Room, first_scale, scatter, sphere_volume},
@@ -326,28 +323,20 @@ mod tests {
         let mut random = Random::new(11, Stream::Radius);
         let final_radii: Vec<Real> =
             (0..n_grains).map(|_| random.between(1.9e-3, 2.1e-3)).collect();
-        let mut model = Model::of_grains(law, 5e-6, 2.1e-3, 2e-3);
-        let corners = [Vec3::zeros(), Vec3::repeat(EDGE)];
-        let room = Room::Box { low: corners[0], high: corners[1] };
-        let mut walls = Vec::new();
-        for axis in 0..3 {
-            for (corner, sign) in corners.into_iter().zip([1.0, -1.0]) {
-                let normal = Vec3::ith(axis, sign);
-                model.walls.push(WallModel { shape: WallShape::Plane { normal }, law });
-                walls.push(BodyMotion {
-                    pose: Pose::from_parts(corner.into(), nalgebra::one()),
-                    twist: Twist::zero(),
-                });
-            }
-        }
+        let (low, high) = (Vec3::zeros(), Vec3::repeat(EDGE));
+        let room = Room::Box { low, high };
         let scale = first_scale(&final_radii, 0.15, room.volume());
         let small: Vec<Real> = final_radii.iter().map(|r| scale * r).collect();
         let mut random = Random::new(11, Stream::Position);
         let places = scatter(&small, None, &mut random, |it| room.place(2.1e-3, it)).unwrap();
         let masses: Vec<Real> = final_radii.iter().map(|&r| 2000.0 * sphere_volume(r)).collect();
-        let mut recipe = Recipe::new(&model, room.volume(), 500.0, masses[0], 2e-3);
+        let first_mass = masses[0];
+        let mut builder = SystemBuilder::new(law);
+        builder.substep(5e-6).radii_up_to(2.1e-3, 2e-3).walls(Wall::sides(low, high));
+        builder.grains(Grains::at_rest(places, small, masses));
+        let system = builder.build().unwrap();
+        let mut recipe = Recipe::new(&system.model, room.volume(), 500.0, first_mass, 2e-3);
         recipe.laws.grains.modulus = PairLaw::between(&soft, &soft, surface).modulus;
-        let system = System::at_rest(model, walls, Grains::at_rest(places, small, masses));
         (system, recipe, final_radii, scale)
     }
 
