@@ -17,7 +17,7 @@ use crate::{
         },
         critical_step::critical_step,
         membrane::{
-            CARRIER_ID, FREE, MembraneModel, Sheet,
+            CARRIER_ID, FREE, MembraneMaterial, MembraneModel,
             bar::Bar,
             mesh::{Mesh, MeshFault},
             pressure,
@@ -48,7 +48,7 @@ const BETWEEN_GRAINS: Surface =
     Surface { friction: 0.25, dissipation_time: 4.3e-6, tangential_damping: 0.3 };
 const ON_LATEX: Surface = Surface { friction: 1.2, ..BETWEEN_GRAINS };
 /// Bending constants of the seeds' other membranes, which the source leaves out here.
-const SHEET: Sheet = Sheet {
+const MEMBRANE: MembraneMaterial = MembraneMaterial {
     thickness: 3e-4,
     youngs_modulus: LATEX.youngs_modulus,
     density: LATEX.density,
@@ -142,7 +142,7 @@ pub(super) fn grow() -> Result<State, BeamError> {
 }
 
 fn membrane() -> Result<MembraneModel, MeshFault> {
-    Ok(MembraneModel::new(Mesh::bar(&BAR)?, SHEET))
+    Ok(MembraneModel::new(Mesh::bar(&BAR)?, MEMBRANE))
 }
 
 /// Grains in the membrane, which is held all over.

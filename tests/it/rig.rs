@@ -9,7 +9,7 @@ use jamgrip::{
         boundary::wall::WallShape,
         builder::{Membrane, Vertices, Wall},
         contact::law::{PairLaw, Surface},
-        membrane::{MembraneModel, Sheet, mesh::Mesh},
+        membrane::{MembraneMaterial, MembraneModel, mesh::Mesh},
     },
     scene::Material,
 };
@@ -64,7 +64,7 @@ impl Rig {
         flange: Pose,
         dt: Real,
     ) -> Self {
-        let latex = Sheet {
+        let latex = MembraneMaterial {
             thickness: 3e-4,
             youngs_modulus: LATEX.youngs_modulus,
             density: LATEX.density,

@@ -35,7 +35,7 @@ use crate::{
         },
         critical_step,
         measure::real,
-        membrane::{MembraneModel, Sheet, mesh::Mesh},
+        membrane::{MembraneMaterial, MembraneModel, mesh::Mesh},
         model::{BodyModel, BodySurface, ChamberModel},
     },
     scene::{Object, Scene, Shape},
@@ -115,7 +115,7 @@ pub struct Gripper {
 pub fn gripper(scene: &Scene) -> Result<Gripper, CompileError> {
     let mesh = Mesh::half_icosphere(scene.membrane.radius, scene.membrane.frequency)?;
     let scaled = ScaledScene::new(scene);
-    let mut membrane = MembraneModel::new(mesh, Sheet::of(&scaled.membrane));
+    let mut membrane = MembraneModel::new(mesh, MembraneMaterial::of(&scaled.membrane));
     membrane.scale_rest_lengths(1.0 - scene.membrane.rest_length_shrink);
     let (mut bodies, bulks) = bodies(&scaled)?;
     bodies.push(table(&scaled));

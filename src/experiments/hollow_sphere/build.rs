@@ -20,7 +20,7 @@ use crate::{
             law::{PairLaw, Surface},
         },
         critical_step::critical_step,
-        membrane::{CARRIER_ID, FREE, MembraneModel, Sheet, mesh::Mesh},
+        membrane::{CARRIER_ID, FREE, MembraneMaterial, MembraneModel, mesh::Mesh},
         model::{BodyModel, BodySurface},
         packing::{Growth, Recipe, Room, first_scale, scatter, sphere_volume},
         state::Grains,
@@ -54,7 +54,7 @@ pub(super) fn system(scene: &Scene, case: &Case) -> Result<(System, Parts), Star
     let n_outer = outer.n_vertices();
     let inner_radius = scene.object.radius + scene.inner_clearance;
     let inner = Mesh::icosphere(inner_radius, scene.inner_frequency)?;
-    let material = Sheet::of(&scene.membrane);
+    let material = MembraneMaterial::of(&scene.membrane);
     let mut outer = MembraneModel::new(outer, material);
     outer.scale_rest_lengths(scene.membrane.fill_stretch);
     let membranes = [outer, MembraneModel::new(inner.inside_out()?, material)];

@@ -48,9 +48,9 @@ impl Bench {
         dt: Real,
     ) -> Self {
         let latex = Material {
-            youngs_modulus: membrane.sheet.youngs_modulus,
+            youngs_modulus: membrane.material.youngs_modulus,
             poisson_ratio: 1.0 / 3.0,
-            density: membrane.sheet.density,
+            density: membrane.material.density,
         };
         let mut builder = SystemBuilder::of_material(material, surface);
         builder.substep(dt).membrane_law(PairLaw::between(material, &latex, surface));

@@ -3,7 +3,7 @@
 use crate::{
     base::{Real, Vec3},
     physics::contact::law,
-    physics::membrane::Sheet,
+    physics::membrane::MembraneMaterial,
     scene::{
         Material,
         quantity::{ANGLE, DENSITY, IMPULSE, LENGTH, PRESSURE, SPEED, TIME, TORQUE},
@@ -87,7 +87,7 @@ pub(super) struct Rolling {
 /// The sheet.
 #[derive(Clone, Debug)]
 pub(super) struct Membrane {
-    pub(super) sheet: Sheet,
+    pub(super) sheet: MembraneMaterial,
     /// Edge of a flat patch [m].
     pub(super) edge: Real,
     /// Radius of a sphere [m].
@@ -224,7 +224,7 @@ pub(super) fn blank() -> Scene {
     let nan = Real::NAN;
     let material = Material { youngs_modulus: nan, poisson_ratio: nan, density: nan };
     let surface = law::Surface { friction: nan, dissipation_time: nan, tangential_damping: nan };
-    let sheet = Sheet {
+    let sheet = MembraneMaterial {
         thickness: nan,
         youngs_modulus: nan,
         density: nan,

@@ -26,7 +26,7 @@ use crate::{
         contact::law::{self, PairLaw},
         health::Diverged,
         measure::{enclosed_volume, packing, stress},
-        membrane::{FREE, Sheet, shape::MembraneShape},
+        membrane::{FREE, MembraneMaterial, shape::MembraneShape},
         model::ChamberModel,
         packing::{Grown, Growth, Recipe, Room, first_scale, grow, scatter, sphere_volume},
         state::Grains,
@@ -179,7 +179,7 @@ fn system(scene: &Scene, radius: Real, grains: Grains) -> Result<System, StartEr
         .grains(grains);
     let frame = builder.wall(Wall::frame());
     let shape = MembraneShape::Icosphere { radius, frequency: keys.frequency };
-    let sheet = Sheet {
+    let latex = MembraneMaterial {
         thickness: keys.thickness,
         youngs_modulus: rubber.youngs_modulus,
         density: rubber.density,
@@ -187,7 +187,7 @@ fn system(scene: &Scene, radius: Real, grains: Grains) -> Result<System, StartEr
         bending_stiffness: keys.bending_stiffness,
         bending_damping: keys.bending_damping,
     };
-    builder.membrane(Membrane::new(&shape, sheet)?.hold(Vertices::All, frame));
+    builder.membrane(Membrane::new(&shape, latex)?.hold(Vertices::All, frame));
     Ok(builder.build()?)
 }
 

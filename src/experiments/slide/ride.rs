@@ -21,7 +21,7 @@ use crate::{
         contact::{self, law::PairLaw, sums},
         health::Diverged,
         measure::{packing, real, real_of},
-        membrane::{MembraneModel, SheetContact, critical_step},
+        membrane::{MembraneContact, MembraneModel, critical_step},
         state::Grains,
     },
 };
@@ -223,8 +223,8 @@ impl Ride {
             column.values.push(value);
         }
         let diameter = match model.membrane.contact {
-            SheetContact::Triangles => 2.0 * model.radius_max,
-            SheetContact::Spheres { radius } => model.radius_max + radius,
+            MembraneContact::Triangles => 2.0 * model.radius_max,
+            MembraneContact::Spheres { radius } => model.radius_max + radius,
         };
         let worst = &mut self.record.validity.overlap_over_diameter_max;
         *worst = worst.max(seen.membrane_overlap_max / diameter);
@@ -291,7 +291,7 @@ fn system(scene: &Scene, case: &Case, patch: Patch, start: Vec3) -> Result<Syste
     let mut contact_radius = radius;
     if case.has_spheres {
         let sphere = scene.membrane.sphere_radius;
-        membrane.contact = SheetContact::Spheres { radius: sphere };
+        membrane.contact = MembraneContact::Spheres { radius: sphere };
         contact_radius = radius * sphere / (radius + sphere);
     }
     let (mut substep, mut held) = (case.pull.substep, Vertices::All);

@@ -21,7 +21,7 @@ use crate::{
         },
         critical_step::{RAYLEIGH_SHARE, rayleigh_time},
         membrane::{
-            FREE, MembraneModel, SheetContact,
+            FREE, MembraneContact, MembraneModel,
             critical_step::critical_step_at,
             mesh::{Mesh, MeshFault},
         },
@@ -214,7 +214,7 @@ fn membrane(setup: &Setup, choice: Choice) -> Result<MembraneModel, MeshFault> {
         membrane.bend_by_first_areas();
     }
     if choice.kind == Kind::Spheres {
-        membrane.contact = SheetContact::Spheres { radius: size.sphere_radius };
+        membrane.contact = MembraneContact::Spheres { radius: size.sphere_radius };
     }
     Ok(membrane)
 }

@@ -4,7 +4,7 @@ use super::{BuildError, WallId};
 use crate::{
     base::{Pose, Vec3},
     physics::membrane::{
-        FREE, MembraneModel, Sheet, SheetContact,
+        FREE, MembraneContact, MembraneMaterial, MembraneModel,
         mesh::{Mesh, MeshFault},
         shape::MembraneShape,
     },
@@ -38,7 +38,7 @@ impl Membrane {
     ///
     /// # Errors
     /// If the shape is no surface.
-    pub fn new(shape: &MembraneShape, material: Sheet) -> Result<Self, MeshFault> {
+    pub fn new(shape: &MembraneShape, material: MembraneMaterial) -> Result<Self, MeshFault> {
         Ok(Self::of(MembraneModel::new(shape.mesh()?, material)))
     }
 
@@ -46,7 +46,11 @@ impl Membrane {
     ///
     /// # Errors
     /// If the shape is no surface.
-    pub fn placed(shape: &MembraneShape, pose: &Pose, material: Sheet) -> Result<Self, MeshFault> {
+    pub fn placed(
+        shape: &MembraneShape,
+        pose: &Pose,
+        material: MembraneMaterial,
+    ) -> Result<Self, MeshFault> {
         let Mesh { mut positions, triangles, .. } = shape.mesh()?;
         positions.iter_mut().for_each(|p| *p = pose.rotation * *p + pose.translation.vector);
         Ok(Self::of(MembraneModel::new(Mesh::new(positions, triangles)?, material)))
@@ -83,7 +87,7 @@ impl Membrane {
 
     /// The same with spheres around its vertices as what grains touch, or its triangles.
     #[must_use]
-    pub fn touched_at(mut self, contact: SheetContact) -> Self {
+    pub fn touched_at(mut self, contact: MembraneContact) -> Self {
         self.model.contact = contact;
         self
     }

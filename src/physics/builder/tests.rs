@@ -9,14 +9,14 @@ use crate::{
             motion::{Hinge, Load, Servo, Turn, WallMotion},
             triangles::Triangles,
         },
-        membrane::{Sheet, SheetContact, shape::MembraneShape},
+        membrane::{MembraneContact, MembraneMaterial, shape::MembraneShape},
     },
 };
 
 const GLASS: Material = Material { youngs_modulus: 1e7, poisson_ratio: 0.25, density: 2500.0 };
 const SURFACE: Surface = Surface { friction: 0.5, dissipation_time: 3e-5, tangential_damping: 0.3 };
 const RADIUS: Real = 2e-3;
-const LATEX: Sheet = Sheet {
+const LATEX: MembraneMaterial = MembraneMaterial {
     thickness: 3e-4,
     youngs_modulus: 1e6,
     density: 1e3,
@@ -137,7 +137,8 @@ fn several_membranes_share_a_system() {
     let (left, right) = (builder.wall(Wall::frame()), builder.wall(Wall::frame()));
     let pose = Pose::new(Vec3::new(0.1, 0.0, 0.0), Vec3::x() * 0.5);
     let shape = MembraneShape::Disc { radius: 0.01, n_rings: 3 };
-    let heavy = Membrane::placed(&shape, &pose, Sheet { density: 3e3, ..LATEX }).unwrap();
+    let heavy =
+        Membrane::placed(&shape, &pose, MembraneMaterial { density: 3e3, ..LATEX }).unwrap();
     let mass = heavy.model.mass();
     builder.membrane(disc().hold(Vertices::Rim(0), left));
     builder.membrane(heavy.hold(Vertices::Rims, right));
@@ -207,7 +208,7 @@ fn parts_that_do_not_fit_are_refused() {
         }),
         BuildError::NoSuchVertices { membrane: 0, what: "rim", index: 1, limit: 1 }
     );
-    let spheres = || disc().touched_at(SheetContact::Spheres { radius: 1e-3 }).free_rims();
+    let spheres = || disc().touched_at(MembraneContact::Spheres { radius: 1e-3 }).free_rims();
     let different = BuildError::MembranesDiffer { membrane: 1, what: "what grains touch of it" };
     assert_eq!(
         refused(&|it| {

@@ -161,9 +161,9 @@ impl PullAndFold<'_> {
         {
             fold = fold.with_areas([L::load(first), L::load(second)], sides, length);
         }
-        let sheet = &self.model.sheet;
+        let material = &self.model.material;
         let [mut stiffness, mut damping] =
-            [sheet.bending_stiffness, sheet.bending_damping].map(L::splat);
+            [material.bending_stiffness, material.bending_damping].map(L::splat);
         if let [Some(elastic), Some(viscous)] =
             [0, 1].map(|k| self.model.bending[k].get(first..first + L::N))
         {

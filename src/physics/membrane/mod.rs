@@ -35,7 +35,7 @@ use crate::{
 
 /// What the sheet is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sheet {
+pub struct MembraneMaterial {
     /// Thickness d [m].
     pub thickness: Real,
     /// Young's modulus E [Pa].
@@ -52,7 +52,7 @@ pub struct Sheet {
 
 /// What of the sheet grains touch.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum SheetContact {
+pub enum MembraneContact {
     /// Its triangles: a closed surface without thickness.
     Triangles,
     /// Spheres around its vertices, the classic mass-spring membrane. They do not touch each other.
@@ -67,7 +67,7 @@ pub const FREE: u32 = u32::MAX;
 /// The first wall as a holder.
 pub const CARRIER_ID: u32 = 0;
 
-impl Sheet {
+impl MembraneMaterial {
     /// That of a scene.
     pub fn of(membrane: &scene::Membrane) -> Self {
         Self {
@@ -87,14 +87,14 @@ pub struct MembraneModel {
     /// Who neighbours whom, and the reference shape.
     pub mesh: Mesh,
     /// What the membrane is made of; of several parts, the first.
-    pub sheet: Sheet,
+    pub material: MembraneMaterial,
     /// Mass of each vertex: ρ d times a third of the areas at it [kg].
     pub masses: Vec<Real>,
     /// Which wall holds each vertex, `FREE` for none. Forces on held vertices are computed like all
     /// others: they are what the sheet exerts on the wall.
     pub holders: Vec<u32>,
     /// What of it grains touch.
-    pub contact: SheetContact,
+    pub contact: MembraneContact,
     /// Springs and hinges, numbered like the edges.
     links: Vec<Link>,
     /// Twice the reference areas at each hinge [m²] if these are to be taken; else empty.
@@ -209,7 +209,7 @@ impl MembraneModel {
     /// No membrane.
     pub fn none() -> Self {
         let mesh = Mesh::new(Vec::new(), Vec::new()).expect("an empty mesh has no fault");
-        let sheet = Sheet {
+        let material = MembraneMaterial {
             thickness: 0.0,
             youngs_modulus: 0.0,
             density: 0.0,
@@ -217,15 +217,15 @@ impl MembraneModel {
             bending_stiffness: 0.0,
             bending_damping: 0.0,
         };
-        Self::new(mesh, sheet)
+        Self::new(mesh, material)
     }
 
     /// Makes `sheet` in the shape of `mesh`, free of stress there; the carrier holds its rims, and
     /// grains touch its triangles.
-    pub fn new(mesh: Mesh, sheet: Sheet) -> Self {
-        let mass_per_area = sheet.density * sheet.thickness;
+    pub fn new(mesh: Mesh, material: MembraneMaterial) -> Self {
+        let mass_per_area = material.density * material.thickness;
         let masses: Vec<Real> = mesh.vertex_areas().iter().map(|a| a * mass_per_area).collect();
-        let inner = stretch::stiffness(sheet.youngs_modulus, sheet.thickness);
+        let inner = stretch::stiffness(material.youngs_modulus, material.thickness);
         let mut links = Vec::with_capacity(mesh.edges.len());
         for (e, ends) in mesh.edges.iter().enumerate() {
             let [a, b] = ends.map(|v| v as usize);
@@ -236,7 +236,7 @@ impl MembraneModel {
                 vertices: [ends[0], ends[1], ends[0], ends[1]],
                 triangles: [0; 2],
                 law: LinkLaw {
-                    spring: Spring::new(length, stiffness, sheet.spring_damping, masses),
+                    spring: Spring::new(length, stiffness, material.spring_damping, masses),
                     rest_half_sine: 0.0,
                 },
             };
@@ -256,11 +256,11 @@ impl MembraneModel {
         Self {
             masses,
             holders,
-            contact: SheetContact::Triangles,
+            contact: MembraneContact::Triangles,
             links,
             first_areas: [Vec::new(), Vec::new()],
             bending: [Vec::new(), Vec::new()],
-            sheet,
+            material,
             mesh,
         }
     }

@@ -32,7 +32,7 @@ impl Mesh {
 impl MembraneModel {
     /// Elastic (N m) and dissipative (N s) bending constant of a hinge.
     pub(super) fn bending_of(&self, hinge: usize) -> [Real; 2] {
-        let of_all = [self.sheet.bending_stiffness, self.sheet.bending_damping];
+        let of_all = [self.material.bending_stiffness, self.material.bending_damping];
         [0, 1].map(|k| self.bending[k].get(hinge).copied().unwrap_or(of_all[k]))
     }
 
@@ -49,8 +49,8 @@ impl MembraneModel {
     /// None that the meshes did not have before.
     pub fn joined(mut self, other: &Self) -> Result<Self, MeshFault> {
         let bends_by_first_areas = self.bends_by_first_areas();
-        let is_alike = self.sheet.bending_stiffness == other.sheet.bending_stiffness
-            && self.sheet.bending_damping == other.sheet.bending_damping;
+        let is_alike = self.material.bending_stiffness == other.material.bending_stiffness
+            && self.material.bending_damping == other.material.bending_damping;
         let n_hinges = [&self, other].map(|it| it.mesh.hinges.len());
         if !is_alike || !self.bending[0].is_empty() || !other.bending[0].is_empty() {
             let all = (0..n_hinges[0]).map(|k| self.bending_of(k));
@@ -83,8 +83,8 @@ impl MembraneModel {
 #[cfg(test)]
 mod tests {
     use super::super::{
-        MembraneModel, MembraneScratch, MembraneState, Sheet, critical_step::critical_step, forces,
-        mesh::Mesh, pressure,
+        MembraneMaterial, MembraneModel, MembraneScratch, MembraneState,
+        critical_step::critical_step, forces, mesh::Mesh, pressure,
     };
     use crate::base::Vec3;
 
@@ -93,7 +93,7 @@ mod tests {
     /// power iteration may miss.
     #[test]
     fn joined_membranes_have_the_forces_they_have_alone() {
-        let material = Sheet {
+        let material = MembraneMaterial {
             thickness: 3e-4,
             youngs_modulus: 1e6,
             density: 1e3,
@@ -101,7 +101,7 @@ mod tests {
             bending_stiffness: 1e-4,
             bending_damping: 1e-7,
         };
-        let stiffer = Sheet { youngs_modulus: 5e6, bending_stiffness: 3e-4, ..material };
+        let stiffer = MembraneMaterial { youngs_modulus: 5e6, bending_stiffness: 3e-4, ..material };
         let dome = MembraneModel::new(Mesh::half_icosphere(0.02, 4).unwrap(), material);
         let mut disc = MembraneModel::new(Mesh::disc(0.015, 4).unwrap(), stiffer);
         disc.scale_rest_lengths(0.95);
