@@ -36,9 +36,9 @@ use crate::{
 const BAR: Bar = Bar { width: 0.08, length: 0.4, edge_radius: 0.01, n_side: 8, n_rows: 53 };
 /// Grains; the source leaves their number out, this is a solid fraction of 0.6.
 const N_GRAINS: usize = 18_500;
-/// Smallest and largest radius [m].
+/// Smallest and largest radius (m).
 const RADII: [Real; 2] = [2.5e-3, 2.9e-3];
-/// Mean radius [m].
+/// Mean radius (m).
 const MEAN_RADIUS: Real = 0.5 * (RADII[0] + RADII[1]);
 /// The grains' material, from the middle of the source's range.
 const GRAIN: Material = Material { youngs_modulus: 5e7, poisson_ratio: 0.245, density: 2000.0 };
@@ -56,9 +56,9 @@ const MEMBRANE: MembraneMaterial = MembraneMaterial {
     bending_stiffness: 1e-3,
     bending_damping: 5e-6,
 };
-/// Vacuum [Pa], from the middle of the source's range.
+/// Vacuum (Pa), from the middle of the source's range.
 const VACUUM: Real = 50e3;
-/// Pressure at which nothing more would fit [Pa].
+/// Pressure at which nothing more would fit (Pa).
 const PRESSURE: Real = 10e3;
 /// Solid fraction of the scattered grains.
 const THIN: Real = 0.25;

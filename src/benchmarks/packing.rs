@@ -33,20 +33,20 @@ pub(super) const RESTITUTION: Real = 0.5;
 /// Dissipation as of a restitution of about one half.
 pub(super) const SURFACE: Surface =
     Surface { friction: 0.5, dissipation_time: 3e-5, tangential_damping: 0.3 };
-/// Smallest and largest radius [m].
+/// Smallest and largest radius (m).
 const RADII: [Real; 2] = [1.8e-3, 2.2e-3];
 /// Solid fraction of the box at these radii; grains grow a little beyond or stay a little below.
 const SOLID_FRACTION: Real = 0.61;
 /// Of grains while they grow: with none they would be denser than any that are poured, with their own
 /// looser.
 const GROWTH_FRICTION: Real = 0.1;
-/// Pressure of the grown grains [Pa].
+/// Pressure of the grown grains (Pa).
 const PRESSURE: Real = 5e4;
 /// Solid fraction of the scattered grains.
 const THIN: Real = 0.25;
-/// Substep that is measured [s]: a tenth of the Rayleigh time.
+/// Substep that is measured (s): a tenth of the Rayleigh time.
 pub(super) const SUBSTEP: Real = 5e-6;
-/// Substep until then [s].
+/// Substep until then (s).
 const COARSE_SUBSTEP: Real = 1e-5;
 /// Neighbours are listed this share of the largest radius beyond contact.
 const SKIN_SHARE: Real = 0.25;
@@ -59,7 +59,7 @@ const N_REST: [[u64; 2]; 3] = [[1000, 3000], [200, 400], [500, 4000]];
 const N_FLOW: u64 = 2000;
 /// Height of the opened box over that of the closed one.
 const OPENED: Real = 1.5;
-/// Standard gravity [m/s²].
+/// Standard gravity (m/s²).
 const GRAVITY: Real = 9.81;
 /// Changes whenever the same box would be filled otherwise.
 const VERSION: u64 = 5;
@@ -105,13 +105,13 @@ impl Boxed {
         self.n_tiles == [1; 3] && self.phase == Phase::Rest
     }
 
-    /// Edge of the box of one copy [m].
+    /// Edge of the box of one copy (m).
     fn edge(&self) -> Real {
         let solid: Real = self.final_radii().iter().map(|&r| sphere_volume(r)).sum();
         (solid / SOLID_FRACTION).cbrt()
     }
 
-    /// Edges of the box [m]; it goes from the origin to there.
+    /// Edges of the box (m); it goes from the origin to there.
     pub(super) fn size(&self) -> Vec3 {
         let edge = self.edge();
         let lid = if self.phase == Phase::Flow { OPENED } else { 1.0 };
@@ -134,7 +134,7 @@ impl Boxed {
         system
     }
 
-    /// Gravity [m/s²].
+    /// Gravity (m/s²).
     pub(super) fn gravity(&self) -> Vec3 {
         match self.phase {
             Phase::Rest => Vec3::new(0.0, 0.0, -GRAVITY),

@@ -23,7 +23,7 @@ use crate::{
     scene::{Object, Scene},
 };
 
-/// Overlap that a body may have where it is put [m]: what rests on something sinks in a little.
+/// Overlap that a body may have where it is put (m): what rests on something sinks in a little.
 const GRACE: Real = 1e-4;
 
 /// Who is in the way.

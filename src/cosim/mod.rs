@@ -32,7 +32,7 @@ pub const FLANGE: usize = CARRIER;
 /// How a tick is cut.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plan {
-    /// Length of a tick [s].
+    /// Length of a tick (s).
     pub tick: Real,
     /// Substeps in a tick, a multiple of `n_per_exchange`.
     pub n_substeps: usize,
@@ -43,7 +43,7 @@ pub struct Plan {
 /// What the outside wants during a tick.
 #[derive(Clone, Debug)]
 pub struct Inputs {
-    /// Set-point of the chamber [Pa].
+    /// Set-point of the chamber (Pa).
     pub gauge_setpoint: Real,
     /// Where the flange shall be.
     pub flange_target: Pose,

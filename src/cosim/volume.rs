@@ -17,21 +17,21 @@ use crate::base::{Pose, Real, Vec3};
 pub enum Volume {
     /// All points near one.
     Ball {
-        /// The middle [m].
+        /// The middle (m).
         centre: Vec3,
-        /// Its radius [m].
+        /// Its radius (m).
         radius: Real,
     },
     /// A turned box.
     Box {
         /// Pose of its middle.
         pose: Pose,
-        /// Half of its edges [m].
+        /// Half of its edges (m).
         half: Vec3,
     },
     /// The convex hull of points.
     Hull {
-        /// The points [m].
+        /// The points (m).
         points: Vec<Vec3>,
     },
 }

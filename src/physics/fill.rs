@@ -32,17 +32,17 @@ use crate::{
 const FIRST_SOLID_FRACTION: Real = 0.15;
 /// Growth per relaxation time: slow enough that grains get out of each other's way.
 const GROWTH_PER_RELAXATION: Real = 0.05;
-/// Pressure that the growing grains may exert, for the relaxation time [Pa].
+/// Pressure that the growing grains may exert, for the relaxation time (Pa).
 const GROWTH_PRESSURE: Real = 900.0;
-/// Time to fall into the bowl [s].
+/// Time to fall into the bowl (s).
 const FALL_TIME: Real = 0.12;
-/// Time over which the springs are shortened [s].
+/// Time over which the springs are shortened (s).
 const SHRINK_TIME: Real = 0.15;
-/// Time over which softer grains become as hard as they are [s].
+/// Time over which softer grains become as hard as they are (s).
 const HARDEN_TIME: Real = 0.03;
-/// Longest time to come to rest [s].
+/// Longest time to come to rest (s).
 const REST_TIME_MAX: Real = 0.4;
-/// Root mean square speed of grains at rest [m/s].
+/// Root mean square speed of grains at rest (m/s).
 const REST_SPEED: Real = 2e-3;
 
 /// Substeps between two looks at progress and health.
@@ -346,7 +346,7 @@ impl Filling {
     }
 }
 
-/// Root mean square speed of the grains [m/s].
+/// Root mean square speed of the grains (m/s).
 fn speed(state: &State) -> Real {
     let velocities = &state.grains.velocities;
     let sum: Real = velocities.iter().map(|v| v.norm_squared()).sum();

@@ -4,13 +4,10 @@ use std::iter::repeat;
 
 use super::{
     Controls, Model, Scratch, State,
-    boundary::{
-        body::BodyMotion,
-        motion::{WallMemory, WallMotion},
-    },
+    boundary::motion::{WallMemory, WallMotion},
     builder::WallId,
     health::{self, Diverged},
-    state::{Grains, Springs},
+    state::Springs,
     substep,
     substep::STAGES,
 };
@@ -34,13 +31,6 @@ impl System {
     pub fn new(model: Model, controls: Controls, state: State) -> Self {
         let scratch = Scratch::new(&model);
         Self { model, controls, state, scratch }
-    }
-
-    /// Grains at rest in `model`, its membrane in its reference shape, walls at `walls`.
-    pub fn at_rest(model: Model, walls: Vec<BodyMotion>, grains: Grains) -> Self {
-        let state = State::at_rest(&model, walls.clone(), grains);
-        let controls = Controls { gauge_setpoint: 0.0, walls, bodies: Vec::new() };
-        Self::new(model, controls, state)
     }
 
     /// Advances by one substep. Walls move as their motions say.

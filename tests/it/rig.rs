@@ -20,7 +20,7 @@ pub(crate) const GRAIN: Material =
 /// Latex.
 pub(crate) const LATEX: Material =
     Material { youngs_modulus: 1.25e6, poisson_ratio: 1.0 / 3.0, density: 2000.0 };
-/// Gravity [m/s²].
+/// Gravity (m/s²).
 pub(crate) const G: Real = 9.81;
 
 /// A system of one plate and one membrane.
@@ -106,7 +106,7 @@ impl Rig {
         (linear, angular)
     }
 
-    /// Kinetic energy of the grains [J].
+    /// Kinetic energy of the grains (J).
     pub(crate) fn kinetic_energy(&self) -> Real {
         let grains = &self.state.grains;
         let of_grain = |i: usize| {

@@ -45,9 +45,9 @@ use crate::{
 pub const PHYSICS_VERSION: u64 = 6;
 /// Neighbours are listed this share of the largest radius beyond contact.
 const SKIN_SHARE: Real = 0.25;
-/// Longest time between two steps of the rigid world [s].
+/// Longest time between two steps of the rigid world (s).
 const EXCHANGE_MAX: Real = 1e-4;
-/// Effective radius R* of a sample of the sheet on the table: that of the source's object [m].
+/// Effective radius R* of a sample of the membrane on the table: that of the source's object (m).
 const TABLE_CONTACT_RADIUS: Real = 0.01;
 
 /// Why a scene cannot be compiled.
@@ -59,11 +59,11 @@ pub enum CompileError {
          use at most {advised_s:.3e} s, leave it out, or take softer materials or a coarser mesh"
     )]
     SubstepTooLong {
-        /// Asked for [s].
+        /// Asked for (s).
         given_s: Real,
-        /// Where the system becomes unstable [s].
+        /// Where the system becomes unstable (s).
         critical_s: Real,
-        /// What would be derived [s].
+        /// What would be derived (s).
         advised_s: Real,
     },
     /// The bag cannot be meshed.
@@ -201,7 +201,7 @@ impl Compiled {
         Ok(state)
     }
 
-    /// Number of samples of the sheet on all bodies.
+    /// Number of samples of the membrane on all bodies.
     pub fn n_samples(&self) -> usize {
         self.model.n_samples() * self.model.bodies.len()
     }
@@ -267,7 +267,7 @@ pub fn retune(scene: &Scene, model: &mut Model) {
     }
 }
 
-/// The longest stable substep of `scene` with an object that was not there when it was compiled [s].
+/// The longest stable substep of `scene` with an object that was not there when it was compiled (s).
 pub fn critical_step_with(scene: &Scene, model: &Model, body: &BodyModel) -> Real {
     let scene = &ScaledScene::new(scene);
     critical_step(scene, &model.membrane, &Laws::new(scene), std::slice::from_ref(body))
@@ -284,7 +284,7 @@ fn surface(shape: &Shape) -> Result<Surface, ShapeFault> {
     })
 }
 
-/// Effective radius R* of a soft sheet on the object: the radius of spheres, cylinders and
+/// Effective radius R* of a soft membrane on the object: the radius of spheres, cylinders and
 /// capsules as in the source; for others that of the sphere of the same volume.
 fn contact_radius(shape: &Shape, volume: Real) -> Real {
     match shape {
@@ -341,8 +341,8 @@ fn critical_step(
     bodies: &[BodyModel],
 ) -> Real {
     let grains = &scene.grains;
-    // Under the strongest vacuum a grain carries the pressure on its square of sheet, a sample
-    // that on its share of the sheet.
+    // Under the strongest vacuum a grain carries the pressure on its square of membrane, a sample
+    // that on its share of the membrane.
     let pressure = scene.chamber.gauge_min.abs().max(scene.chamber.gauge_max);
     let of_grain =
         contact::stiffness_at_vertex(membrane, &laws.membrane, grains.radius_max, pressure);

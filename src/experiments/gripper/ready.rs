@@ -11,7 +11,7 @@ use crate::{
     physics::{Controls, Model, State, System, boundary::body::BodyMotion, measure::real},
 };
 
-/// How far the object goes down beyond its starting point if the bag does not let go of it [m].
+/// How far the object goes down beyond its starting point if the bag does not let go of it (m).
 const WAY_OUT_BEYOND: Real = 0.02;
 
 /// A grip ready to run.
@@ -24,7 +24,7 @@ pub(super) struct Ready {
     pub(super) is_cut: bool,
     /// Substeps in a tick.
     pub(super) n_substeps: usize,
-    /// Length of a tick [s].
+    /// Length of a tick (s).
     pub(super) tick: Real,
 }
 
@@ -67,7 +67,7 @@ impl Ready {
         Way { length, speed, ramp: protocol.ramp_time }
     }
 
-    /// How long a phase takes at most [s].
+    /// How long a phase takes at most (s).
     pub(super) fn duration(&self, phase: Phase) -> Real {
         let protocol = &self.scene.protocol;
         match phase {
@@ -95,8 +95,8 @@ impl Ready {
         phases.map(|&phase| n_ticks(phase) * self.n_substeps).sum()
     }
 
-    /// Where the object and the pump's set-point are at `time` [s] of `phase`; `low` is the height
-    /// of the settled bag's lowest point [m].
+    /// Where the object and the pump's set-point are at `time` (s) of `phase`; `low` is the height
+    /// of the settled bag's lowest point (m).
     pub(super) fn control(&self, controls: &mut Controls, phase: Phase, time: Real, low: Real) {
         let protocol = &self.scene.protocol;
         let (start, inside) = (-protocol.clearance, protocol.penetration);
@@ -130,7 +130,7 @@ impl Ready {
     }
 }
 
-/// The model of a scene, without the table, the substeps in a tick, and the tick [s].
+/// The model of a scene, without the table, the substeps in a tick, and the tick (s).
 pub(super) fn compile(scene: &GripperScene) -> Result<(Model, usize, Real), CompileError> {
     let Gripper { mut model, plan, .. } = compile::gripper(&scene.gripper)?;
     model.bodies.truncate(1);

@@ -32,7 +32,7 @@ use crate::{
 const FIRST_SOLID_FRACTION: Real = 0.15;
 /// Neighbours are listed this share of the largest radius beyond contact.
 const SKIN_SHARE: Real = 0.25;
-/// Pressure that the growing grains may exert on each other [Pa].
+/// Pressure that the growing grains may exert on each other (Pa).
 const GROWTH_PRESSURE: Real = 1e3;
 
 /// What a case is made of and cannot be read off the system.
@@ -40,7 +40,7 @@ const GROWTH_PRESSURE: Real = 1e3;
 pub(super) struct Parts {
     /// Vertices of the outer membrane; the inner one's follow.
     pub(super) n_outer: usize,
-    /// What the grains grow to [m].
+    /// What the grains grow to (m).
     pub(super) final_radii: Vec<Real>,
     /// How they grow.
     pub(super) recipe: Recipe,

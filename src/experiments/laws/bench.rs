@@ -14,7 +14,7 @@ use crate::{
     scene::Material,
 };
 
-/// Gravity [m/s²].
+/// Gravity (m/s²).
 pub(super) const G: Real = 9.81;
 
 /// Some grains with a wall or a membrane.
@@ -27,7 +27,7 @@ pub(super) const fn elastic(friction: Real) -> Surface {
     Surface { friction, dissipation_time: 0.0, tangential_damping: 0.0 }
 }
 
-/// Mass of a sphere [kg].
+/// Mass of a sphere (kg).
 pub(super) fn mass(radius: Real, density: Real) -> Real {
     4.0 / 3.0 * std::f64::consts::PI * radius.powi(3) * density
 }
@@ -80,7 +80,7 @@ impl Bench {
         &mut self.system.state.grains
     }
 
-    /// Overlap of the first grain with the second, or with the plane if there is none [m].
+    /// Overlap of the first grain with the second, or with the plane if there is none (m).
     pub(super) fn overlap(&self) -> Real {
         let grains = self.grains();
         match grains.len() {
@@ -92,7 +92,7 @@ impl Bench {
         }
     }
 
-    /// Normal force between the grains, or of the plane [N].
+    /// Normal force between the grains, or of the plane (N).
     pub(super) fn normal_force(&self) -> Real {
         match self.grains().len() {
             1 => self.system.scratch.wall_forces[0].normal,
@@ -115,7 +115,7 @@ impl Bench {
         (linear, angular)
     }
 
-    /// Kinetic energy of all grains [J].
+    /// Kinetic energy of all grains (J).
     pub(super) fn kinetic_energy(&self) -> Real {
         let grains = self.grains();
         let of_grain = |i: usize| {
@@ -147,26 +147,26 @@ impl Bench {
 /// What was seen of a collision.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Met {
-    /// [m]
+    /// (m)
     pub(super) overlap_max: Real,
-    /// [N]
+    /// (N)
     pub(super) force_max: Real,
-    /// [N]
+    /// (N)
     pub(super) force_min: Real,
-    /// [s]
+    /// (s)
     pub(super) duration: Real,
 }
 
 /// A sphere that flies onto a rigid plane.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Flight {
-    /// [m]
+    /// (m)
     pub(super) radius: Real,
     pub(super) material: Material,
     pub(super) surface: Surface,
-    /// Down is −z [m/s].
+    /// Down is −z (m/s).
     pub(super) velocity: Vec3,
-    /// [rad/s]
+    /// (rad/s)
     pub(super) spin: Vec3,
 }
 
@@ -197,15 +197,15 @@ impl Flight {
 /// Two spheres of one material that fly towards each other along x.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Encounter {
-    /// [m]
+    /// (m)
     pub(super) radii: [Real; 2],
     pub(super) material: Material,
-    /// Of each [kg/m³].
+    /// Of each (kg/m³).
     pub(super) densities: [Real; 2],
     pub(super) surface: Surface,
-    /// Of each along x [m/s].
+    /// Of each along x (m/s).
     pub(super) speeds: [Real; 2],
-    /// Of each [rad/s].
+    /// Of each (rad/s).
     pub(super) spins: [Vec3; 2],
 }
 

@@ -95,7 +95,7 @@ pub(super) enum Changes {
 /// A state at rest.
 pub(super) struct Seen {
     pub(super) pressure: Real,
-    /// σ_xx − σ_yy [Pa].
+    /// σ_xx − σ_yy (Pa).
     pub(super) difference: Real,
     /// Mean overlap over diameter.
     pub(super) overlap: Real,
@@ -296,7 +296,7 @@ impl Boxed {
         (self.scene.compression.pressure_first / stiffness).powf(2.0 / 3.0)
     }
 
-    /// Makes all grains, which are now under `pressure` [Pa], or the box larger by the share `growth`,
+    /// Makes all grains, which are now under `pressure` (Pa), or the box larger by the share `growth`,
     /// steadily.
     pub(super) fn ramp(&mut self, what: Changes, growth: Real, pressure: Real) {
         let (compression, grains) = (&self.scene.compression, &self.scene.grains);
@@ -414,7 +414,7 @@ fn friction(scene: &Scene, case: Case) -> Real {
 }
 
 /// Where compression with friction rests next, when moduli have been measured `n_probed` times; `None`
-/// at the end [Pa].
+/// at the end (Pa).
 fn next_pressure(scene: &Scene, case: Case, n_probed: usize) -> Option<Real> {
     match case {
         Case::Moduli => scene.moduli.pressures.get(n_probed).copied(),
@@ -422,7 +422,7 @@ fn next_pressure(scene: &Scene, case: Case, n_probed: usize) -> Option<Real> {
     }
 }
 
-/// A cube of `volume` [m³] that is longer along x by the factor `stretch`, and shorter along y.
+/// A cube of `volume` (m³) that is longer along x by the factor `stretch`, and shorter along y.
 fn period(volume: Real, stretch: Real) -> Vec3 {
     volume.cbrt() * Vec3::new(stretch, stretch.recip(), 1.0)
 }

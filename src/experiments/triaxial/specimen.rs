@@ -79,11 +79,11 @@ pub(super) struct Recipe {
     pub(super) final_radii: Vec<Real>,
     /// Common factor of the radii when they are scattered.
     pub(super) first_scale: Real,
-    /// Substep while grains grow [s].
+    /// Substep while grains grow (s).
     pub(super) growth_step: Real,
-    /// Substep of the free membrane in its first shape [s].
+    /// Substep of the free membrane in its first shape (s).
     pub(super) first_step: Real,
-    /// Stiffness of the grains at a vertex [N/m] that the sheet's substep reckons with.
+    /// Stiffness of the grains at a vertex (N/m) that the membrane's substep reckons with.
     contact_stiffness: Real,
 }
 
@@ -171,9 +171,9 @@ impl Recipe {
         self.soften(model, 0.0);
     }
 
-    /// Substep of the free membrane [s] with its vertices at `positions`.
+    /// Substep of the free membrane (s) with its vertices at `positions`.
     ///
-    /// Hinges with their first areas are damped as the cube of their edges' lengths: the sheet that
+    /// Hinges with their first areas are damped as the cube of their edges' lengths: the membrane that
     /// grains stretch by a third bears half the substep of the straight one.
     ///
     /// A packing rings where ω dt nears 2, and ω² ~ √(ξ/R): at 0.4 of the Rayleigh time for overlaps
@@ -262,7 +262,7 @@ fn set_laws(setup: &Setup, model: &mut Model, softness: Real) {
     (model.grain_law, model.membrane_law) = (grains, sheet);
 }
 
-/// Substep while grains grow in the held membrane [s].
+/// Substep while grains grow in the held membrane (s).
 fn growth_step(setup: &Setup) -> Real {
     let Setup { grains, growth, time, .. } = setup;
     let soft = Material { youngs_modulus: growth.youngs_modulus, ..grains.material };

@@ -190,12 +190,10 @@ fn parts_that_do_not_fit_are_refused() {
         it.wall(Wall::plane(Vec3::zeros(), Vec3::x() * 2.0));
     };
     assert_eq!(refused(&tilted), BuildError::Normal { wall: 1, length: 2.0 });
-    assert_eq!(
-        refused(&|it| {
-            it.membrane(disc());
-        }),
-        BuildError::FreeRim { membrane: 0, vertex: 0 }
-    );
+    let loose = refused(&|it| {
+        it.membrane(disc());
+    });
+    assert!(matches!(loose, BuildError::FreeRim { membrane: 0, .. }), "{loose}");
     assert_eq!(
         refused(&|it| {
             it.membrane(disc().hold(Vertices::All, WallId(3)));

@@ -13,7 +13,7 @@ use crate::base::{
     parallel,
 };
 
-/// Forces of springs, hinges and `gauge_pressure` [Pa] on every vertex, into `scratch.forces`.
+/// Forces of springs, hinges and `gauge_pressure` (Pa) on every vertex, into `scratch.forces`.
 pub fn forces(
     model: &MembraneModel,
     state: &MembraneState,

@@ -3,10 +3,10 @@
 //! ```text
 //! R_i = s R_i,final,   d(ln s)/dt = g · clamp(1 − p/p_stop, −1, 1),   g ≤ 0.05 / √(m/(p_stop d))
 //!
-//! s       common factor                                       [-]
-//! p       pressure of the normal forces in the room           [Pa]
-//! p_stop  pressure at which nothing more fits                 [Pa]
-//! m, d    mean final mass and diameter of a grain             [kg], [m]
+//! s       common factor
+//! p       pressure of the normal forces in the room           (Pa)
+//! p_stop  pressure at which nothing more fits                 (Pa)
+//! m, d    mean final mass and diameter of a grain             (kg), (m)
 //! ```
 //!
 //! Source: Lubachevsky & Stillinger (1990) with soft grains, as Götz (2024), section 3.3.1, takes it:
@@ -53,7 +53,7 @@ pub struct Laws {
     pub walls: PairLaw,
     /// Between grains and membrane.
     pub membrane: PairLaw,
-    /// Length of a substep [s].
+    /// Length of a substep (s).
     pub substep: Real,
 }
 
@@ -83,11 +83,11 @@ impl Laws {
 pub struct Recipe {
     /// The laws while they grow.
     pub laws: Laws,
-    /// Volume of the room, by which forces become a pressure [m³].
+    /// Volume of the room, by which forces become a pressure (m³).
     pub volume: Real,
-    /// Pressure at which nothing more fits, p_stop [Pa].
+    /// Pressure at which nothing more fits, p_stop (Pa).
     pub pressure_stop: Real,
-    /// Growth rate g far from p_stop [1/s].
+    /// Growth rate g far from p_stop (1/s).
     pub rate: Real,
     /// Growth of ln s in ten relaxation times below which nothing gives way any more.
     pub stuck: Real,
@@ -97,7 +97,7 @@ pub struct Recipe {
 
 impl Recipe {
     /// Growth at the advised rate up to the final radii, with the laws of `model` without friction;
-    /// `mass` [kg] and `radius` [m] are those of a mean grain at the end.
+    /// `mass` (kg) and `radius` (m) are those of a mean grain at the end.
     pub fn new(model: &Model, volume: Real, pressure_stop: Real, mass: Real, radius: Real) -> Self {
         let relaxation = (mass / (pressure_stop * 2.0 * radius)).sqrt();
         Self {
@@ -127,7 +127,7 @@ pub enum Grown {
 pub struct Progress {
     /// Common factor s.
     pub scale: Real,
-    /// Pressure in the last substep [Pa].
+    /// Pressure in the last substep (Pa).
     pub pressure: Real,
     /// Substeps so far.
     pub n_substeps: u64,
@@ -137,7 +137,7 @@ pub struct Progress {
     n_in_window: u64,
     /// Common factor at the begin of the window.
     window_scale: Real,
-    /// Sum of the pressures in the window [Pa].
+    /// Sum of the pressures in the window (Pa).
     window_pressure: Real,
     /// Windows spent at the last size.
     n_at_last: u32,
@@ -160,7 +160,7 @@ struct Kept {
 }
 
 impl Growth {
-    /// Growth of the grains to `final_radii` [m], which are now `scale` times as large.
+    /// Growth of the grains to `final_radii` (m), which are now `scale` times as large.
     pub fn new(recipe: Recipe, final_radii: Vec<Real>, scale: Real) -> Self {
         let progress = Progress {
             scale,
@@ -269,7 +269,7 @@ impl Growth {
     }
 }
 
-/// Makes all grains of `system` `scale` times as large as `final_radii` [m].
+/// Makes all grains of `system` `scale` times as large as `final_radii` (m).
 pub fn resize(system: &mut System, final_radii: &[Real], scale: Real) {
     let System { model, state, scratch, .. } = system;
     for (radius, last) in state.grains.radii.iter_mut().zip(final_radii) {

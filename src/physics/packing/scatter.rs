@@ -27,36 +27,36 @@ pub struct NoRoom {
 pub enum Room {
     /// Between six planes.
     Box {
-        /// Lowest corner [m].
+        /// Lowest corner (m).
         low: Vec3,
-        /// Highest corner [m].
+        /// Highest corner (m).
         high: Vec3,
     },
     /// Around z, between two planes.
     Tube {
-        /// Radius [m].
+        /// Radius (m).
         radius: Real,
-        /// Height of the lower plane [m].
+        /// Height of the lower plane (m).
         bottom: Real,
-        /// Height of the upper plane [m].
+        /// Height of the upper plane (m).
         top: Real,
     },
     /// Between two spheres around the origin; a ball without the inner one.
     Shell {
-        /// Radius of the inner sphere, 0 without [m].
+        /// Radius of the inner sphere, 0 without (m).
         inner: Real,
-        /// Radius of the outer sphere [m].
+        /// Radius of the outer sphere (m).
         outer: Real,
     },
     /// A box that goes on periodically from `[0, period)`.
     Periodic {
-        /// Edges of the box [m].
+        /// Edges of the box (m).
         period: Vec3,
     },
 }
 
 impl Room {
-    /// Volume [m³].
+    /// Volume (m³).
     pub fn volume(&self) -> Real {
         use std::f64::consts::PI;
         match self {
@@ -67,7 +67,7 @@ impl Room {
         }
     }
 
-    /// Edges of the periodic box [m], if it is one.
+    /// Edges of the periodic box (m), if it is one.
     pub fn period(&self) -> Option<Vec3> {
         match self {
             Self::Periodic { period } => Some(*period),
@@ -75,7 +75,7 @@ impl Room {
         }
     }
 
-    /// A uniformly random point at least `margin` [m] away from the walls; `None` if the draw fell
+    /// A uniformly random point at least `margin` (m) away from the walls; `None` if the draw fell
     /// outside.
     pub fn place(&self, margin: Real, random: &mut Random) -> Option<Vec3> {
         let (low, high) = match self {
@@ -104,8 +104,8 @@ impl Room {
     }
 }
 
-/// Random places for spheres of `radii` [m], none of which touch; candidates come from `offer`, which
-/// gives `None` for those that are of no use. With a `period` [m] the images keep away as well.
+/// Random places for spheres of `radii` (m), none of which touch; candidates come from `offer`, which
+/// gives `None` for those that are of no use. With a `period` (m) the images keep away as well.
 ///
 /// # Errors
 /// If a sphere finds no place.

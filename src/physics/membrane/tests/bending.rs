@@ -163,7 +163,7 @@ fn a_lattice_of_hinges_is_a_plate() {
     }
 }
 
-/// Oracle: eqs. 20 to 25 by dimensions. In a sheet made s times as large, |e|²/(|n1| + |n2|) · u goes with
+/// Oracle: eqs. 20 to 25 by dimensions. In a membrane made s times as large, |e|²/(|n1| + |n2|) · u goes with
 /// 1/s for areas that grow with it and with s³ for those it had: the forces differ by s⁴.
 #[test]
 fn first_areas_keep_a_squeezed_hinge_soft() {

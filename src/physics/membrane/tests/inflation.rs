@@ -50,7 +50,7 @@ fn the_volume_under_a_lid_has_its_gradient() {
     }
     let lid = pressure::lid_area_vector(&model.mesh.rims[0], &state.positions);
     let on_sheet: Vec3 = scratch.forces.iter().sum();
-    // Oracle: sheet and lid together are closed. Tolerance: rounding.
+    // Oracle: membrane and lid together are closed. Tolerance: rounding.
     assert!((on_sheet + lid * p).norm() < 1e-13 * on_sheet.norm());
 }
 

@@ -1,4 +1,4 @@
-//! The sheet against lattice elasticity, plate theory, Laplace's law and conservation laws.
+//! The membrane against lattice elasticity, plate theory, Laplace's law and conservation laws.
 
 mod mesh;
 mod stretching;
