@@ -34,7 +34,7 @@ enum InTheWay {
 }
 
 impl Coupled {
-    /// Starts anew with the settled bag `start` and the objects of `scene`, in their order.
+    /// Restarts with the settled bag `start` and the objects of `scene`, in their order.
     pub fn start_anew(&mut self, scene: &Scene, start: &State) {
         let table = self.system.model.bodies.pop();
         let built = scene.objects.iter().filter_map(|object| body(scene, object).ok());

@@ -192,12 +192,12 @@ impl RapierWorld {
     }
 
     /// The bytes of the whole world: bodies, contacts with what was learnt in them, and the trees
-    /// of neighbours. A world that only knew poses and velocities would go on with other bits.
+    /// of neighbours. A world restored from poses and velocities alone would continue with other bits.
     pub fn save(&self) -> Vec<u8> {
         postcard::to_stdvec(&self.world).expect("rapier's world serialises as a whole")
     }
 
-    /// Puts a saved world in the place of this one, which was made for the scene to go on with:
+    /// Puts a saved world in the place of this one, which was made for the scene that continues:
     /// gravity, masses and friction are this scene's, what has come of them is the saved world's.
     ///
     /// # Errors

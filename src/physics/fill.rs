@@ -118,7 +118,7 @@ impl Stage {
     }
 }
 
-/// How far a filling is: with its state, all that is needed to go on.
+/// Progress of a filling. With the state it is all that a filling resumes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Place {
     /// What is being done.
@@ -138,7 +138,7 @@ pub struct Filling {
     recipe: Recipe,
 }
 
-/// What the scene says about the filling.
+/// Parameters of the filling, from the scene.
 struct Recipe {
     final_radii: Vec<Real>,
     /// Share of the final radii at which the growth begins.
@@ -191,7 +191,7 @@ impl Filling {
         Self::with([soft, goal], recipe, Place { stage: Stage::Growing, k: 0 }, state)
     }
 
-    /// Goes on with `(place, state)` of a filling of the same scene.
+    /// Resumes `(place, state)` of a filling of the same scene.
     pub fn resume(
         scene: &Scene,
         soft: &Model,

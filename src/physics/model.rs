@@ -22,7 +22,7 @@ pub struct Model {
     pub radius_mean: Real,
     /// Distance beyond contact within which neighbours are listed (m).
     pub skin: Real,
-    /// Edges of the box that goes on periodically in all directions (m); each at least twice as long as
+    /// Edges of a periodic box (m); each at least twice as long as
     /// a largest grain's reach, diameter and skin. Only for grains alone. Positions are never wrapped:
     /// two grains meet by the image that is closest.
     pub period: Option<Vec3>,

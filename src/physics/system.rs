@@ -1,4 +1,4 @@
-//! Grains, membrane, chamber and walls with all that a substep needs, driven by whoever owns it.
+//! One system: model, controls, state and scratch of grains, membranes, air and walls.
 
 use std::iter::repeat;
 
@@ -18,7 +18,7 @@ use crate::base::{Real, Vec3};
 pub struct System {
     /// What it is made of.
     pub model: Model,
-    /// What the outside wants.
+    /// Inputs of the next substeps.
     pub controls: Controls,
     /// What evolves.
     pub state: State,
@@ -61,7 +61,7 @@ impl System {
         }
     }
 
-    /// Adds a grain at rest while a system is set up; returns its number. All contacts begin anew.
+    /// Adds a grain at rest while a system is set up; returns its number. All contacts are forgotten.
     pub fn add_grain(&mut self, position: Vec3, radius: Real, mass: Real) -> usize {
         let Self { model, state, scratch, .. } = self;
         let grains = &mut state.grains;
@@ -79,7 +79,7 @@ impl System {
         grains.len() - 1
     }
 
-    /// Goes on from another state of the same model.
+    /// Continues from another state of the same model.
     pub fn restart(&mut self, state: State) {
         self.controls.walls.clone_from(&state.walls);
         self.scratch = Scratch::new(&self.model);
@@ -111,7 +111,7 @@ impl System {
         }
     }
 
-    /// Looks for what cannot go on; the error names `tick`.
+    /// Checks that the run can continue; the error names `tick`.
     ///
     /// # Errors
     /// The first problem in a fixed order.

@@ -151,7 +151,7 @@ impl Boxed {
         let (mean, largest) = (scene.grains.radius_mean(), scene.grains.radius_max);
         let mut builder = SystemBuilder::new(law);
         builder.substep(scene.compression.substep).radii_up_to(largest, mean).period(period);
-        // Dense grains hardly move: short lists are soon built anew, and soon gone through.
+        // Dense grains hardly move: short lists are rebuilt soon, but quick to go through.
         builder.skin(0.1 * mean).grains(grains);
         let system = builder.build()?;
         let recipe = recipe(scene, &system.model, volume, friction);
@@ -382,7 +382,7 @@ impl Boxed {
         self.place.stage = Stage::Done;
     }
 
-    /// Share of the work that is done, as far as it can be told.
+    /// Share of the work that is done, as far as it is known.
     fn share(&self) -> Real {
         let compression = &self.scene.compression;
         let (from, to) = if friction(&self.scene, self.case) == 0.0 {

@@ -32,7 +32,7 @@ use crate::{
 };
 
 /// The wall that holds the membrane while grains grow. It is first, so that the lists of neighbours
-/// are told from the middle of the specimen.
+/// are kept relative to the middle of the specimen.
 pub(super) const FRAME: u32 = 0;
 /// The lower plate.
 pub(super) const BOTTOM: u32 = 1;
@@ -71,7 +71,7 @@ pub(super) struct Choice {
     pub(super) initial: usize,
 }
 
-/// How the specimen is made, whatever its state.
+/// How the specimen is made, independent of its state.
 #[derive(Clone)]
 pub(super) struct Recipe {
     pub(super) setup: Setup,
@@ -219,7 +219,7 @@ fn membrane(setup: &Setup, choice: Choice) -> Result<MembraneModel, MeshFault> {
     Ok(membrane)
 }
 
-/// Lets the plates hold the membrane's end rings, and nobody the rest.
+/// Lets the plates hold the membrane's end rings; the rest is free.
 fn fix_rings(model: &mut Model) {
     let mesh = &model.membrane.mesh;
     model.membrane.holders.fill(FREE);

@@ -60,7 +60,7 @@ impl Triangles {
         Self { mesh, spheres, bounding_radius }
     }
 
-    /// Vertices, facets and who neighbours whom.
+    /// Vertices and facets with their neighbors.
     pub fn mesh(&self) -> &Mesh {
         &self.mesh
     }
@@ -119,7 +119,7 @@ impl Triangles {
                 mesh.triangles_of_vertex.of(corners[k as usize] as usize).to_vec()
             }
         };
-        // Rounding: two triangles tell the distance of a common edge with errors of 10⁻¹⁶ of it.
+        // Two triangles give the distance of a common edge with relative rounding errors of 10⁻¹⁶.
         let is_nearer = |other: &Nearest| other.distance < nearest.distance * (1.0 - 1e-9);
         around.into_iter().filter(|&t| t != nearest.triangle).all(|t| {
             let other = self.nearest(t, point);

@@ -131,7 +131,7 @@ pub enum BuildError {
         /// What is wrong.
         error: MeshFault,
     },
-    /// A rim that nobody holds.
+    /// A rim that no wall holds.
     #[error(
         "membrane {membrane}: vertex {vertex} of its rim is held by no wall; call `hold`, or \
          `free_rims` if it shall hang free"

@@ -157,7 +157,7 @@ fn several_membranes_share_a_system() {
 
 #[test]
 fn parts_that_do_not_fit_are_refused() {
-    // Oracle: each builder has exactly the fault that the error names.
+    // Oracle: the one fault of each builder.
     let refused = |change: &dyn Fn(&mut SystemBuilder)| {
         let mut builder = builder_of_a_floor();
         change(&mut builder);

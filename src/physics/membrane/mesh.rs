@@ -1,4 +1,4 @@
-//! A triangle mesh that knows its neighbours: edges, hinges, rim, and who meets at each vertex.
+//! A triangle mesh with its connectivity: edges, hinges, rims, and what meets at each vertex.
 //!
 //! ```text
 //!            r1                triangle 1 = (r1, r3, r4), triangle 2 = (r2, r4, r3),

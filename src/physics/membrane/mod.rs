@@ -190,7 +190,7 @@ pub struct VertexRow {
     pub velocity: [Real; 4],
 }
 
-/// What `forces` computes anew in every substep.
+/// What `forces` computes in every substep.
 #[derive(Clone, Debug)]
 pub struct MembraneScratch {
     /// Orientation of each triangle. Written by `forces`.

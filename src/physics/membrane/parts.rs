@@ -49,8 +49,10 @@ impl MembraneModel {
     /// None that the meshes did not have before.
     pub fn joined(mut self, other: &Self) -> Result<Self, MeshFault> {
         let bends_by_first_areas = self.bends_by_first_areas();
-        let is_alike = self.material.bending_stiffness == other.material.bending_stiffness
-            && self.material.bending_damping == other.material.bending_damping;
+        let constants = |of: &Self| {
+            [of.material.bending_stiffness, of.material.bending_damping].map(Real::to_bits)
+        };
+        let is_alike = constants(&self) == constants(other);
         let n_hinges = [&self, other].map(|it| it.mesh.hinges.len());
         if !is_alike || !self.bending[0].is_empty() || !other.bending[0].is_empty() {
             let all = (0..n_hinges[0]).map(|k| self.bending_of(k));

@@ -122,7 +122,7 @@ pub enum Grown {
     Jammed,
 }
 
-/// How far growth is: with the `State` all that is needed to go on.
+/// Progress of growth. With the `State` it is all that growth resumes from.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Progress {
     /// Common factor s.
@@ -131,7 +131,7 @@ pub struct Progress {
     pub pressure: Real,
     /// Substeps so far.
     pub n_substeps: u64,
-    /// Whether it goes on.
+    /// Whether it is over, and why.
     pub grown: Grown,
     /// Substeps in the present window.
     n_in_window: u64,
@@ -143,7 +143,7 @@ pub struct Progress {
     n_at_last: u32,
 }
 
-/// Grains that grow in a `System`; it is stepped by this and nobody else meanwhile.
+/// Grains that grow in a `System`; only this may step it meanwhile.
 #[derive(Clone, Debug)]
 pub struct Growth {
     recipe: Recipe,
@@ -175,7 +175,7 @@ impl Growth {
         Self::resumed(recipe, final_radii, progress)
     }
 
-    /// Growth that goes on from `progress` with the `State` that belongs to it.
+    /// Resumes growth at `progress` with the `State` that belongs to it.
     pub fn resumed(recipe: Recipe, final_radii: Vec<Real>, progress: Progress) -> Self {
         // Nothing is known about lists: the first substep builds them.
         Self { recipe, final_radii, progress, kept: None }
@@ -186,7 +186,7 @@ impl Growth {
         self.progress
     }
 
-    /// One substep; the model's own laws are back when it no longer says `Growing`.
+    /// One substep; the model's own laws are restored once the result is not `Growing`.
     pub fn step(&mut self, system: &mut System) -> Grown {
         if self.progress.grown != Grown::Growing {
             return self.progress.grown;
@@ -276,7 +276,7 @@ pub fn resize(system: &mut System, final_radii: &[Real], scale: Real) {
         *radius = scale * last;
         model.radius_max = model.radius_max.max(*radius);
     }
-    // The lists are told: they hold only as long as nobody has grown too far.
+    // The lists of neighbours stay complete only until a grain has grown too far.
     weigh_pairs(state, &mut scratch.neighbours);
 }
 

@@ -11,7 +11,7 @@
 //! while growth.step(&mut system) == Grown::Growing {}  // a slice at a time; check health between
 //! ```
 //!
-//! `growth.progress()` with the `State` is all that is needed to go on: `Growth::resumed`.
+//! `Growth::resumed` continues from `growth.progress()` and the `State`.
 
 pub mod grow;
 pub mod numbering; // neighbours in space, neighbours in memory

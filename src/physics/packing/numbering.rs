@@ -5,7 +5,7 @@
 
 use crate::base::{Real, Vec3, real::whole};
 
-/// Cells along an edge that the curve can tell apart.
+/// Cells along an edge that the curve resolves.
 const N_CELLS: Real = 1024.0;
 
 /// The order in which grains at `positions` (m) are numbered, with cells of `cell` (m).

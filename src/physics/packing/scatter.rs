@@ -12,7 +12,7 @@ use crate::{
 /// Candidates for one grain before it is given up.
 const N_TRIES: usize = 100_000;
 
-/// There was no place left.
+/// No place is left.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("only {n_placed} of {n_grains} grains found a place; scatter them at smaller radii")]
 pub struct NoRoom {
@@ -48,7 +48,7 @@ pub enum Room {
         /// Radius of the outer sphere (m).
         outer: Real,
     },
-    /// A box that goes on periodically from `[0, period)`.
+    /// A periodic box, `[0, period)` along each axis.
     Periodic {
         /// Edges of the box (m).
         period: Vec3,
@@ -238,7 +238,7 @@ mod tests {
 
     /// Oracle: five spheres of radius 0.9 cannot be in a cube of edge 2.
     #[test]
-    fn a_full_room_is_told() {
+    fn a_full_room_is_an_error() {
         let room = Room::Box { low: Vec3::zeros(), high: Vec3::repeat(2.0) };
         let mut random = Random::new(5, Stream::Position);
         let refused = scatter(&[0.9; 5], None, &mut random, |it| room.place(0.9, it));
