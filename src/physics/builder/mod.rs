@@ -294,8 +294,9 @@ impl SystemBuilder {
     /// # Errors
     /// If a part is missing, or parts do not fit each other.
     pub fn build_model(self) -> Result<Model, BuildError> {
-        let radii = self.radii.unwrap_or([0.0; 2]);
-        self.assemble(radii, radii[0])
+        let [largest, mean] = self.radii.unwrap_or([0.0; 2]);
+        positive(|| "largest radius (m) of grains, see `radii_up_to`".to_owned(), largest)?;
+        self.assemble([largest, mean], largest)
     }
 
     fn assemble(mut self, [largest, mean]: [Real; 2], smallest: Real) -> Result<Model, BuildError> {
