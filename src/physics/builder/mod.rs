@@ -6,6 +6,8 @@ mod membrane;
 mod tests;
 mod wall;
 
+use std::ops::Range;
+
 pub use error::BuildError;
 pub use membrane::{Membrane, Vertices};
 pub use wall::{Wall, WallId};
@@ -244,10 +246,13 @@ impl SystemBuilder {
         self
     }
 
-    /// Adds a membrane. The vertices and facets of several follow each other in this order.
-    pub fn membrane(&mut self, membrane: Membrane) -> &mut Self {
+    /// Adds a membrane. Returns the numbers that its vertices have in the system, where the vertices
+    /// and facets of several membranes follow each other.
+    pub fn membrane(&mut self, membrane: Membrane) -> Range<usize> {
+        let first: usize = self.membranes.iter().map(|it| it.positions.len()).sum();
+        let vertices = first..first + membrane.positions.len();
         self.membranes.push(membrane);
-        self
+        vertices
     }
 
     /// Adds a rigid body that membranes touch.
