@@ -14,8 +14,8 @@ use crate::{
     physics::{
         System, SystemBuilder,
         builder::Wall,
-        contact::law::Surface,
-        neighbours::weigh_pairs,
+        law::Surface,
+        neighbours::update_pair_masses,
         packing::{
             Grown, Growth, Recipe, Room, first_scale, numbering::along_curve, scatter,
             scatter::NoRoom, sphere_volume,
@@ -166,7 +166,7 @@ impl Boxed {
             drag(&mut system, DRAG[0]);
         }
         system.state.grains.masses = masses_of(&system.state.grains);
-        weigh_pairs(&system.state, &mut system.scratch.neighbours);
+        update_pair_masses(&system.state, &mut system.scratch.neighbours);
         come_to_rest(&mut system, N_REST[0]);
         Ok(system.state)
     }
@@ -250,7 +250,7 @@ fn come_to_rest(system: &mut System, n_steps: [u64; 2]) {
 /// Lets each grain keep a share of its velocities.
 fn drag(system: &mut System, share: Real) {
     let grains = &mut system.state.grains;
-    grains.velocities.iter_mut().chain(&mut grains.spins).for_each(|it| *it *= share);
+    grains.velocities.iter_mut().chain(&mut grains.angular_velocities).for_each(|it| *it *= share);
 }
 
 #[cfg(test)]

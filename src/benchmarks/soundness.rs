@@ -114,7 +114,7 @@ impl Seen {
         Self {
             n_grains: state.grains.len(),
             n_grain_contacts: packing.n_grain_contacts,
-            n_wall_contacts: scratch.wall_forces.iter().filter(|wall| wall.normal > 0.0).count(),
+            n_wall_contacts: scratch.wall_forces.iter().filter(|wall| wall.flags.touches()).count(),
             n_membrane_contacts: packing.n_membrane_contacts,
             n_body_contacts: packing.n_body_contacts,
             overlap_max: packing.overlap_max,

@@ -176,7 +176,7 @@ impl Shell {
     /// Pressure of the membrane on the object: the sum of its radial forces over the surface [Pa].
     fn object_pressure(&self) -> Real {
         let radial: Real = (self.system.scratch.sample_forces.iter())
-            .filter(|sample| sample.overlap > 0.0)
+            .filter(|sample| sample.flags.touches())
             .map(|sample| sample.force.dot(&sample.point.normalize()))
             .sum();
         radial / (4.0 * std::f64::consts::PI * self.scene.object.radius.powi(2))

@@ -194,7 +194,7 @@ impl Path {
             let grains = self.bench.grains_mut();
             grains.positions[0] = here;
             grains.velocities[0] = (next - here) / dt;
-            grains.spins[0] = Vec3::zeros();
+            grains.angular_velocities[0] = Vec3::zeros();
             self.bench.system.scratch.neighbours.is_built = false;
             self.bench.step();
             let patches = &self.bench.system.scratch.patch_forces[0];

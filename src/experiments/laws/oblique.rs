@@ -91,7 +91,7 @@ fn fly(scene: &Scene, angle: Real, damping: Real, record: &mut Record) -> [Real;
     let before = 0.5 * bench.grains().masses[0] * speed * speed;
     [
         bench.grains().velocities[0].x / flight.velocity.x,
-        bench.grains().spins[0].y * grain.radius / speed,
+        bench.grains().angular_velocities[0].y * grain.radius / speed,
         bench.kinetic_energy() / before,
     ]
 }

@@ -273,8 +273,8 @@ impl Boxed {
         let System { model, state, scratch, .. } = &mut self.system;
         let before = period(self.volume, self.place.stretch);
         let springs = state.springs.pairs.iter_mut().zip(&state.pair_ids);
-        for ((spring, [i, j]), force) in springs.zip(&scratch.pair_forces) {
-            if force.overlap > 0.0 {
+        for ((spring, [i, j]), flags) in springs.zip(&scratch.pair_flags) {
+            if flags.touches() {
                 let [first, second] = [i, j].map(|&it| state.grains.positions[it as usize]);
                 let branch = closest_image(first - second, &before);
                 let moved = Vec3::new(branch.x * (by - 1.0), branch.y * (by.recip() - 1.0), 0.0);

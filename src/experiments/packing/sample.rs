@@ -60,7 +60,7 @@ pub(super) fn drag(system: &mut System, drag_time: Real) {
     let left = (-system.model.substep / drag_time).exp();
     let grains = &mut system.state.grains;
     grains.velocities.iter_mut().for_each(|it| *it *= left);
-    grains.spins.iter_mut().for_each(|it| *it *= left);
+    grains.angular_velocities.iter_mut().for_each(|it| *it *= left);
 }
 
 /// Kinetic damping (Cundall 1976): grains and membrane move freely until their kinetic energy has
@@ -103,7 +103,7 @@ impl Settling {
 fn stop(system: &mut System) -> Real {
     let grains = &mut system.state.grains;
     grains.velocities.fill(Vec3::zeros());
-    grains.spins.fill(Vec3::zeros());
+    grains.angular_velocities.fill(Vec3::zeros());
     system.state.membrane.velocities.fill(Vec3::zeros());
     0.0
 }

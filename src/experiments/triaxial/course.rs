@@ -327,7 +327,8 @@ impl Test {
     fn damp(&mut self, rate: Real) {
         let left = 1.0 - rate * self.course.substep;
         let state = &mut self.system.state;
-        let of_grains = state.grains.velocities.iter_mut().chain(&mut state.grains.spins);
+        let of_grains =
+            state.grains.velocities.iter_mut().chain(&mut state.grains.angular_velocities);
         of_grains.chain(&mut state.membrane.velocities).for_each(|it| *it *= left);
     }
 

@@ -18,11 +18,8 @@ use super::{
         body::BodyMotion,
         wall::{WallModel, WallShape},
     },
-    contact::{
-        law::{PairLaw, Surface},
-        stiffness_at_vertex,
-    },
-    critical_step::critical_step,
+    critical_step::{critical_step, stiffness_at_vertex},
+    law::{PairLaw, Surface},
     membrane::{FREE, MembraneModel},
     model::{BodyModel, ChamberModel},
     packing::sphere_volume,
@@ -228,7 +225,7 @@ impl SystemBuilder {
         let all = &mut self.grains;
         all.positions.extend(grains.positions);
         all.velocities.extend(grains.velocities);
-        all.spins.extend(grains.spins);
+        all.angular_velocities.extend(grains.angular_velocities);
         all.radii.extend(grains.radii);
         all.masses.extend(grains.masses);
         self
@@ -306,7 +303,7 @@ impl SystemBuilder {
 
     fn assemble(mut self, [largest, mean]: [Real; 2], smallest: Real) -> Result<Model, BuildError> {
         let skin = self.skin.unwrap_or(SKIN_SHARE * largest);
-        self.check_period(2.0 * largest + skin)?;
+        self.check_period(2.0 * largest + self.grain_law.range() + skin)?;
         let (membrane, held_positions) = self.join_membranes()?;
         self.check_walls(largest, &membrane)?;
         let substep = self.find_substep([smallest, largest], &membrane)?;
@@ -369,11 +366,11 @@ impl SystemBuilder {
     }
 
     fn check_grains(&self) -> Result<(), BuildError> {
-        let Grains { positions, velocities, spins, radii, masses } = &self.grains;
+        let Grains { positions, velocities, angular_velocities, radii, masses } = &self.grains;
         let expected = positions.len();
         for (place, found) in [
             ("velocities of grains", velocities.len()),
-            ("angular velocities of grains", spins.len()),
+            ("angular velocities of grains", angular_velocities.len()),
             ("radii of grains", radii.len()),
             ("masses of grains", masses.len()),
         ] {
@@ -385,7 +382,7 @@ impl SystemBuilder {
             for (what, vector) in [
                 ("position (m)", &positions[i]),
                 ("velocity (m/s)", &velocities[i]),
-                ("angular velocity (rad/s)", &spins[i]),
+                ("angular velocity (rad/s)", &angular_velocities[i]),
             ] {
                 finite(|| format!("{what} of grain {i}"), vector)?;
             }

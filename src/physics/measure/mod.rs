@@ -35,15 +35,11 @@ pub fn packing(state: &State, scratch: &Scratch) -> Packing {
     let n_grains = state.grains.len();
     let mut packing = Packing::default();
     let mut touching = vec![0_usize; n_grains];
-    let mut n_sliding = 0_usize;
-    for (pair, ids) in scratch.pair_forces.iter().zip(&state.pair_ids) {
-        if pair.overlap > 0.0 {
-            packing.n_grain_contacts += 1;
-            n_sliding += usize::from(pair.signed_normal < 0.0);
-            packing.overlap_max = packing.overlap_max.max(pair.overlap);
-            for id in ids {
-                touching[*id as usize] += 1;
-            }
+    for (pair, ids) in scratch.touching_pairs(state) {
+        packing.n_grain_contacts += 1;
+        packing.overlap_max = packing.overlap_max.max(pair.overlap);
+        for id in ids {
+            touching[*id as usize] += 1;
         }
     }
     for (i, patches) in scratch.patch_forces.iter().enumerate() {
@@ -54,20 +50,20 @@ pub fn packing(state: &State, scratch: &Scratch) -> Packing {
         }
     }
     for (sphere, ids) in scratch.sphere_forces.iter().zip(&state.springs.spheres.ids) {
-        if sphere.overlap > 0.0 {
+        if sphere.flags.touches() {
             packing.n_membrane_contacts += 1;
             touching[ids[0] as usize] += 1;
             packing.membrane_overlap_max = packing.membrane_overlap_max.max(sphere.overlap);
         }
     }
-    for (k, wall) in scratch.wall_forces.iter().enumerate() {
-        touching[k % n_grains] += usize::from(wall.normal > 0.0);
+    for (_, [_, i]) in scratch.touching_walls(state) {
+        touching[i] += 1;
     }
-    packing.n_body_contacts = scratch.sample_forces.iter().filter(|s| s.overlap > 0.0).count();
+    packing.n_body_contacts = scratch.sample_forces.iter().filter(|s| s.flags.touches()).count();
     let share = |n: usize, of: usize| if of == 0 { 0.0 } else { real(n) / real(of) };
     packing.coordination_number = share(touching.iter().sum(), n_grains);
     packing.jammed_fraction = share(touching.iter().filter(|&&n| n >= 4).count(), n_grains);
-    packing.sliding_fraction = share(n_sliding, packing.n_grain_contacts);
+    packing.sliding_fraction = share(scratch.n_sliding_pairs(), packing.n_grain_contacts);
     packing
 }
 
@@ -76,7 +72,7 @@ pub fn normal_forces(state: &State, scratch: &Scratch) -> Vec<Real> {
     let mut forces = vec![0.0; state.grains.len()];
     for (pair, ids) in scratch.pair_forces.iter().zip(&state.pair_ids) {
         for id in ids {
-            forces[*id as usize] += pair.signed_normal.abs();
+            forces[*id as usize] += pair.normal;
         }
     }
     for (i, patches) in scratch.patch_forces.iter().enumerate() {
@@ -86,8 +82,8 @@ pub fn normal_forces(state: &State, scratch: &Scratch) -> Vec<Real> {
     for (sphere, ids) in scratch.sphere_forces.iter().zip(&state.springs.spheres.ids) {
         forces[ids[0] as usize] += sphere.normal;
     }
-    for (k, wall) in scratch.wall_forces.iter().enumerate() {
-        forces[k % state.grains.len()] += wall.normal;
+    for (wall, [_, i]) in scratch.touching_walls(state) {
+        forces[i] += wall.normal;
     }
     forces
 }
@@ -99,7 +95,7 @@ pub fn kinetic_energy(model: &Model, state: &State) -> Real {
         .map(|i| {
             let inertia = 0.4 * grains.masses[i] * grains.radii[i].powi(2);
             0.5 * grains.masses[i] * grains.velocities[i].norm_squared()
-                + 0.5 * inertia * grains.spins[i].norm_squared()
+                + 0.5 * inertia * grains.angular_velocities[i].norm_squared()
         })
         .sum();
     let masses = &model.membrane.masses;

@@ -22,12 +22,10 @@ use crate::{
 pub fn contact_stress(model: &Model, state: &State, scratch: &Scratch, volume: Real) -> Mat3 {
     let positions = &state.grains.positions;
     let mut sum = Mat3::zeros();
-    for (pair, [i, j]) in scratch.pair_forces.iter().zip(&state.pair_ids) {
-        if pair.overlap > 0.0 {
-            let apart = positions[*i as usize] - positions[*j as usize];
-            let branch = model.period.map_or(apart, |period| closest_image(apart, &period));
-            sum += pair.force * branch.transpose();
-        }
+    for (pair, [i, j]) in scratch.touching_pairs(state) {
+        let separation = positions[*i as usize] - positions[*j as usize];
+        let branch = model.period.map_or(separation, |period| closest_image(separation, &period));
+        sum += pair.force * branch.transpose();
     }
     let mesh = &model.membrane.mesh;
     for (patches, position) in scratch.patch_forces.iter().zip(positions) {
@@ -40,7 +38,7 @@ pub fn contact_stress(model: &Model, state: &State, scratch: &Scratch, volume: R
             sum += patch.force * branch.transpose();
         }
     }
-    for wall in scratch.wall_forces.iter().filter(|wall| wall.normal > 0.0) {
+    for (wall, _) in scratch.touching_walls(state) {
         sum -= wall.force * wall.arm.transpose();
     }
     sum / volume
@@ -50,17 +48,17 @@ pub fn contact_stress(model: &Model, state: &State, scratch: &Scratch, volume: R
 pub fn normal_pressure(state: &State, scratch: &Scratch, volume: Real) -> Real {
     let radii = &state.grains.radii;
     let mut sum = 0.0;
-    for (pair, [i, j]) in scratch.pair_forces.iter().zip(&state.pair_ids) {
+    for (pair, [i, j]) in scratch.touching_pairs(state) {
         let branch = radii[*i as usize] + radii[*j as usize] - pair.overlap;
-        sum += pair.signed_normal.abs() * branch;
+        sum += pair.normal * branch;
     }
     for (patches, radius) in scratch.patch_forces.iter().zip(radii) {
         for patch in &patches.contacts[..patches.n] {
             sum += patch.normal * (radius - patch.overlap);
         }
     }
-    for (wall, radius) in scratch.wall_forces.iter().zip(radii.iter().cycle()) {
-        sum += wall.normal * (radius - wall.overlap / 2.0);
+    for (wall, [_, i]) in scratch.touching_walls(state) {
+        sum += wall.normal * (radii[i] - wall.overlap / 2.0);
     }
     sum / (3.0 * volume)
 }

@@ -17,7 +17,7 @@ pub(super) struct CellGrid {
 const N_CELLS_MAX: Real = 128.0;
 
 impl CellGrid {
-    /// Sorts `positions` into cells of at least `cell` [m].
+    /// Sorts `positions` into cells of at least `cell` (m).
     pub(super) fn new(positions: &[Vec3], cell: Real) -> Self {
         let mut low = Vec3::repeat(Real::INFINITY);
         let mut high = Vec3::repeat(Real::NEG_INFINITY);

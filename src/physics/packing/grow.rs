@@ -29,7 +29,7 @@ use crate::{
         Model, System,
         contact::law::PairLaw,
         measure::{real, real_of, stress},
-        neighbours::weigh_pairs,
+        neighbours::update_pair_masses,
     },
 };
 
@@ -277,18 +277,16 @@ pub fn resize(system: &mut System, final_radii: &[Real], scale: Real) {
         model.radius_max = model.radius_max.max(*radius);
     }
     // The lists of neighbours stay complete only until a grain has grown too far.
-    weigh_pairs(state, &mut scratch.neighbours);
+    update_pair_masses(state, &mut scratch.neighbours);
 }
 
 /// Mean overlap of touching grains over their distance at first touch.
 pub fn mean_overlap(system: &System) -> Real {
     let radii = &system.state.grains.radii;
     let (mut sum, mut n_contacts) = (0.0, 0);
-    for (pair, [i, j]) in system.scratch.pair_forces.iter().zip(&system.state.pair_ids) {
-        if pair.overlap > 0.0 {
-            sum += pair.overlap / (radii[*i as usize] + radii[*j as usize]);
-            n_contacts += 1;
-        }
+    for (pair, [i, j]) in system.scratch.touching_pairs(&system.state) {
+        sum += pair.overlap / (radii[*i as usize] + radii[*j as usize]);
+        n_contacts += 1;
     }
     sum / real(n_contacts.max(1))
 }
