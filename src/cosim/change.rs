@@ -13,7 +13,7 @@ use crate::{
         Pose, Real, Vec3,
         real::{Twist, real},
     },
-    command::change::ChangeRefused,
+    cosim::refused::ChangeError,
     physics::{
         Model, Scratch, State, System,
         boundary::{
@@ -55,12 +55,12 @@ impl Coupled {
     ///
     /// # Errors
     /// If it cannot be simulated, or something is where it shall be.
-    pub fn insert(&mut self, scene: &Scene, object: &Object) -> Result<(), ChangeRefused> {
+    pub fn insert(&mut self, scene: &Scene, object: &Object) -> Result<(), ChangeError> {
         let (body, bulk) =
-            body(scene, object).map_err(|fault| ChangeRefused::Unusable(fault.to_string()))?;
+            body(scene, object).map_err(|fault| ChangeError::Unusable(fault.to_string()))?;
         let critical = critical_step_with(scene, &self.system.model, &body);
         if critical < self.system.model.substep {
-            return Err(ChangeRefused::Unusable(format!(
+            return Err(ChangeError::Unusable(format!(
                 "object `{}` needs a substep of {critical:.3e} s, this run has {:.3e} s: take a \
                  softer material, or a scene with a shorter time.substep",
                 object.name, self.system.model.substep
@@ -95,7 +95,7 @@ impl Coupled {
         scene: &Scene,
         i: usize,
         motion: &BodyMotion,
-    ) -> Result<(), ChangeRefused> {
+    ) -> Result<(), ChangeError> {
         let is_elsewhere = self.world.motion(i).pose != motion.pose;
         if is_elsewhere {
             let (name, body) = (&scene.objects[i].name, &self.system.model.bodies[i]);
@@ -113,7 +113,7 @@ impl Coupled {
     ///
     /// # Errors
     /// If the bag would be in the table or in an object there.
-    pub fn place_flange(&mut self, scene: &Scene, pose: &Pose) -> Result<(), ChangeRefused> {
+    pub fn place_flange(&mut self, scene: &Scene, pose: &Pose) -> Result<(), ChangeError> {
         let mut state = self.system.state.clone();
         carry(&mut state, pose);
         if let Some(other) = self.in_the_bags_way(&state) {
@@ -137,7 +137,7 @@ impl Coupled {
         name: &str,
         body: &BodyModel,
         (pose, except): (&Pose, Option<usize>),
-    ) -> Result<(), ChangeRefused> {
+    ) -> Result<(), ChangeError> {
         let BodySurface::Shape(surface) = &body.surface else { return Ok(()) };
         let other = if reaches_into(surface, pose, &self.system.state, &self.system.model) {
             Some(InTheWay::Bag)
@@ -165,13 +165,13 @@ impl Coupled {
     }
 }
 
-fn refused(scene: &Scene, what: &str, with: InTheWay) -> ChangeRefused {
+fn refused(scene: &Scene, what: &str, with: InTheWay) -> ChangeError {
     let with = match with {
         InTheWay::Table => "the table".to_owned(),
         InTheWay::Bag => "the gripper".to_owned(),
         InTheWay::Object(i) => format!("`{}`", scene.objects[i].name),
     };
-    ChangeRefused::Overlap { what: what.to_owned(), with }
+    ChangeError::Overlap { what: what.to_owned(), with }
 }
 
 /// True if a body would have a piece of the bag inside: a vertex, the middle of a facet, a grain, or

@@ -9,6 +9,7 @@ mod change; // what no body could do by moving
 pub mod compile;
 pub mod flange;
 pub mod rapier_world;
+pub mod refused; // why a change is rejected
 pub mod saved_state;
 pub mod volume; // whether places overlap
 
