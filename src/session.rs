@@ -80,7 +80,7 @@ struct Saved<'a> {
 impl<'a> Saved<'a> {
     fn read(bytes: &'a [u8]) -> Result<Self, SavedStateError> {
         let corrupt = SavedStateError::Corrupt { n_bytes: bytes.len() };
-        postcard::from_bytes(saved_state::unsealed(bytes)?).map_err(|_| corrupt)
+        postcard::from_bytes(saved_state::verify_digest(bytes)?).map_err(|_| corrupt)
     }
 }
 
@@ -141,7 +141,7 @@ impl Session {
         let saved = Saved::read(bytes)?;
         let state = saved_state::read(saved.state)?;
         let now = &self.coupled.system.state;
-        saved_state::same_counts(&[
+        saved_state::check_counts(&[
             ("grains", state.grains.len(), now.grains.len()),
             ("vertices", state.membrane.positions.len(), now.membrane.positions.len()),
         ])?;
@@ -167,7 +167,7 @@ impl Session {
         let (state, world, processor, parameters) =
             (&state, &world, &processor, self.parameters.clone());
         let saved = Saved { tick, run_tick, state, world, processor, sensor_zero, parameters };
-        Some(saved_state::sealed(postcard::to_stdvec(&saved).expect("bytes always serialise")))
+        Some(saved_state::with_digest(postcard::to_stdvec(&saved).expect("bytes always serialise")))
     }
 
     /// Compares with what `save` wrote of another run: the first part that is not the same to the
@@ -328,7 +328,7 @@ impl Session {
             let start = self.start.state.as_ref().ok_or(ChangeError::StartUnknown)?;
             let added = self.scene.objects.iter().filter(|it| !scope.spawned && !is_own(it));
             self.scene.objects = self.start.objects.iter().chain(added).cloned().collect();
-            self.coupled.start_anew(&self.scene, start);
+            self.coupled.reset_to(&self.scene, start);
             self.processor.restart(&self.scene);
             self.sensor_zero = Wrench::zero();
         } else if scope.spawned {

@@ -11,14 +11,14 @@ pub enum ChangeError {
         /// The names that exist.
         known: String,
     },
-    /// The name is taken.
-    #[error("the name `{object}` is taken: choose another one")]
+    /// The name is already used.
+    #[error("the name `{object}` is already used: choose another one")]
     NameTaken {
         /// The requested name.
         object: String,
     },
     /// The object would overlap something else.
-    #[error("`{what}` would overlap {with} there: choose a free place")]
+    #[error("`{what}` would overlap {with}: choose a free position")]
     Overlap {
         /// The object to be placed.
         what: String,
@@ -29,14 +29,12 @@ pub enum ChangeError {
     #[error("{0}")]
     Unusable(String),
     /// The run was resumed in the middle, and its initial state is unknown.
-    #[error(
-        "this run was resumed in the middle and does not know its initial state: reset time only"
-    )]
+    #[error("this run was resumed and its initial state is unknown: reset only the time")]
     StartUnknown,
     /// No scene is loaded.
     #[error("no world is loaded: load one first")]
     NoScene,
-    /// This world does not support the change.
-    #[error("this world does not support such a change")]
+    /// The world does not support the change.
+    #[error("this world does not support this change")]
     Unchangeable,
 }

@@ -1,4 +1,4 @@
-//! Coarse-grained fields: quantities of spheres spread over the cells of a grid by exact overlap.
+//! Coarse-grained fields: quantities of spheres, distributed to the cells of a grid by exact overlap.
 //!
 //! ```text
 //! j_a = Σ_i G_i V_ia / (V_i V_a)                  density of an extensive quantity G      eq. 68
@@ -14,7 +14,7 @@
 //! velocity that belongs to the momentum has the masses as weights; eq. 69 has equal weights.
 //!
 //! The densities of all cells times their volume sum to the total of G, if the grid covers the spheres.
-//! A mean has no value where there is no sphere.
+//! A mean has no value in a cell without spheres.
 //!
 //! Source: Götz (2024), appendix C; overlap volumes: `super::overlap`, checked against Strobl, Formella
 //! & Pöschel, J. Comput. Phys. 311 (2016) 158.
@@ -30,7 +30,7 @@ use super::{
 };
 use crate::base::{Mat3, Real, Vec3};
 
-/// Share of a sphere below which its overlap with a cell is rounding.
+/// Fraction of a sphere below which its overlap with a cell is due to rounding.
 const ROUNDING: Real = 1e-14;
 
 /// A quantity that can be averaged; its default is zero.
@@ -44,7 +44,7 @@ impl<T> Quantity for T where
 {
 }
 
-/// Which share of which sphere is in which cell.
+/// The overlap volumes of spheres and cells.
 #[derive(Clone, Debug)]
 pub struct Overlaps {
     n_cells: usize,
@@ -52,7 +52,7 @@ pub struct Overlaps {
     volumes: Vec<Real>,
     /// The entries of sphere i are `starts[i] .. starts[i + 1]`.
     starts: Vec<usize>,
-    /// Cell, and share of the sphere in it.
+    /// A cell, and the fraction of the sphere in it.
     entries: Vec<(usize, Real)>,
 }
 
@@ -79,16 +79,16 @@ impl Overlaps {
         overlaps
     }
 
-    /// Adds what cells share with the sphere at `center` (m), grid frame.
+    /// Adds the overlap of cells with the sphere at `center` (m), grid frame.
     fn add(&mut self, grid: &Grid, center: &Vec3, radius: Real) {
         let [x, y, z] =
             [0, 1, 2].map(|axis| grid.span(axis, center[axis] - radius, center[axis] + radius));
-        let whole = 4.0 / 3.0 * PI * radius.powi(3);
+        let sphere_volume = 4.0 / 3.0 * PI * radius.powi(3);
         for z in z {
             for y in y.clone() {
                 for x in x.clone() {
                     let [low, high] = grid.corners([x, y, z]);
-                    let share = sphere_in_box(center, radius, &low, &high) / whole;
+                    let share = sphere_in_box(center, radius, &low, &high) / sphere_volume;
                     if ROUNDING < share {
                         self.entries.push((grid.index([x, y, z]), share));
                     }
@@ -97,12 +97,12 @@ impl Overlaps {
         }
     }
 
-    /// Cells that sphere `i` touches, each with the share of the sphere's volume in it.
+    /// Cells that overlap sphere `i`, each with the fraction of the sphere's volume in it.
     pub fn of_sphere(&self, i: usize) -> &[(usize, Real)] {
         &self.entries[self.starts[i]..self.starts[i + 1]]
     }
 
-    /// Share of each cell that spheres fill; 0 in a cell without any.
+    /// Solid fraction of each cell; 0 in a cell without spheres.
     pub fn solid_fraction(&self) -> Vec<Real> {
         self.density(&self.volumes)
     }
@@ -119,19 +119,19 @@ impl Overlaps {
     }
 
     /// Mean in each cell of the intensive quantity `of_sphere` with equal weights (eq. 69); `None` in a
-    /// cell without spheres. Where all spheres agree, the mean is their value to the last bit.
+    /// cell without spheres. If all spheres have the same value, the mean equals it to the last bit.
     pub fn mean<T: Quantity>(&self, of_sphere: &[T]) -> Vec<Option<T>> {
         self.mean_by(|_| 1.0, of_sphere)
     }
 
-    /// The same with a weight for each sphere: with the masses the velocities give the velocity of the
-    /// momentum density.
+    /// The same with a weight for each sphere. With masses as weights, the mean of the velocities is the
+    /// velocity that belongs to the momentum density.
     pub fn weighted_mean<T: Quantity>(&self, weights: &[Real], of_sphere: &[T]) -> Vec<Option<T>> {
         self.mean_by(|i| weights[i], of_sphere)
     }
 
     fn mean_by<T: Quantity>(&self, weight: impl Fn(usize) -> Real, of: &[T]) -> Vec<Option<T>> {
-        // Sums of differences from the first value, so that equal values have no rounding.
+        // Sums of differences from the first value, so that equal values cause no rounding error.
         let mut sums: Vec<Option<(T, T, Real)>> = vec![None; self.n_cells];
         for (i, &value) in of.iter().enumerate() {
             for &(cell, share) in self.of_sphere(i) {
@@ -148,34 +148,34 @@ impl Overlaps {
 }
 
 /// Displacement (m) of each sphere from `before` to `after`. Divided by the time between, it is the
-/// velocity of the fields in Götz (2024), chapter 6. Positions that the model does not wrap need no
-/// period; those wrapped into a box that repeats with `period` (m) move less than half of it.
+/// velocity of the fields in Götz (2024), chapter 6. Positions that are not wrapped need no period;
+/// positions wrapped into a box that repeats with `period` (m) must move by less than half of it.
 pub fn displacements(before: &[Vec3], after: &[Vec3], period: Option<&Vec3>) -> Vec<Vec3> {
-    let closest = |apart: Vec3| match period {
+    let closest = |delta: Vec3| match period {
         Some(period) => {
-            apart - apart.zip_map(period, |apart, period| (apart / period).round() * period)
+            delta - delta.zip_map(period, |delta, period| (delta / period).round() * period)
         }
-        None => apart,
+        None => delta,
     };
     before.iter().zip(after).map(|(before, after)| closest(after - before)).collect()
 }
 
 /// Gradient ∂_j u_i in each cell of the vector field `values`, world axes (unit of the field per m):
-/// central differences, or one-sided beside a cell without value; `None` where an axis has neither.
+/// central differences, or one-sided next to a cell without value; `None` if an axis allows neither.
 pub fn gradient(grid: &Grid, values: &[Option<Vec3>]) -> Vec<Option<Mat3>> {
     let to_world = grid.frame().rotation.to_rotation_matrix();
     let of_cell = |index: usize| {
         let here = values[index]?;
         let mut columns = [Vec3::zeros(); 3];
         for axis in 0..3 {
-            let place = grid.place(index);
+            let indices = grid.indices(index);
             let beside = |step: Option<usize>| {
-                let mut place = place;
-                place[axis] = step.filter(|k| *k < grid.counts()[axis])?;
-                values[grid.index(place)]
+                let mut indices = indices;
+                indices[axis] = step.filter(|k| *k < grid.counts()[axis])?;
+                values[grid.index(indices)]
             };
-            let below = beside(place[axis].checked_sub(1));
-            let above = beside(Some(place[axis] + 1));
+            let below = beside(indices[axis].checked_sub(1));
+            let above = beside(Some(indices[axis] + 1));
             let edge = grid.cell_size()[axis];
             columns[axis] = match (below, above) {
                 (Some(below), Some(above)) => (above - below) / (2.0 * edge),

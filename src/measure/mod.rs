@@ -1,7 +1,7 @@
-//! What can be read off a state: energies, volumes, contacts, fields, structure. Changes nothing.
+//! Measurements of a state: energies, volumes, contacts, fields, structure. Nothing is changed.
 //!
 //! Fields, radial distribution functions and Voronoi cells take plain slices of positions and radii, so
-//! they serve any system and any recording:
+//! they work for any system and any recording:
 //!
 //! ```
 //! use jamgrip::{base::Vec3, measure::{fields::Overlaps, grid::Grid}};
@@ -14,44 +14,44 @@
 //! # Ok::<(), jamgrip::measure::grid::GridError>(())
 //! ```
 
-pub mod cell_stress; // stress, cell by cell
-pub mod coordination; // who carries load
-pub mod fields; // density, velocity, displacement, cell by cell
-pub mod grid; // the cells
-mod near; // who is close by
-pub mod overlap; // sphere and box, exactly
-pub mod rest; // is it at rest?
-pub mod stress; // what the contacts carry
-pub mod structure; // how grains are arranged
-pub mod voronoi; // the space that belongs to each grain
+pub mod cell_stress; // stress in each cell of a grid
+pub mod coordination; // contacts per grain, rattlers
+pub mod fields; // density, velocity, displacement in each cell of a grid
+pub mod grid; // the grid of cells
+mod search; // neighbor search with periodic images
+pub mod overlap; // exact overlap volume of sphere and box
+pub mod rest; // unbalanced force, energies, inertial number
+pub mod stress; // mean stress
+pub mod structure; // solid fraction, radial distribution
+pub mod voronoi; // Laguerre-Voronoi cells
 
 use crate::{
     base::{Real, real::real},
     physics::{Model, Scratch, State, membrane::pressure},
 };
 
-/// State of the packing.
+/// Contact statistics of the packing.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Packing {
-    /// Contacts between grains.
+    /// Number of contacts between grains.
     pub n_grain_contacts: usize,
-    /// Contacts between grains and membrane; of vertex spheres each counts.
+    /// Number of contacts between grains and membrane; each vertex sphere counts.
     pub n_membrane_contacts: usize,
-    /// Contacts between membrane and bodies.
+    /// Number of contacts between membrane and bodies.
     pub n_body_contacts: usize,
     /// Mean number of contacts per grain, with grains, membrane and walls.
     pub coordination_number: Real,
-    /// Share of grains with at least four contacts, those that can carry load.
+    /// Fraction of grains with at least four contacts, which can carry load.
     pub jammed_fraction: Real,
-    /// Share of sliding contacts among contacts between grains.
+    /// Fraction of sliding contacts among contacts between grains.
     pub sliding_fraction: Real,
-    /// Largest overlap between grains [m].
+    /// Largest overlap between grains (m).
     pub overlap_max: Real,
-    /// Largest overlap between grain and membrane [m].
+    /// Largest overlap between grain and membrane (m).
     pub membrane_overlap_max: Real,
 }
 
-/// Looks at all contacts of the last substep.
+/// Contact statistics of the last substep.
 pub fn packing(state: &State, scratch: &Scratch) -> Packing {
     let n_grains = state.grains.len();
     let mut packing = Packing::default();
@@ -88,7 +88,7 @@ pub fn packing(state: &State, scratch: &Scratch) -> Packing {
     packing
 }
 
-/// Sum of normal force magnitudes on each grain [N].
+/// Sum of normal force magnitudes on each grain (N).
 pub fn normal_forces(state: &State, scratch: &Scratch) -> Vec<Real> {
     let mut forces = vec![0.0; state.grains.len()];
     for (pair, ids) in scratch.pair_forces.iter().zip(&state.pair_ids) {
@@ -109,7 +109,7 @@ pub fn normal_forces(state: &State, scratch: &Scratch) -> Vec<Real> {
     forces
 }
 
-/// Kinetic energy of grains and membrane [J].
+/// Kinetic energy of grains and membrane (J).
 pub fn kinetic_energy(model: &Model, state: &State) -> Real {
     let grains = &state.grains;
     let of_grains: Real = (0..grains.len())
@@ -126,17 +126,17 @@ pub fn kinetic_energy(model: &Model, state: &State) -> Real {
     of_grains + of_membrane
 }
 
-/// Volume of all grains [m³].
+/// Volume of all grains (m³).
 pub fn grain_volume(state: &State) -> Real {
     state.grains.radii.iter().map(|r| 4.0 / 3.0 * std::f64::consts::PI * r.powi(3)).sum()
 }
 
-/// Mass of grains and membrane [kg].
+/// Mass of grains and membrane (kg).
 pub fn mass(model: &Model, state: &State) -> Real {
     state.grains.masses.iter().sum::<Real>() + model.membrane.mass()
 }
 
-/// Volume enclosed by membrane and flange [m³].
+/// Volume enclosed by membrane and flange (m³).
 pub fn enclosed_volume(model: &Model, state: &State) -> Real {
     pressure::volume(&model.membrane.mesh, &state.membrane.positions)
 }

@@ -1,4 +1,4 @@
-//! Is it at rest? Unbalanced forces, energies, and the inertial number of a slow deformation.
+//! Criteria for rest: unbalanced force, energies, and the inertial number of a slow deformation.
 //!
 //! ```text
 //! u   = mean |force on a grain| / mean |force in a contact|        at rest below 1e-3
@@ -6,15 +6,15 @@
 //! I   = ε̇ d √(ρ/p)                                                quasi-static below 1e-3
 //! ```
 //!
-//! Source of u and I: da Cruz et al. (2005); of the criteria: E_kin/U below 1e-6 as well, since a
-//! grain in flight has no unbalanced force.
+//! Source of u and I: da Cruz et al. (2005). At rest, E_kin/U must also be below 1e-6, since a grain in
+//! free flight has no unbalanced force.
 
 use crate::{
     base::{Real, real::real},
     physics::{Model, Scratch, State, contact::sums, law::PairLaw, state::ListedSprings},
 };
 
-/// Mean force on a grain over the mean force in its contacts; 0 without contacts.
+/// Mean force on a grain divided by the mean force in its contacts; 0 without contacts.
 pub fn unbalanced_force(model: &Model, state: &State, scratch: &Scratch) -> Real {
     let grains = &state.grains;
     let net: Real = (0..grains.len())
@@ -37,8 +37,8 @@ pub fn unbalanced_force(model: &Model, state: &State, scratch: &Scratch) -> Real
     (net / real(grains.len())) / (sum / real(n_contacts))
 }
 
-/// Energy stored in the contacts of grains with each other, with walls and with the membrane [J].
-/// The membrane's friction springs are left out.
+/// Energy stored in the contacts of grains with each other, with walls and with the membrane (J).
+/// Friction springs of the membrane are not included.
 pub fn elastic_energy(model: &Model, state: &State, scratch: &Scratch) -> Real {
     let radii = &state.grains.radii;
     let mut energy = 0.0;
@@ -66,15 +66,15 @@ pub fn elastic_energy(model: &Model, state: &State, scratch: &Scratch) -> Real {
     energy
 }
 
-/// Energy of one contact [J].
+/// Energy of one contact (J).
 fn stored(law: &PairLaw, radius: Real, overlap: Real, stretch_squared: Real) -> Real {
     let contact_radius = (radius * overlap).sqrt();
     let normal = 8.0 / 15.0 * law.modulus * contact_radius * overlap * overlap;
     normal + 0.5 * (16.0 / 3.0 * law.shear_modulus * contact_radius) * stretch_squared
 }
 
-/// Inertial number at the strain rate [1/s] of grains with `diameter` [m] and `density` [kg/m³]
-/// under `pressure` [Pa].
+/// Inertial number at the strain rate (1/s) of grains with `diameter` (m) and `density` (kg/m³)
+/// under `pressure` (Pa).
 pub fn inertial_number(strain_rate: Real, diameter: Real, density: Real, pressure: Real) -> Real {
     strain_rate.abs() * diameter * (density / pressure).sqrt()
 }

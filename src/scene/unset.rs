@@ -1,4 +1,4 @@
-//! A scene before it is read: every number is NaN, so that nothing forgotten can pass for a value.
+//! A scene before it is read. Every number is NaN, so that a value that is never read is noticed.
 
 use super::{
     Bag, BagCompression, Chamber, Controller, Flange, Grains, Lockstep, Material, Membrane, Object,
@@ -7,10 +7,10 @@ use super::{
 use crate::base::{Pose, Real, Vec3};
 
 const NAN: Real = Real::NAN;
-/// A material.
+/// An unset material.
 pub(crate) const MATERIAL: Material =
     Material { youngs_modulus: NAN, poisson_ratio: NAN, density: NAN };
-/// Grains.
+/// Unset grains.
 pub(crate) const GRAINS: Grains = Grains {
     count: 0,
     radius_min: NAN,
@@ -35,7 +35,7 @@ const MEMBRANE: Membrane = Membrane {
     tangential_damping: NAN,
 };
 
-/// The blank scene, with one blank object.
+/// The unset scene, with one unset object.
 pub(crate) fn scene() -> Scene {
     Scene {
         name: String::new(),

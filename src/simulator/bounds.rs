@@ -3,7 +3,7 @@
 use super::{Simulator, World, entities::Entity, failed, ok};
 use crate::{
     base::{Pose, Vec3},
-    cosim::{compile::body, rapier_world::centre_pose, volume},
+    cosim::{compile::body, rapier_world::center_pose, volume},
     physics::{boundary::shape::Aabb, model::BodySurface},
     scene::{Object, Scene, Shape},
     wire::messages::{
@@ -39,8 +39,8 @@ impl Volume {
             (Bounds::TYPE_CONVEX_HULL, [_, _, _, ..]) if points.len() <= POINTS_MAX => {
                 volume::Volume::Hull { points }
             }
-            (Bounds::TYPE_SPHERE, &[centre, size]) if 0.0 <= size.x => {
-                volume::Volume::Ball { centre, radius: size.x }
+            (Bounds::TYPE_SPHERE, &[center, size]) if 0.0 <= size.x => {
+                volume::Volume::Ball { center, radius: size.x }
             }
             (kind, points) => {
                 let n = points.len();
@@ -48,7 +48,7 @@ impl Volume {
             }
         };
         // A hull without volume is noticed here, not in the middle of a list.
-        volume.overlaps(&volume::Volume::Ball { centre: Vec3::zeros(), radius: 1.0 })?;
+        volume.overlaps(&volume::Volume::Ball { center: Vec3::zeros(), radius: 1.0 })?;
         Ok(Some(Self(volume)))
     }
 
@@ -94,7 +94,7 @@ pub(super) fn corners(scene: &Scene, object: &Object) -> Vec<Vec3> {
 
 /// Pose of an object's centre of mass where its scene puts it.
 pub(super) fn centre(scene: &Scene, object: &Object) -> Pose {
-    body(scene, object).map_or(object.pose, |(_, bulk)| centre_pose(object, &bulk))
+    body(scene, object).map_or(object.pose, |(_, bulk)| center_pose(object, &bulk))
 }
 
 /// A box around points in a frame of their own.

@@ -37,7 +37,7 @@ use crate::{
     cosim::refused::ChangeError,
     io::server::{Outgoing, RequestId, ServiceRequest},
     physics::boundary::shape::Aabb,
-    scene::{Outputs, Scene, resource::Shelf},
+    scene::{Outputs, Scene, resource::FolderState},
     snapshot::Snapshot,
     wire::{
         cdr::Cdr,
@@ -106,8 +106,8 @@ pub struct Simulator {
     goals: Goals,
     grip: Option<Grip>,
     /// Lists that were made, and of what.
-    spawnables: Option<(Shelf, Vec<Spawnable>)>,
-    worlds: Option<(Shelf, Vec<WorldResource>)>,
+    spawnables: Option<(FolderState, Vec<Spawnable>)>,
+    worlds: Option<(FolderState, Vec<WorldResource>)>,
     /// A scene that someone waits for, and the same until it is handed on.
     loading: Option<Loading>,
     wanted: Option<Scene>,

@@ -13,7 +13,7 @@ use crate::{
     cosim::{compile::body, refused::ChangeError},
     scene::{
         Object,
-        resource::{self, ResourceFault, Shelf},
+        resource::{self, FolderState, ResourceError},
     },
     wire::{
         cdr::Cdr,
@@ -218,7 +218,7 @@ impl Simulator {
             }
         }
         // Reading them all takes a while: a list is made again only if a folder has changed.
-        let shelf = Shelf::of(&folders);
+        let shelf = FolderState::of(&folders);
         if let Some((_, spawnables)) = self.spawnables.as_ref().filter(|it| it.0 == shelf) {
             return GetSpawnablesResponse { result: ok(), spawnables: spawnables.clone() };
         }
@@ -238,13 +238,13 @@ impl Simulator {
     }
 }
 
-fn code(fault: &ResourceFault) -> u8 {
+fn code(fault: &ResourceError) -> u8 {
     match fault {
-        ResourceFault::UnsupportedFormat(_) => SpawnResult::UNSUPPORTED_FORMAT,
-        ResourceFault::NoResource(_) => SpawnResult::NO_RESOURCE,
-        ResourceFault::Malformed(_) => SpawnResult::RESOURCE_PARSE_ERROR,
-        ResourceFault::MissingAssets(_) => SpawnResult::MISSING_ASSETS,
-        ResourceFault::Unsupported(_) => SpawnResult::UNSUPPORTED_ASSETS,
+        ResourceError::UnsupportedFormat(_) => SpawnResult::UNSUPPORTED_FORMAT,
+        ResourceError::NoResource(_) => SpawnResult::NO_RESOURCE,
+        ResourceError::Malformed(_) => SpawnResult::RESOURCE_PARSE_ERROR,
+        ResourceError::MissingAssets(_) => SpawnResult::MISSING_ASSETS,
+        ResourceError::Unsupported(_) => SpawnResult::UNSUPPORTED_ASSETS,
     }
 }
 

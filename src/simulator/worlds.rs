@@ -12,7 +12,7 @@ use crate::{
     io::server::RequestId,
     scene::{
         self, Controller, Scene,
-        resource::{self, ResourceFault, Shelf},
+        resource::{self, FolderState, ResourceError},
     },
     wire::{
         cdr::Cdr,
@@ -177,7 +177,7 @@ impl Simulator {
             }
         }
         // Reading them all takes a while: a list is made again only if a folder has changed.
-        let shelf = Shelf::of(&folders);
+        let shelf = FolderState::of(&folders);
         if self.worlds.as_ref().is_none_or(|it| it.0 != shelf) {
             let files = folders.iter().flat_map(|folder| resource::files(folder, &["yaml"]));
             let worlds = files.filter_map(|file| {
@@ -203,13 +203,13 @@ fn world_of(scene: &Scene, world_resource: Resource) -> WorldResource {
     }
 }
 
-fn code(fault: &ResourceFault) -> u8 {
+fn code(fault: &ResourceError) -> u8 {
     match fault {
-        ResourceFault::UnsupportedFormat(_) => Loaded::UNSUPPORTED_FORMAT,
-        ResourceFault::NoResource(_) => Loaded::NO_RESOURCE,
-        ResourceFault::Malformed(_) => Loaded::RESOURCE_PARSE_ERROR,
-        ResourceFault::MissingAssets(_) => Loaded::MISSING_ASSETS,
-        ResourceFault::Unsupported(_) => Loaded::UNSUPPORTED_ASSETS,
+        ResourceError::UnsupportedFormat(_) => Loaded::UNSUPPORTED_FORMAT,
+        ResourceError::NoResource(_) => Loaded::NO_RESOURCE,
+        ResourceError::Malformed(_) => Loaded::RESOURCE_PARSE_ERROR,
+        ResourceError::MissingAssets(_) => Loaded::MISSING_ASSETS,
+        ResourceError::Unsupported(_) => Loaded::UNSUPPORTED_ASSETS,
     }
 }
 

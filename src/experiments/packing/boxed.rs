@@ -376,7 +376,7 @@ impl Boxed {
             &region,
             &bins,
         );
-        let middles = (0..N_BINS).map(|k| bins.middle(k) / (2.0 * mean)).collect();
+        let middles = (0..N_BINS).map(|k| bins.center(k) / (2.0 * mean)).collect();
         let column =
             |name: &str, values| Column { name: name.to_owned(), unit: "1".to_owned(), values };
         let table =
