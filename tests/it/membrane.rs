@@ -1,5 +1,5 @@
-//! A grain on the sheet: what crosses edges and vertices, what leaks, and how it slides.
-#![expect(clippy::print_stderr, reason = "what was measured is shown with the result")]
+//! A grain on the membrane: contact forces across edges and vertices, leaks, and sliding.
+#![expect(clippy::print_stderr, reason = "prints measured values")]
 
 use jamgrip::{
     base::{Real, Vec3, parallel},
@@ -17,9 +17,9 @@ const EDGE: Real = 3e-3;
 const RADIUS: Real = 2e-3;
 
 /// A hexagon of equilateral triangles in z = 0, `n` edges along each side. Its outside is below:
-/// grains lie on it as they lie in a bag.
+/// grains lie on its inside.
 pub(crate) fn hexagon(n: i32, edge: Real) -> Mesh {
-    let place = |i: i32, j: i32| {
+    let position = |i: i32, j: i32| {
         let (i, j) = (Real::from(i), Real::from(j));
         Vec3::new(i + 0.5 * j, 0.75_f64.sqrt() * j, 0.0) * edge
     };
@@ -41,28 +41,28 @@ pub(crate) fn hexagon(n: i32, edge: Real) -> Mesh {
             }
         }
     }
-    Mesh::new(cells.iter().map(|&(i, j)| place(i, j)).collect(), triangles).unwrap()
+    Mesh::new(cells.iter().map(|&(i, j)| position(i, j)).collect(), triangles).unwrap()
 }
 
-/// One grain on a held sheet of the shape of `mesh`.
+/// One grain on a fixed membrane with the shape of `mesh`.
 fn rig(mesh: Mesh, surface: Surface, radius: Real, dt: Real) -> Rig {
-    let mut rig = Rig::on_sheet(&GRAIN, surface, mesh, dt);
+    let mut rig = Rig::on_membrane(&GRAIN, surface, mesh, dt);
     rig.add_grain(Vec3::z() * radius, Vec3::zeros(), radius, GRAIN.density);
     rig
 }
 
-/// The contacts of the grain if it is put at `position`, at rest.
+/// The contacts of the grain at rest at `position`.
 fn contacts_at(rig: &mut Rig, position: Vec3) -> Vec<PatchForce> {
     rig.state.grains.positions[0] = position;
     rig.state.grains.velocities[0] = Vec3::zeros();
-    // The lists are told of motion by the integrator alone.
+    // Only the integrator tracks motion for the neighbor lists.
     rig.scratch.neighbours.is_built = false;
     rig.step();
     let patches = &rig.scratch.patch_forces[0];
     patches.contacts[..patches.n].to_vec()
 }
 
-/// Sum of forces, and where their resultant acts.
+/// Sum of the forces, and its point of application.
 fn resultant(rig: &Rig, contacts: &[PatchForce]) -> (Vec3, Vec3) {
     let (mut force, mut moment) = (Vec3::zeros(), Vec3::zeros());
     for contact in contacts {
@@ -77,14 +77,14 @@ fn resultant(rig: &Rig, contacts: &[PatchForce]) -> (Vec3, Vec3) {
     (force, moment / force.norm())
 }
 
-/// Runs on one thread, where forking costs next to nothing.
-pub(crate) fn alone(test: impl FnOnce() + Send) {
+/// Runs `test` on one thread, which is fastest for so few grains.
+pub(crate) fn on_one_thread(test: impl FnOnce() + Send) {
     parallel::pool(1).unwrap().install(test);
 }
 
-/// Three ways over the patch: along an edge and over its vertices, through vertices along a height,
-/// and in no special direction.
-fn ways() -> [(Vec3, Vec3); 3] {
+/// Three paths over the patch, as start and displacement: along edges, along heights through vertices,
+/// and in a general direction.
+fn paths() -> [(Vec3, Vec3); 3] {
     [
         (Vec3::new(-2.5 * EDGE, 0.0, 0.0), Vec3::x() * 5.0 * EDGE),
         (Vec3::new(0.0, -3.0 * EDGE, 0.0), Vec3::y() * 6.0 * EDGE),
@@ -93,15 +93,15 @@ fn ways() -> [(Vec3, Vec3); 3] {
 }
 
 #[test]
-fn on_a_flat_sheet_force_direction_and_point_do_not_know_the_mesh() {
-    alone(|| {
+fn on_a_flat_membrane_the_force_does_not_depend_on_the_mesh() {
+    on_one_thread(|| {
         let mut rig = rig(hexagon(4, EDGE), elastic(0.0), RADIUS, 1e-6);
         let overlap = 0.1 * RADIUS;
-        // Oracle: Hertz for one contact, straight up, under the centre. Tolerance: rounding of
+        // Oracle: Hertz for one contact, straight up, under the center. Tolerance: rounding of
         // positions (1e-16 of 10 mm over an overlap of 0.2 mm).
         let expected = hertz_constant(&rig.model.membrane_law, RADIUS) * overlap.powf(1.5);
         let mut worst = [0.0_f64; 3];
-        for (from, along) in ways() {
+        for (from, along) in paths() {
             for step in 0..=2000 {
                 let mut position = from + along * (Real::from(step) / 2000.0);
                 position.z = RADIUS - overlap;
@@ -111,7 +111,7 @@ fn on_a_flat_sheet_force_direction_and_point_do_not_know_the_mesh() {
                 worst[0] = worst[0].max((force.norm() / expected - 1.0).abs());
                 worst[1] = worst[1].max((force.xy().norm() / expected).abs());
                 worst[2] = worst[2].max((point.xy() - position.xy()).norm() / EDGE);
-                // Oracle: what the grain gets, the vertices give, force and moment.
+                // Oracle: Newton's third law for grain and vertices, force and moment.
                 let vertices = &rig.scratch.vertex_forces;
                 let sum: Vec3 = vertices.iter().sum();
                 let moment: Vec3 = (rig.model.membrane.mesh.positions.iter().zip(vertices))
@@ -127,9 +127,9 @@ fn on_a_flat_sheet_force_direction_and_point_do_not_know_the_mesh() {
 }
 
 #[test]
-fn friction_does_not_see_edges() {
-    alone(|| {
-        // The slide test: R = 2 mm over triangles of 1.33 mm at 50 mm/s, only the height is free.
+fn friction_does_not_depend_on_edges() {
+    on_one_thread(|| {
+        // The slide test: R = 2 mm over triangles of 1.33 mm at 50 mm/s; only the height is free.
         let edge = 1.33e-3;
         let surface = Surface { friction: 1.2, dissipation_time: 1e-4, tangential_damping: 0.3 };
         let mut rig = rig(hexagon(8, edge), surface, RADIUS, 1e-5);
@@ -140,7 +140,7 @@ fn friction_does_not_see_edges() {
         rig.state.grains.positions[0] = Vec3::new(-6.1 * edge, 0.31 * edge, RADIUS - overlap);
         let stick = 1.2 * load
             / (2.0 / 3.0 * 8.0 * rig.model.membrane_law.shear_modulus * (RADIUS * overlap).sqrt());
-        let (mut least, mut most, mut n, mut sum) = (Real::INFINITY, 0.0_f64, 0, 0.0);
+        let (mut lowest, mut highest, mut n, mut sum) = (Real::INFINITY, 0.0_f64, 0, 0.0);
         let n_steps = 16_000;
         for step in 0..n_steps {
             let velocity = &mut rig.state.grains.velocities[0];
@@ -150,7 +150,7 @@ fn friction_does_not_see_edges() {
             if 0.05 * 1e-5 * Real::from(step) > 2.0 * stick {
                 let patches = &rig.scratch.patch_forces[0];
                 let force: Vec3 = patches.contacts[..patches.n].iter().map(|it| it.force).sum();
-                (least, most) = (least.min(-force.x), most.max(-force.x));
+                (lowest, highest) = (lowest.min(-force.x), highest.max(-force.x));
                 (n, sum) = (n + 1, sum - force.x);
             }
         }
@@ -160,22 +160,22 @@ fn friction_does_not_see_edges() {
         eprintln!(
             "slide over {travelled:.1} edges: F/(mu N) {}, ripple {:e}",
             mean / (1.2 * load),
-            (most - least) / mean
+            (highest - lowest) / mean
         );
         // Oracle: Coulomb, F = μ N. Tolerances: those of the source's slide test.
         assert!((mean / (1.2 * load) - 1.0).abs() < 1e-3, "{mean} N");
-        assert!((most - least) / mean < 5e-3, "between {least} and {most} N");
+        assert!((highest - lowest) / mean < 5e-3, "between {lowest} and {highest} N");
     });
 }
 
-/// A grain under `pressure` [Pa] on its square, laid on the sheet at `place`; its substeps.
-fn press(radius: Real, pressure: Real, place: Vec3) -> Result<Rig, health::Diverged> {
+/// Loads a grain at `position` on the membrane with `pressure` (Pa) on its square.
+fn press(radius: Real, pressure: Real, position: Vec3) -> Result<Rig, health::Diverged> {
     let surface = Surface { friction: 0.25, dissipation_time: 1e-5, tangential_damping: 0.3 };
-    let mut rig = Rig::on_sheet(&GRAIN, surface, hexagon(3, EDGE), 2e-7);
-    rig.add_grain(place + Vec3::z() * radius, Vec3::zeros(), radius, GRAIN.density);
+    let mut rig = Rig::on_membrane(&GRAIN, surface, hexagon(3, EDGE), 2e-7);
+    rig.add_grain(position + Vec3::z() * radius, Vec3::zeros(), radius, GRAIN.density);
     let load = pressure * (2.0 * radius).powi(2);
     for step in 0..20_000 {
-        // Slowly, so that the load is that load and not an impact.
+        // Slowly, so that there is no impact.
         let share = (Real::from(step) / 10_000.0).min(1.0);
         rig.model.gravity = Vec3::z() * -(share * load / rig.state.grains.masses[0]);
         rig.step();
@@ -185,16 +185,16 @@ fn press(radius: Real, pressure: Real, place: Vec3) -> Result<Rig, health::Diver
 }
 
 /// On a face, an edge and a vertex.
-fn places() -> [Vec3; 3] {
+fn positions() -> [Vec3; 3] {
     [Vec3::new(0.4, 0.25, 0.0) * EDGE, Vec3::new(0.37, 0.0, 0.0) * EDGE, Vec3::zeros()]
 }
 
 #[test]
 fn a_grain_of_a_tenth_of_an_edge_does_not_leak_at_100_kpa() {
-    alone(|| {
+    on_one_thread(|| {
         let radius = 0.1 * EDGE;
-        for place in places() {
-            let rig = press(radius, 100e3, place).unwrap();
+        for position in positions() {
+            let rig = press(radius, 100e3, position).unwrap();
             let load = 100e3 * (2.0 * radius).powi(2);
             let overlap = radius - rig.state.grains.positions[0].z;
             let expected = (load / hertz_constant(&rig.model.membrane_law, radius)).powf(2.0 / 3.0);
@@ -203,27 +203,27 @@ fn a_grain_of_a_tenth_of_an_edge_does_not_leak_at_100_kpa() {
                 overlap / radius,
                 overlap / expected - 1.0
             );
-            // Oracle: Hertz. Tolerance: what is left of the swing after the ramp.
+            // Oracle: Hertz. Tolerance: the residual oscillation after the ramp.
             assert!((overlap / expected - 1.0).abs() < 1e-3, "{overlap:e} m");
         }
     });
 }
 
 #[test]
-fn a_grain_pushed_through_is_found() {
-    alone(|| {
+fn a_grain_pushed_through_is_detected() {
+    on_one_thread(|| {
         // Oracle: F(ξ = R) = k R²; at 20 times the load the contact cannot hold it.
-        for place in places() {
-            let fault = press(0.1 * EDGE, 2e6, place).map(|_| ()).unwrap_err();
-            eprintln!("{place:?}: {fault}");
-            assert!(fault.what.contains("leaks"), "{fault}");
-            assert_eq!(fault.which, 0);
+        for position in positions() {
+            let error = press(0.1 * EDGE, 2e6, position).map(|_| ()).unwrap_err();
+            eprintln!("{position:?}: {error}");
+            assert!(error.what.contains("leaks"), "{error}");
+            assert_eq!(error.which, 0);
         }
     });
 }
 
-/// Lays a grain on a taut hexagon of `n` edges along each side; the share of all weight that the
-/// rim carries, and how deep the grain has sunk.
+/// A grain on a taut hexagon with `n` edges along each side: the fraction of the weight that the rim
+/// carries, and the depth of the grain (m).
 fn sag(n: i32, edge: Real, offset: [Real; 2]) -> (Real, Real) {
     let surface = Surface { friction: 0.0, dissipation_time: 1e-4, tangential_damping: 0.3 };
     let mut rig = rig(hexagon(n, edge), surface, RADIUS, 4e-6);
@@ -238,7 +238,7 @@ fn sag(n: i32, edge: Real, offset: [Real; 2]) -> (Real, Real) {
     for step in 0..n_steps {
         let share = (Real::from(step) / 8000.0).min(1.0);
         rig.model.gravity = Vec3::z() * -(share * 150.0);
-        // Only the end counts: what swings is damped, and the grain may not roll away.
+        // Only the final state matters: oscillations are damped, and the grain must not roll away.
         for v in &mut rig.state.membrane.velocities {
             *v *= 0.998;
         }
@@ -256,8 +256,8 @@ fn sag(n: i32, edge: Real, offset: [Real; 2]) -> (Real, Real) {
 }
 
 #[test]
-fn a_taut_sheet_carries_the_whole_weight_wherever_the_grain_lies() {
-    alone(|| {
+fn a_taut_membrane_carries_the_weight_at_any_position_of_the_grain() {
+    on_one_thread(|| {
         // On a vertex, an edge, a face; the gripper's mesh, and one much finer than the grain.
         for (n, edge) in [(4, EDGE), (9, 0.5e-3)] {
             let mut depths = Vec::new();
@@ -267,16 +267,16 @@ fn a_taut_sheet_carries_the_whole_weight_wherever_the_grain_lies() {
                     "{n} {offset:?}: carried/weight − 1 {:e}, depth {depth:e}",
                     carried - 1.0
                 );
-                // Oracle: vertical equilibrium. Tolerance 0.1 %: what still swings.
+                // Oracle: vertical equilibrium. Tolerance 0.1 %: residual oscillation.
                 assert!((carried - 1.0).abs() < 1e-3, "{carried} of the weight");
                 depths.push(depth);
             }
-            let least = depths.iter().copied().fold(Real::INFINITY, Real::min);
-            let most = depths.iter().copied().fold(0.0, Real::max);
-            eprintln!("{n}: depth varies by {:.3} %", 100.0 * (most / least - 1.0));
-            // Oracle: a continuous sheet has no mesh. Tolerance 1 %, where the mesh is fine; a grain
-            // smaller than an edge does know whether it lies on a vertex or on a face.
-            assert!(edge > RADIUS / 2.0 || most / least < 1.01, "depths {depths:?}");
+            let lowest = depths.iter().copied().fold(Real::INFINITY, Real::min);
+            let highest = depths.iter().copied().fold(0.0, Real::max);
+            eprintln!("{n}: depth varies by {:.3} %", 100.0 * (highest / lowest - 1.0));
+            // Oracle: a continuous membrane. Tolerance 1 % for the fine mesh; for a grain smaller than an
+            // edge, the depth differs between vertex and face.
+            assert!(edge > RADIUS / 2.0 || highest / lowest < 1.01, "depths {depths:?}");
         }
     });
 }
