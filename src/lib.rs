@@ -1,7 +1,7 @@
 //! Co-simulation of granular jamming grippers for ROS 2.
 //!
 //! This list is the table of contents and the dependency order: a module uses only modules listed
-//! above it. `tests/architecture.rs` checks that.
+//! above it. `tests/architecture` checks that.
 
 pub mod base; // vectors, ticks, digests, random streams, threads, SIMD lanes
 pub mod scene; // text to checked numbers
