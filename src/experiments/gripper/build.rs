@@ -113,7 +113,7 @@ impl Ready {
                 (inside - way, -speed)
             }
         };
-        let z = low + top - self.scene.object_radius();
+        let z = low + top - self.scene.gripper.object.radius;
         controls.bodies[0].pose.translation.vector = Vec3::new(0.0, 0.0, z);
         controls.bodies[0].twist.linear = Vec3::new(0.0, 0.0, speed);
         let steps = protocol.n_pressure_steps;
@@ -126,7 +126,7 @@ impl Ready {
 
     /// I = γ̇ d √(ρ/p): the object's speed shears the grains over its diameter.
     pub(super) fn inertial_number(&self, speed: Real, pressure: Real) -> Real {
-        let rate = speed / (2.0 * self.scene.object_radius());
+        let rate = speed / (2.0 * self.scene.gripper.object.radius);
         let density = self.scene.gripper.grains.material.density * self.model.density_scaling;
         rate * 2.0 * self.model.radius_mean * (density / pressure).sqrt()
     }
@@ -134,7 +134,7 @@ impl Ready {
 
 /// The model of a scene, without the table, the substeps in a tick, and the tick [s].
 pub(super) fn compile(scene: &GripperScene) -> Result<(Model, usize, Real), CompileError> {
-    let Compiled { mut model, plan, .. } = Compiled::new(&scene.gripper, 1)?;
+    let Compiled { mut model, plan, .. } = Compiled::new(&scene.gripper.scene(), 1)?;
     model.bodies.truncate(1);
     Ok((model, plan.n_substeps, plan.tick))
 }

@@ -67,8 +67,8 @@ impl Change {
         match self {
             Self::Nothing => {}
             Self::Pressure(pressure) => changed.protocol.pressure = pressure,
-            Self::Friction(friction) => changed.gripper.objects[0].friction = friction,
-            Self::Radius(radius) => changed.set_object_radius(radius),
+            Self::Friction(friction) => changed.gripper.object.friction = friction,
+            Self::Radius(radius) => changed.gripper.object.radius = radius,
             Self::SpringDamping(ratio) => changed.gripper.membrane.spring_damping = ratio,
             Self::Slowdown(factor) => {
                 changed.accelerations.insert_speed_factor *= factor;
@@ -84,7 +84,7 @@ pub(super) fn cases(scene: &GripperScene) -> Vec<Case> {
     let mut cases = over_modulus(scene);
     let grains = &scene.gripper.grains;
     let (modulus, count) = (grains.material.youngs_modulus, grains.count);
-    let radii = others(&scene.sweep.radii, scene.object_radius()).map(Change::Radius);
+    let radii = others(&scene.sweep.radii, scene.gripper.object.radius).map(Change::Radius);
     let mut families = vec![("radius", radii.collect::<Vec<_>>())];
     if !scene.accelerations.is_varied_relaxed {
         families.push(("history", histories(scene)));
@@ -106,7 +106,7 @@ pub(super) fn cases(scene: &GripperScene) -> Vec<Case> {
 /// Changes that can also be made in the relaxed state.
 fn histories(scene: &GripperScene) -> Vec<Change> {
     let (own, sweep) = (&scene.gripper, &scene.sweep);
-    others(&sweep.frictions, own.objects[0].friction)
+    others(&sweep.frictions, own.object.friction)
         .map(Change::Friction)
         .chain(
             others(&sweep.spring_dampings, own.membrane.spring_damping).map(Change::SpringDamping),

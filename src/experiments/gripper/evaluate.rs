@@ -103,7 +103,7 @@ impl View<'_> {
 
     /// Holding force over the object's friction.
     pub(super) fn over_friction(&self) -> Vec<[Real; 2]> {
-        let own = self.scene.gripper.objects[0].friction;
+        let own = self.scene.gripper.object.friction;
         let varied = cases::others(&self.scene.sweep.frictions, own);
         let changes = varied.map(|it| (it, Change::Friction(it)));
         self.series(changes, own)
@@ -111,7 +111,7 @@ impl View<'_> {
 
     /// Holding force over the object's radius [m], [N].
     pub(super) fn over_radius(&self) -> Vec<[Real; 2]> {
-        let own = self.scene.object_radius();
+        let own = self.scene.gripper.object.radius;
         let varied = cases::others(&self.scene.sweep.radii, own);
         let changes = varied.map(|it| (it, Change::Radius(it)));
         self.series(changes, own)
@@ -298,7 +298,7 @@ fn over_object(view: &View<'_>, judge: &mut Judge<'_>) {
         Expected::at_least(0.0),
         smallest_rise(&view.over_friction()),
     );
-    let friction = view.scene.gripper.objects[0].friction;
+    let friction = view.scene.gripper.object.friction;
     judge.row(
         &Report {
             id: "C9.pinch_threshold",

@@ -42,7 +42,7 @@ impl Experiment for Gripper {
     }
 
     fn read(&self, scene: &SceneText<'_>) -> Result<Box<dyn Plan>, SceneError> {
-        let scene = text::fill(&scene.layers(false), GripperScene::blank())?;
+        let scene = text::read::<GripperScene>(&scene.layers(false))?;
         let cases = cases::cases(&scene);
         Ok(Box::new(GripperPlan { scene, cases }))
     }

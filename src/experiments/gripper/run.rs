@@ -88,7 +88,7 @@ impl GripRun {
         let ready: Result<Vec<Ready>, CompileError> =
             case.grips.iter().map(|grip| Ready::new(&scene, grip, case)).collect();
         let grips = ready?;
-        let filling = Filling::new(&scene.gripper, &models[0], &models[1]);
+        let filling = Filling::new(&scene.gripper.scene(), &models[0], &models[1]);
         let of_grips: usize = grips.iter().map(Ready::n_substeps_expected).sum();
         let n_expected = filling.n_substeps_max() + of_grips;
         let record = Record {
@@ -176,7 +176,7 @@ impl GripRun {
             time: real(tick_of_grip) * ready.tick,
             grip,
             phase,
-            penetration: z + ready.scene.object_radius() - low,
+            penetration: z + ready.scene.gripper.object.radius - low,
             force: force / real(ready.n_substeps),
         };
         let (overlap, pressure, n_contacts) = measure::look(&mut self.record, system, when);
@@ -275,7 +275,7 @@ impl Run for GripRun {
             Place::Filling => {
                 let [soft, goal] = &self.models;
                 let from = (saved.filling, state);
-                self.filling = Filling::resume(&self.scene.gripper, soft, goal, from);
+                self.filling = Filling::resume(&self.scene.gripper.scene(), soft, goal, from);
                 self.system = None;
             }
             Place::Grip { grip, .. } => {

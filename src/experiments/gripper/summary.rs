@@ -48,7 +48,7 @@ pub(super) fn summarise(record: &mut Record, grip: usize, ready: &Ready) {
         let values = rows(record, grip, Phase::Withdraw, column);
         best.and_then(|k| values.get(k).copied()).unwrap_or(Real::NAN)
     };
-    let friction = ready.scene.gripper.objects[0].friction;
+    let friction = ready.scene.gripper.object.friction;
     let normal = last(record, Phase::Hold, "normal_force");
     let angle = last(record, Phase::Hold, "contact_angle");
     let depth = ready.scene.protocol.penetration;

@@ -2,7 +2,7 @@
 
 use super::{
     cases::{Case, Kind},
-    scene::Scene,
+    scene::HollowSphereScene,
 };
 use crate::{
     base::{
@@ -52,11 +52,11 @@ pub(super) struct Parts {
 }
 
 /// The system of `case` at its start: grains scattered thinly, the outer membrane held stretched.
-pub(super) fn system(scene: &Scene, case: &Case) -> Result<(System, Parts), StartError> {
+pub(super) fn system(scene: &HollowSphereScene, case: &Case) -> Result<(System, Parts), StartError> {
     let outer = Mesh::icosphere(scene.membrane.radius, scene.membrane.frequency)?;
     let n_outer = outer.n_vertices();
-    let inner_radius = scene.object.radius + scene.inner_clearance;
-    let inner = Mesh::icosphere(inner_radius, scene.inner_frequency)?;
+    let inner_radius = scene.object.radius + scene.inner.clearance;
+    let inner = Mesh::icosphere(inner_radius, scene.inner.frequency)?;
     let mesh = outer.joined(&inner.inside_out()?)?;
     let membrane = MembraneModel::new(mesh, Sheet::of(&scene.membrane));
     let model = model(scene, case, membrane, n_outer);
@@ -91,7 +91,7 @@ pub(super) fn growth(parts: &Parts) -> Growth {
     Growth::new(parts.recipe, parts.final_radii.clone(), parts.first_scale)
 }
 
-fn model(scene: &Scene, case: &Case, mut membrane: MembraneModel, n_outer: usize) -> Model {
+fn model(scene: &HollowSphereScene, case: &Case, mut membrane: MembraneModel, n_outer: usize) -> Model {
     let material = Material {
         youngs_modulus: case.modulus,
         density: scene.grains.material.density * case.mass_factor,

@@ -1,6 +1,6 @@
 //! The cases: one packing of one kind of grain each.
 
-use super::scene::Scene;
+use super::scene::HollowSphereScene;
 use crate::base::Real;
 
 /// One packing.
@@ -54,7 +54,7 @@ impl Kind {
 }
 
 /// All cases of a scene.
-pub(super) fn of(scene: &Scene) -> Vec<Case> {
+pub(super) fn of(scene: &HollowSphereScene) -> Vec<Case> {
     let mut cases = Vec::new();
     let sweep = &scene.sweep;
     let kinds = [

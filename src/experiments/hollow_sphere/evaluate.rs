@@ -3,7 +3,7 @@
 
 use super::{
     cases::{self, Case, Kind},
-    scene::Scene,
+    scene::HollowSphereScene,
 };
 use crate::experiments::{
     findings::{self, Curve, Expected, Findings, Mean, Plot, Quantity, Report, Row, Series},
@@ -18,7 +18,7 @@ struct Group<'a> {
 }
 
 /// Everything that can be said of `records`.
-pub(super) fn findings(scene: &Scene, records: &[Record]) -> Findings {
+pub(super) fn findings(scene: &HollowSphereScene, records: &[Record]) -> Findings {
     let mut findings = Findings::default();
     let groups = groups(scene, records);
     for group in &groups {
@@ -58,7 +58,7 @@ pub(super) fn findings(scene: &Scene, records: &[Record]) -> Findings {
     findings
 }
 
-fn groups<'a>(scene: &Scene, records: &'a [Record]) -> Vec<Group<'a>> {
+fn groups<'a>(scene: &HollowSphereScene, records: &'a [Record]) -> Vec<Group<'a>> {
     let mut groups: Vec<Group<'a>> = Vec::new();
     for case in cases::of(scene) {
         let Some(record) = records.iter().find(|it| it.case == case.name) else { continue };
@@ -143,7 +143,7 @@ fn rows_of_sweep(sweep: &[&Group<'_>], findings: &mut Findings) {
     }
 }
 
-fn rows_of_levels(scene: &Scene, sweep: &[&Group<'_>], findings: &mut Findings) {
+fn rows_of_levels(scene: &HollowSphereScene, sweep: &[&Group<'_>], findings: &mut Findings) {
     let all = || sweep.iter().flat_map(|it| it.records.iter());
     let lowest = all().flat_map(|it| it.column("object_pressure").unwrap_or_default()).copied();
     if let Some(lowest) = lowest.reduce(f64::min) {
@@ -194,7 +194,7 @@ fn rows_of_levels(scene: &Scene, sweep: &[&Group<'_>], findings: &mut Findings) 
     }
 }
 
-fn distance(radius: f64, scene: &Scene) -> f64 {
+fn distance(radius: f64, scene: &HollowSphereScene) -> f64 {
     (radius - scene.membrane.radius).abs()
 }
 
@@ -214,7 +214,7 @@ fn disproportion(record: &Record) -> f64 {
     vacuum.iter().zip(pressure).map(off).fold(0.0, f64::max)
 }
 
-fn rows_of_smooth(scene: &Scene, smooth: &[&Group<'_>], findings: &mut Findings) {
+fn rows_of_smooth(scene: &HollowSphereScene, smooth: &[&Group<'_>], findings: &mut Findings) {
     for group in smooth {
         findings.rows.push(Row::new(
             &Report {

@@ -8,8 +8,8 @@ mod run; // one case
 mod scene; // scene keys
 
 use super::{Experiment, Plan, Run, SceneText, StartError, findings::Findings, record::Record};
-use crate::scene::{SceneError, text::fill};
-use scene::Scene;
+use crate::scene::{SceneError, text::read};
+use scene::HollowSphereScene;
 
 /// The experiment.
 pub struct HollowSphere;
@@ -31,13 +31,13 @@ impl Experiment for HollowSphere {
     }
 
     fn read(&self, scene: &SceneText<'_>) -> Result<Box<dyn Plan>, SceneError> {
-        Ok(Box::new(Shells { scene: fill(&scene.layers(false), Scene::blank())? }))
+        Ok(Box::new(Shells { scene: read(&scene.layers(false))? }))
     }
 }
 
 /// All packings of a scene.
 struct Shells {
-    scene: Scene,
+    scene: HollowSphereScene,
 }
 
 impl Plan for Shells {

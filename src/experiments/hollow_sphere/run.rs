@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::{
     build::{self, Parts},
     cases::Case,
-    scene::{Protocol, Scene},
+    scene::{Protocol, HollowSphereScene},
 };
 use crate::{
     base::{Real, real::count},
@@ -57,7 +57,7 @@ struct Progressed {
 
 /// A packing on its way.
 pub(super) struct Shell {
-    scene: Scene,
+    scene: HollowSphereScene,
     case: Case,
     parts: Parts,
     system: System,
@@ -67,7 +67,7 @@ pub(super) struct Shell {
 
 impl Shell {
     /// At its start.
-    pub(super) fn new(scene: &Scene, case: &Case) -> Result<Self, StartError> {
+    pub(super) fn new(scene: &HollowSphereScene, case: &Case) -> Result<Self, StartError> {
         let (system, parts) = build::system(scene, case)?;
         let growth = build::growth(&parts);
         let mut record = Record {

@@ -8,7 +8,7 @@ use super::{
     Law, Line,
     build::{Encounter, Flight, elastic},
     judge, push,
-    scene::Scene,
+    scene::LawsScene,
     worst,
 };
 use crate::{
@@ -51,7 +51,7 @@ const SPINS: [Real; 7] = [0.175, 1.0, 2.5, 4.5, 8.0, 15.0, 22.9];
 const SLIDES: Real = 6.0;
 
 /// Tests 1 to 8 of one pair of materials each; the points of the case.
-const POINTS: [fn(&Scene, &mut Record); 8] =
+const POINTS: [fn(&LawsScene, &mut Record); 8] =
     [test_1, test_2, test_3, test_4, test_5, test_6, test_7, test_8];
 
 impl Law for ChungOoi {
@@ -59,15 +59,15 @@ impl Law for ChungOoi {
         "chung_ooi"
     }
 
-    fn n_points(&self, _: &Scene) -> usize {
+    fn n_points(&self, _: &LawsScene) -> usize {
         POINTS.len()
     }
 
-    fn measure(&self, scene: &Scene, point: usize, record: &mut Record) {
+    fn measure(&self, scene: &LawsScene, point: usize, record: &mut Record) {
         POINTS[point](scene, record);
     }
 
-    fn evaluate(&self, _: &Scene, record: &Record, findings: &mut Findings) {
+    fn evaluate(&self, _: &LawsScene, record: &Record, findings: &mut Findings) {
         judge(ROWS, record, findings);
         findings
             .curves
@@ -77,7 +77,7 @@ impl Law for ChungOoi {
 }
 
 /// Head-on, elastic, two equal spheres of 10 mm at ±10 m/s.
-fn test_1(scene: &Scene, record: &mut Record) {
+fn test_1(scene: &LawsScene, record: &mut Record) {
     for (name, overlap, force, duration) in
         [("glass", 274.1e-6, 10.697e3, 40.34e-6), ("limestone", 368.3e-6, 7.108e3, 54.20e-6)]
     {
@@ -90,7 +90,7 @@ fn test_1(scene: &Scene, record: &mut Record) {
 }
 
 /// Head-on, elastic, a sphere of 100 mm on a rigid plane at 0.2 m/s.
-fn test_2(scene: &Scene, record: &mut Record) {
+fn test_2(scene: &LawsScene, record: &mut Record) {
     for (name, overlap, force, duration) in [
         ("aluminium_alloy", 49.72e-6, 11.370e3, 0.7317e-3),
         ("magnesium_alloy", 52.12e-6, 7.233e3, 0.7671e-3),
@@ -110,7 +110,7 @@ fn test_2(scene: &Scene, record: &mut Record) {
 }
 
 /// Head-on with restitution, 2.5 mm at 3.9 m/s on a rigid plane.
-fn test_3(scene: &Scene, record: &mut Record) {
+fn test_3(scene: &LawsScene, record: &mut Record) {
     for name in ["aluminium_oxide", "cast_iron"] {
         for wanted in RESTITUTIONS {
             let mut flight = Flight {
@@ -128,7 +128,7 @@ fn test_3(scene: &Scene, record: &mut Record) {
 }
 
 /// Oblique, 2.5 mm at 3.9 m/s, μ = 0.092, e = 0.98.
-fn test_4(scene: &Scene, record: &mut Record) {
+fn test_4(scene: &LawsScene, record: &mut Record) {
     for [degrees, expected] in TEST_4 {
         let angle = degrees.to_radians();
         let found = test_4_at(scene, "aluminium_oxide", angle, record);
@@ -148,7 +148,7 @@ fn test_4(scene: &Scene, record: &mut Record) {
     }
 }
 
-fn test_4_at(scene: &Scene, name: &str, angle: Real, record: &mut Record) -> Real {
+fn test_4_at(scene: &LawsScene, name: &str, angle: Real, record: &mut Record) -> Real {
     let mut flight = Flight {
         radius: 2.5e-3,
         material: scene.material(name),
@@ -162,7 +162,7 @@ fn test_4_at(scene: &Scene, name: &str, angle: Real, record: &mut Record) -> Rea
 }
 
 /// Oblique, elastic, 10 µm at a normal speed of 5 m/s, μ = 0.3.
-fn test_5(scene: &Scene, record: &mut Record) {
+fn test_5(scene: &LawsScene, record: &mut Record) {
     for (name, id) in [("steel", "U3.test_5_steel"), ("polyethylene", "U3.test_5_polyethylene")] {
         for ratio in RATIOS {
             let flight = Flight {
@@ -187,7 +187,7 @@ fn test_5(scene: &Scene, record: &mut Record) {
 }
 
 /// A spinning sphere of 100 mm falls on a rigid plane at 0.2 m/s, μ = 0.4, e = 0.5.
-fn test_6(scene: &Scene, record: &mut Record) {
+fn test_6(scene: &LawsScene, record: &mut Record) {
     for name in ["aluminium_alloy", "copper"] {
         for spin in SPINS {
             let mut flight = Flight {
@@ -210,7 +210,7 @@ fn test_6(scene: &Scene, record: &mut Record) {
 }
 
 /// Two equal spheres of 100 mm at ±0.2 m/s that spin against each other, or alike.
-fn test_7(scene: &Scene, record: &mut Record) {
+fn test_7(scene: &LawsScene, record: &mut Record) {
     for name in ["aluminium_alloy", "copper"] {
         for spin in [1.0, 8.0, 22.9] {
             let mut encounter = Encounter::equal(0.1, scene.material(name), elastic(0.4), 0.4);
@@ -236,7 +236,7 @@ fn test_7(scene: &Scene, record: &mut Record) {
 }
 
 /// A spinning sphere of 100 mm hits one five times as large and a thousand times as dense, at rest.
-fn test_8(scene: &Scene, record: &mut Record) {
+fn test_8(scene: &LawsScene, record: &mut Record) {
     for name in ["aluminium_alloy", "nylon"] {
         let material = scene.material(name);
         for spin in [8.0, 22.9] {
@@ -256,14 +256,6 @@ fn test_8(scene: &Scene, record: &mut Record) {
 
 fn dissipation_time(collision: &Collision, restitution: Real) -> Real {
     collision.dissipation_time_for(restitution)
-}
-
-impl Scene {
-    /// A material of the benchmarks.
-    fn material(&self, name: &str) -> Material {
-        let place = super::scene::MATERIALS.iter().position(|it| *it == name);
-        self.chung_ooi[place.expect("the benchmarks name materials of the list")]
-    }
 }
 
 const HERTZ: &str = "Hertz, with the benchmark's numbers (Chung & Ooi 2011)";

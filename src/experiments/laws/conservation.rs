@@ -5,7 +5,7 @@ use super::{
     Law, Line,
     build::{Bench, Encounter, G, elastic},
     judge,
-    scene::Scene,
+    scene::LawsScene,
 };
 use crate::{
     base::{Real, Vec3},
@@ -18,28 +18,28 @@ use crate::{
 
 pub(super) struct Conservation;
 
-const POINTS: [fn(&Scene, &mut Record); 4] = [momenta, stack, turned, rigid_rotation];
+const POINTS: [fn(&LawsScene, &mut Record); 4] = [momenta, stack, turned, rigid_rotation];
 
 impl Law for Conservation {
     fn name(&self) -> &'static str {
         "conservation"
     }
 
-    fn n_points(&self, _: &Scene) -> usize {
+    fn n_points(&self, _: &LawsScene) -> usize {
         POINTS.len()
     }
 
-    fn measure(&self, scene: &Scene, point: usize, record: &mut Record) {
+    fn measure(&self, scene: &LawsScene, point: usize, record: &mut Record) {
         POINTS[point](scene, record);
     }
 
-    fn evaluate(&self, _: &Scene, record: &Record, findings: &mut Findings) {
+    fn evaluate(&self, _: &LawsScene, record: &Record, findings: &mut Findings) {
         judge(ROWS, record, findings);
     }
 }
 
 /// Two unequal grains, one of which spins, meet off centre; everything turned by `turn`.
-fn off_centre(scene: &Scene, turn: &nalgebra::Rotation3<Real>) -> (Bench, Real) {
+fn off_centre(scene: &LawsScene, turn: &nalgebra::Rotation3<Real>) -> (Bench, Real) {
     let grain = &scene.grain;
     let encounter = Encounter::equal(grain.radius, grain.material, grain.surface, 0.5);
     let dt = encounter.collision().duration() / real(scene.steps_per_contact);
@@ -55,7 +55,7 @@ fn off_centre(scene: &Scene, turn: &nalgebra::Rotation3<Real>) -> (Bench, Real) 
     (bench, 3.0 * real(scene.steps_per_contact))
 }
 
-fn momenta(scene: &Scene, record: &mut Record) {
+fn momenta(scene: &LawsScene, record: &mut Record) {
     let (mut bench, n_steps) = off_centre(scene, &nalgebra::Rotation3::identity());
     let about_centre = |bench: &Bench| {
         let (linear, angular) = bench.momenta();
@@ -79,7 +79,7 @@ fn momenta(scene: &Scene, record: &mut Record) {
 }
 
 /// Two elastic grains on top of each other over a plane, for a hundred contacts.
-fn stack(scene: &Scene, record: &mut Record) {
+fn stack(scene: &LawsScene, record: &mut Record) {
     let grain = &scene.grain;
     let radius = grain.radius;
     let mut bench = Bench::on_plane(&grain.material, elastic(0.0), 1e-6);
@@ -108,7 +108,7 @@ fn stack(scene: &Scene, record: &mut Record) {
 }
 
 /// The same collision in a turned scene, turned back.
-fn turned(scene: &Scene, record: &mut Record) {
+fn turned(scene: &LawsScene, record: &mut Record) {
     let turn = nalgebra::Rotation3::from_euler_angles(0.3, -1.1, 2.0);
     let (mut bench, n_steps) = off_centre(scene, &nalgebra::Rotation3::identity());
     let (mut other, _) = off_centre(scene, &turn);
@@ -130,7 +130,7 @@ fn turned(scene: &Scene, record: &mut Record) {
 
 /// A pair that is turned as one body about an axis across its normal: once without and once with a
 /// stretched friction spring.
-fn rigid_rotation(scene: &Scene, record: &mut Record) {
+fn rigid_rotation(scene: &LawsScene, record: &mut Record) {
     let (force, normal) = turn_pair(scene, 0.0);
     record.set("U7.unsheared_pair", force[1].norm() / normal, "1");
     let (force, _) = turn_pair(scene, 1e-3);
@@ -139,7 +139,7 @@ fn rigid_rotation(scene: &Scene, record: &mut Record) {
 }
 
 /// Tangential force at the start and after a whole turn [N], and the normal force.
-fn turn_pair(scene: &Scene, shear_over_overlap: Real) -> ([Vec3; 2], Real) {
+fn turn_pair(scene: &LawsScene, shear_over_overlap: Real) -> ([Vec3; 2], Real) {
     let grain = &scene.grain;
     let (radius, n_steps) = (grain.radius, 20_000);
     let overlap = 0.01 * radius;

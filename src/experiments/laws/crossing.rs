@@ -9,7 +9,7 @@ use super::{
     Law, Line,
     build::{Bench, elastic},
     judge, push,
-    scene::Scene,
+    scene::LawsScene,
     worst,
 };
 use crate::{
@@ -44,12 +44,12 @@ impl Law for Crossing {
         "crossing"
     }
 
-    fn n_points(&self, scene: &Scene) -> usize {
-        2 * scene.crossing.n_ways + 1
+    fn n_points(&self, scene: &LawsScene) -> usize {
+        2 * scene.crossing.n_paths + 1
     }
 
-    fn measure(&self, scene: &Scene, point: usize, record: &mut Record) {
-        if point == 2 * scene.crossing.n_ways {
+    fn measure(&self, scene: &LawsScene, point: usize, record: &mut Record) {
+        if point == 2 * scene.crossing.n_paths {
             return slide(scene, record);
         }
         let (way, is_dented) = (point / 2, point % 2 == 1);
@@ -69,7 +69,7 @@ impl Law for Crossing {
         worst(record, "C4.angular_momentum", seen.angular_momentum);
     }
 
-    fn evaluate(&self, _: &Scene, record: &Record, findings: &mut Findings) {
+    fn evaluate(&self, _: &LawsScene, record: &Record, findings: &mut Findings) {
         judge(ROWS, record, findings);
         findings
             .curves
@@ -79,10 +79,10 @@ impl Law for Crossing {
 
 /// With friction, at one speed on the same ways: the largest change of force in a substep, and in half
 /// of it. What is continuous changes half as much.
-fn slide(scene: &Scene, record: &mut Record) {
+fn slide(scene: &LawsScene, record: &mut Record) {
     let substep = 4e-5;
     let mut largest = [0.0; 2];
-    for way in 0..scene.crossing.n_ways {
+    for way in 0..scene.crossing.n_paths {
         for (dt, largest) in [substep, 0.5 * substep].into_iter().zip(&mut largest) {
             let mut path = Path::new(scene, way, true, elastic(scene.membrane.friction));
             *largest = path.slide(SPEED, dt).max(*largest);
@@ -116,7 +116,7 @@ struct Path {
 }
 
 impl Path {
-    fn new(scene: &Scene, way: usize, is_dented: bool, surface: Surface) -> Self {
+    fn new(scene: &LawsScene, way: usize, is_dented: bool, surface: Surface) -> Self {
         let (edge, radius) = (scene.membrane.edge, scene.grain.radius);
         let mesh = Mesh::hexagonal_patch(edge, RINGS).expect("there are rings");
         let mut random = Random::new(u64::try_from(way).unwrap_or(0), Stream::Position);

@@ -5,7 +5,7 @@ use super::{
     Law, Line,
     build::{Encounter, elastic},
     judge, push,
-    scene::Scene,
+    scene::LawsScene,
     worst,
 };
 use crate::{
@@ -38,11 +38,11 @@ impl Law for Impact {
         "impact"
     }
 
-    fn n_points(&self, scene: &Scene) -> usize {
+    fn n_points(&self, scene: &LawsScene) -> usize {
         3 * scene.restitution.n_speeds + TABLE.len() + 2
     }
 
-    fn measure(&self, scene: &Scene, point: usize, record: &mut Record) {
+    fn measure(&self, scene: &LawsScene, point: usize, record: &mut Record) {
         let n_swept = 3 * scene.restitution.n_speeds;
         if point < n_swept {
             sweep(scene, point, record);
@@ -60,7 +60,7 @@ impl Law for Impact {
         }
     }
 
-    fn evaluate(&self, scene: &Scene, record: &Record, findings: &mut Findings) {
+    fn evaluate(&self, scene: &LawsScene, record: &Record, findings: &mut Findings) {
         judge(ROWS, &compare_sweep(scene, record), findings);
         let names = ["modulus", "speed", "restitution", "restitution_theory"];
         let columns = record.columns.iter().filter(|it| names.contains(&it.name.as_str()));
@@ -72,11 +72,11 @@ impl Law for Impact {
     }
 }
 
-fn surface(scene: &Scene, dissipation_time: Real) -> Surface {
+fn surface(scene: &LawsScene, dissipation_time: Real) -> Surface {
     Surface { friction: 0.0, dissipation_time, ..scene.grain.surface }
 }
 
-fn restitution(scene: &Scene, set: [Real; 4], record: &mut Record) -> Real {
+fn restitution(scene: &LawsScene, set: [Real; 4], record: &mut Record) -> Real {
     let [modulus, radius, time, speed] = set;
     let material = Material { youngs_modulus: modulus, ..scene.grain.material };
     let encounter = Encounter::equal(radius, material, surface(scene, time), speed);
@@ -86,7 +86,7 @@ fn restitution(scene: &Scene, set: [Real; 4], record: &mut Record) -> Real {
 }
 
 /// One modulus and one speed.
-fn sweep(scene: &Scene, point: usize, record: &mut Record) {
+fn sweep(scene: &LawsScene, point: usize, record: &mut Record) {
     let swept = &scene.restitution;
     let (m, s) = (point / swept.n_speeds, point % swept.n_speeds);
     let share = real(s) / real(swept.n_speeds - 1);
@@ -101,7 +101,7 @@ fn sweep(scene: &Scene, point: usize, record: &mut Record) {
     push(record, "restitution_theory", "1", encounter.collision().restitution(time));
 }
 
-fn elastic_impact(scene: &Scene, record: &mut Record) {
+fn elastic_impact(scene: &LawsScene, record: &mut Record) {
     let encounter = Encounter::equal(scene.grain.radius, scene.grain.material, elastic(0.0), 1.0);
     let oracle = encounter.collision();
     let (bench, met) = encounter.meet(scene.steps_per_contact, record);
@@ -112,7 +112,7 @@ fn elastic_impact(scene: &Scene, record: &mut Record) {
 }
 
 /// How far the swept restitutions are from theory, and whether they fall with speed and modulus.
-fn compare_sweep(scene: &Scene, record: &Record) -> Record {
+fn compare_sweep(scene: &LawsScene, record: &Record) -> Record {
     let mut found = record.clone();
     let column = |name: &str| record.column(name).unwrap_or(&[]);
     let (measured, theory) = (column("restitution"), column("restitution_theory"));
@@ -206,7 +206,7 @@ const ROWS: &[Line] = &[
     ),
 ];
 
-fn plot(scene: &Scene, record: &Record) -> Plot {
+fn plot(scene: &LawsScene, record: &Record) -> Plot {
     let column = |name: &str| record.column(name).unwrap_or(&[]);
     let n = scene.restitution.n_speeds;
     let mut series = Vec::new();

@@ -12,7 +12,7 @@
 
 use std::collections::BTreeSet;
 
-use super::{Law, Line, judge, push, scene::Scene, worst};
+use super::{Law, Line, judge, push, scene::LawsScene, worst};
 use crate::{
     base::{
         Real, Vec3,
@@ -45,11 +45,11 @@ impl Law for Inflation {
         "inflation"
     }
 
-    fn n_points(&self, scene: &Scene) -> usize {
+    fn n_points(&self, scene: &LawsScene) -> usize {
         scene.laplace.n_pressures + 3
     }
 
-    fn measure(&self, scene: &Scene, point: usize, record: &mut Record) {
+    fn measure(&self, scene: &LawsScene, point: usize, record: &mut Record) {
         let n = scene.laplace.n_pressures;
         if point < n {
             sphere(scene, real(point + 1) / real(n), record);
@@ -62,7 +62,7 @@ impl Law for Inflation {
         }
     }
 
-    fn evaluate(&self, _: &Scene, record: &Record, findings: &mut Findings) {
+    fn evaluate(&self, _: &LawsScene, record: &Record, findings: &mut Findings) {
         judge(ROWS, record, findings);
         findings
             .curves
@@ -72,7 +72,7 @@ impl Law for Inflation {
 }
 
 /// The scene's sheet without bending, well damped.
-fn bag(scene: &Scene) -> Sheet {
+fn bag(scene: &LawsScene) -> Sheet {
     let sheet = scene.membrane.sheet;
     Sheet { bending_stiffness: 0.0, bending_damping: 0.0, spring_damping: 0.5, ..sheet }
 }
@@ -117,7 +117,7 @@ fn settle(
     }
 }
 
-fn sphere(scene: &Scene, share: Real, record: &mut Record) {
+fn sphere(scene: &LawsScene, share: Real, record: &mut Record) {
     let radius = scene.membrane.radius;
     let mesh = Mesh::icosphere(radius, scene.laplace.frequency).expect("a frequency above zero");
     let model = MembraneModel::new(mesh, bag(scene));
@@ -137,7 +137,7 @@ fn sphere(scene: &Scene, share: Real, record: &mut Record) {
 }
 
 /// A tube of rows of triangles; its ends carry what a lid would put on them.
-fn cylinder(scene: &Scene, record: &mut Record) {
+fn cylinder(scene: &LawsScene, record: &mut Record) {
     let (radius, n_around, n_rows) = (scene.membrane.radius, 48, 24);
     let (model, height) = tube(scene, n_around, n_rows);
     let overpressure = scene.laplace.pressure_max;
@@ -167,7 +167,7 @@ fn cylinder(scene: &Scene, record: &mut Record) {
 }
 
 /// The tube, and the height of its rows [m].
-fn tube(scene: &Scene, n_around: usize, n_rows: usize) -> (MembraneModel, Real) {
+fn tube(scene: &LawsScene, n_around: usize, n_rows: usize) -> (MembraneModel, Real) {
     let radius = scene.membrane.radius;
     let half_turn = std::f64::consts::PI / real(n_around);
     let edge = 2.0 * radius * half_turn.sin();
@@ -186,7 +186,7 @@ const TAUT: Real = 0.05;
 const RISE: Real = 0.01;
 
 /// A flat sheet that is stretched and held around a circle bulges as a paraboloid.
-fn disc(scene: &Scene, record: &mut Record) {
+fn disc(scene: &LawsScene, record: &mut Record) {
     let mesh = Mesh::hexagonal_patch(scene.membrane.edge, N_RINGS).expect("it has rings");
     let mut model = MembraneModel::new(mesh, bag(scene));
     model.scale_rest_lengths(1.0 / (1.0 + TAUT));
@@ -209,7 +209,7 @@ fn disc(scene: &Scene, record: &mut Record) {
 }
 
 /// Force, torque and power of the air on a sphere with dents that is off the origin and moves.
-fn closed_surface(scene: &Scene, record: &mut Record) {
+fn closed_surface(scene: &LawsScene, record: &mut Record) {
     let radius = scene.membrane.radius;
     let mesh = Mesh::icosphere(radius, scene.laplace.frequency).expect("a frequency above zero");
     let slack = Sheet { youngs_modulus: 0.0, ..bag(scene) };

@@ -27,9 +27,9 @@ use super::{
 use crate::{
     base::digest::Digest,
     physics::health::Diverged,
-    scene::{SceneError, text::fill},
+    scene::{SceneError, text::read},
 };
-use scene::Scene;
+use scene::LawsScene;
 
 /// The scene that comes with the program.
 const SCENE_FILE: &str = "launch_configs/experiments/laws.yaml";
@@ -45,13 +45,13 @@ trait Law: Sync {
     fn name(&self) -> &'static str;
 
     /// How many points there are.
-    fn n_points(&self, scene: &Scene) -> usize;
+    fn n_points(&self, scene: &LawsScene) -> usize;
 
     /// Measures one point.
-    fn measure(&self, scene: &Scene, point: usize, record: &mut Record);
+    fn measure(&self, scene: &LawsScene, point: usize, record: &mut Record);
 
     /// What the record shows.
-    fn evaluate(&self, scene: &Scene, record: &Record, findings: &mut Findings);
+    fn evaluate(&self, scene: &LawsScene, record: &Record, findings: &mut Findings);
 }
 
 static LAWS: &[&dyn Law] = &[
@@ -80,13 +80,13 @@ impl Experiment for Laws {
     }
 
     fn read(&self, scene: &SceneText<'_>) -> Result<Box<dyn Plan>, SceneError> {
-        Ok(Box::new(Book { scene: fill(&scene.layers(false), scene::blank())? }))
+        Ok(Box::new(Book { scene: read(&scene.layers(false))? }))
     }
 }
 
 /// All laws with their scene.
 struct Book {
-    scene: Scene,
+    scene: LawsScene,
 }
 
 impl Plan for Book {
@@ -118,7 +118,7 @@ impl Plan for Book {
 /// A law on its way through its points.
 struct Pages {
     law: &'static dyn Law,
-    scene: Scene,
+    scene: LawsScene,
     n_done: usize,
     record: Record,
 }

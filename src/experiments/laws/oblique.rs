@@ -5,7 +5,7 @@ use super::{
     Law, Line,
     build::{Flight, elastic},
     judge, push,
-    scene::Scene,
+    scene::LawsScene,
     worst,
 };
 use crate::{
@@ -39,11 +39,11 @@ impl Law for Oblique {
         "oblique"
     }
 
-    fn n_points(&self, scene: &Scene) -> usize {
+    fn n_points(&self, scene: &LawsScene) -> usize {
         n_angles(scene) + TABLE.len() + 1
     }
 
-    fn measure(&self, scene: &Scene, point: usize, record: &mut Record) {
+    fn measure(&self, scene: &LawsScene, point: usize, record: &mut Record) {
         let n = n_angles(scene);
         if point < n {
             swept(scene, crate::physics::measure::real(point + 1), record);
@@ -60,7 +60,7 @@ impl Law for Oblique {
         }
     }
 
-    fn evaluate(&self, scene: &Scene, record: &Record, findings: &mut Findings) {
+    fn evaluate(&self, scene: &LawsScene, record: &Record, findings: &mut Findings) {
         judge(ROWS, record, findings);
         findings.curves.push(Curve {
             name: "laws_oblique_impact".to_owned(),
@@ -71,12 +71,12 @@ impl Law for Oblique {
 }
 
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 7 and 1500")]
-fn n_angles(scene: &Scene) -> usize {
+fn n_angles(scene: &LawsScene) -> usize {
     (Real::to_radians(89.9) / scene.oblique.angle_step) as usize
 }
 
 /// e_t, R ω'/v and the share of the energy that is left.
-fn fly(scene: &Scene, angle: Real, damping: Real, record: &mut Record) -> [Real; 3] {
+fn fly(scene: &LawsScene, angle: Real, damping: Real, record: &mut Record) -> [Real; 3] {
     let (grain, speed) = (&scene.grain, scene.oblique.speed);
     let mut surface = elastic(grain.surface.friction);
     surface.tangential_damping = damping;
@@ -96,7 +96,7 @@ fn fly(scene: &Scene, angle: Real, damping: Real, record: &mut Record) -> [Real;
     ]
 }
 
-fn swept(scene: &Scene, step: Real, record: &mut Record) {
+fn swept(scene: &LawsScene, step: Real, record: &mut Record) {
     let angle = step * scene.oblique.angle_step;
     let [e_t, spin, energy] = fly(scene, angle, 0.0, record);
     let ratio = micro_slip::stiffness_ratio(scene.grain.material.poisson_ratio);
@@ -159,7 +159,7 @@ const ROWS: &[Line] = &[
     ),
 ];
 
-fn plot(scene: &Scene, record: &Record) -> Plot {
+fn plot(scene: &LawsScene, record: &Record) -> Plot {
     let column = |name: &str| record.column(name).unwrap_or(&[]);
     let angles = column("angle");
     let over_angle = |name: &str, kind, label: &str| Series {

@@ -12,7 +12,7 @@
 //! E I comes from the difference between two lengths, and its growth with the width from the
 //! difference between two widths.
 
-use super::{Law, Line, judge, scene::Scene};
+use super::{Law, Line, judge, scene::LawsScene};
 use crate::{
     base::{Real, Vec3},
     experiments::{
@@ -41,11 +41,11 @@ impl Law for Plate {
         "plate"
     }
 
-    fn n_points(&self, _: &Scene) -> usize {
+    fn n_points(&self, _: &LawsScene) -> usize {
         4
     }
 
-    fn measure(&self, scene: &Scene, point: usize, record: &mut Record) {
+    fn measure(&self, scene: &LawsScene, point: usize, record: &mut Record) {
         match point {
             0 => curvatures(scene, record),
             1 => {
@@ -60,24 +60,24 @@ impl Law for Plate {
         }
     }
 
-    fn evaluate(&self, _: &Scene, record: &Record, findings: &mut Findings) {
+    fn evaluate(&self, _: &LawsScene, record: &Record, findings: &mut Findings) {
         judge(ROWS, record, findings);
     }
 }
 
 /// D times the spacing of rows across a strip [N m²].
-fn edge_stiffness(scene: &Scene) -> Real {
+fn edge_stiffness(scene: &LawsScene) -> Real {
     let row = 0.75_f64.sqrt() * scene.membrane.edge;
     0.25 * scene.membrane.sheet.bending_stiffness * row
 }
 
 /// The scene's sheet without springs: bending alone.
-fn limp(scene: &Scene) -> Sheet {
+fn limp(scene: &LawsScene) -> Sheet {
     Sheet { youngs_modulus: 0.0, bending_damping: 0.0, ..scene.membrane.sheet }
 }
 
 /// Energy of a patch bent to a given curvature.
-fn curvatures(scene: &Scene, record: &mut Record) {
+fn curvatures(scene: &LawsScene, record: &mut Record) {
     let (edge, curvature) = (scene.membrane.edge, 1e-4);
     let mesh = Mesh::hexagonal_patch(edge, 12).expect("there are rings");
     let model = MembraneModel::new(mesh, limp(scene));
@@ -111,7 +111,7 @@ const SMALL: Real = 1e-6;
 
 impl Strip {
     /// `n_long` edges along x and `n_wide` rows across.
-    fn new(scene: &Scene, n_long: usize, n_wide: usize) -> Self {
+    fn new(scene: &LawsScene, n_long: usize, n_wide: usize) -> Self {
         let edge = scene.membrane.edge;
         let columns = n_long + 1;
         let mut positions = Vec::new();
@@ -199,14 +199,14 @@ impl Strip {
 
 /// E I [N m²] of a strip from its tips at two lengths: the cube root of F L³/(3 E I) grows by
 /// (F/(3 E I))^(1/3) per length, wherever the strip is clamped.
-fn bending_stiffness(scene: &Scene, lengths: [usize; 2], n_wide: usize) -> Real {
+fn bending_stiffness(scene: &LawsScene, lengths: [usize; 2], n_wide: usize) -> Real {
     let [short, long] = lengths.map(|n| Strip::new(scene, n, n_wide).tip_under_unit_force().cbrt());
     let grown = real(lengths[1] - lengths[0]) * scene.membrane.edge;
     ((long - short) / grown).powi(-3) / 3.0
 }
 
 /// First natural frequency of a narrow strip, from its own stiffness and length as measured.
-fn ring(scene: &Scene, record: &mut Record) {
+fn ring(scene: &LawsScene, record: &mut Record) {
     let (n_long, n_wide) = (64, 8);
     let mut strip = Strip::new(scene, n_long, n_wide);
     let masses = strip.model.masses.clone();

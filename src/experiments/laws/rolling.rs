@@ -5,7 +5,7 @@ use super::{
     Law, Line,
     build::{Bench, G, mass},
     judge, push,
-    scene::Scene,
+    scene::LawsScene,
 };
 use crate::{
     base::{Real, Vec3},
@@ -22,7 +22,7 @@ use crate::{
 pub(super) struct Rolling;
 
 /// Points: the slide, then inclines, weight, creep and the spring.
-const POINTS: [fn(&Scene, &mut Record); 5] = [slide, inclines, weight, creep, shear];
+const POINTS: [fn(&LawsScene, &mut Record); 5] = [slide, inclines, weight, creep, shear];
 /// Steps between recorded ones.
 const EVERY: usize = 20;
 
@@ -31,15 +31,15 @@ impl Law for Rolling {
         "rolling"
     }
 
-    fn n_points(&self, _: &Scene) -> usize {
+    fn n_points(&self, _: &LawsScene) -> usize {
         POINTS.len()
     }
 
-    fn measure(&self, scene: &Scene, point: usize, record: &mut Record) {
+    fn measure(&self, scene: &LawsScene, point: usize, record: &mut Record) {
         POINTS[point](scene, record);
     }
 
-    fn evaluate(&self, scene: &Scene, record: &Record, findings: &mut Findings) {
+    fn evaluate(&self, scene: &LawsScene, record: &Record, findings: &mut Findings) {
         judge(ROWS, record, findings);
         findings
             .curves
@@ -49,7 +49,7 @@ impl Law for Rolling {
 }
 
 /// One grain that lies on the plane in equilibrium, `tilt` [rad] about y.
-fn resting(scene: &Scene, surface: Surface, tilt: Real) -> Bench {
+fn resting(scene: &LawsScene, surface: Surface, tilt: Real) -> Bench {
     let grain = &scene.grain;
     let mut bench = Bench::on_plane(&grain.material, surface, scene.rolling.substep);
     bench.system.model.gravity = Vec3::new(tilt.sin(), 0.0, -tilt.cos()) * G;
@@ -59,7 +59,7 @@ fn resting(scene: &Scene, surface: Surface, tilt: Real) -> Bench {
 }
 
 /// ξ = (m g cos θ / k)^(2/3).
-fn resting_overlap(scene: &Scene, tilt: Real) -> Real {
+fn resting_overlap(scene: &LawsScene, tilt: Real) -> Real {
     let grain = &scene.grain;
     let k = 4.0 / 3.0
         * PairLaw::against_rigid(&grain.material, grain.surface).modulus
@@ -68,7 +68,7 @@ fn resting_overlap(scene: &Scene, tilt: Real) -> Real {
 }
 
 /// A grain that begins to slide at v_0 rolls from 2 v_0/(7 μ g) on.
-fn slide(scene: &Scene, record: &mut Record) {
+fn slide(scene: &LawsScene, record: &mut Record) {
     let (grain, v0) = (&scene.grain, scene.rolling.speed);
     let mut bench = resting(scene, grain.surface, 0.0);
     bench.grains_mut().velocities[0].x = v0;
@@ -102,7 +102,7 @@ fn slide(scene: &Scene, record: &mut Record) {
 }
 
 /// Down an incline: rolling while tan θ < 7/2 μ, else slipping.
-fn inclines(scene: &Scene, record: &mut Record) {
+fn inclines(scene: &LawsScene, record: &mut Record) {
     let friction = scene.grain.surface.friction;
     for (id, tan) in [("U5.rolls_down", 1.6 * friction), ("U5.slips_down", 6.0 * friction)] {
         let tilt = tan.atan();
@@ -122,7 +122,7 @@ fn inclines(scene: &Scene, record: &mut Record) {
 }
 
 /// Laid down without overlap, it sinks in until the plane carries it.
-fn weight(scene: &Scene, record: &mut Record) {
+fn weight(scene: &LawsScene, record: &mut Record) {
     let surface = Surface { dissipation_time: 1e-4, ..scene.grain.surface };
     let mut bench = resting(scene, surface, 0.0);
     bench.grains_mut().positions[0].z = scene.grain.radius;
@@ -133,7 +133,7 @@ fn weight(scene: &Scene, record: &mut Record) {
 }
 
 /// A grain that may not roll, at 0.9 of the angle of friction.
-fn creep(scene: &Scene, record: &mut Record) {
+fn creep(scene: &LawsScene, record: &mut Record) {
     let surface = Surface { dissipation_time: 1e-4, ..scene.grain.surface };
     let mut bench = resting(scene, surface, (0.9 * surface.friction).atan());
     let mut go = |n_steps: usize| {
@@ -149,7 +149,7 @@ fn creep(scene: &Scene, record: &mut Record) {
 }
 
 /// A contact held at one overlap and sheared by a little: the stiffness of the spring.
-fn shear(scene: &Scene, record: &mut Record) {
+fn shear(scene: &LawsScene, record: &mut Record) {
     let grain = &scene.grain;
     let surface = Surface { tangential_damping: 0.0, dissipation_time: 0.0, ..grain.surface };
     let (overlap, n_steps) = (0.01 * grain.radius, 1000);
@@ -253,7 +253,7 @@ const ROWS: &[Line] = &[
     ),
 ];
 
-fn plot(scene: &Scene, record: &Record) -> Plot {
+fn plot(scene: &LawsScene, record: &Record) -> Plot {
     let column = |name: &str| record.column(name).unwrap_or(&[]);
     let over_time = |name: &str, kind, label: &str| Series {
         label: label.to_owned(),

@@ -1,7 +1,7 @@
 //! The sheet in its plane: the lattice of springs as an elastic sheet, and a pair that rings down
 //! (Götz 2024, eqs. 12–16).
 
-use super::{Law, Line, judge, scene::Scene, worst};
+use super::{Law, Line, judge, scene::LawsScene, worst};
 use crate::{
     base::{Mat3, Real, Vec3},
     experiments::{
@@ -32,24 +32,24 @@ impl Law for Stretching {
         "stretching"
     }
 
-    fn n_points(&self, _: &Scene) -> usize {
+    fn n_points(&self, _: &LawsScene) -> usize {
         RINGS.len() + 1
     }
 
-    fn measure(&self, scene: &Scene, point: usize, record: &mut Record) {
+    fn measure(&self, scene: &LawsScene, point: usize, record: &mut Record) {
         match RINGS.get(point) {
             Some(&rings) => patch(scene, rings, record),
             None => ring_down(scene, record),
         }
     }
 
-    fn evaluate(&self, _: &Scene, record: &Record, findings: &mut Findings) {
+    fn evaluate(&self, _: &LawsScene, record: &Record, findings: &mut Findings) {
         judge(ROWS, record, findings);
     }
 }
 
 /// A flat hexagon of the scene's sheet without bending.
-fn patch(scene: &Scene, rings: usize, record: &mut Record) {
+fn patch(scene: &LawsScene, rings: usize, record: &mut Record) {
     let sheet = Sheet { bending_stiffness: 0.0, bending_damping: 0.0, ..scene.membrane.sheet };
     let mesh = Mesh::hexagonal_patch(scene.membrane.edge, rings).expect("there are rings");
     let model = MembraneModel::new(mesh, sheet);
@@ -88,7 +88,7 @@ fn stress(model: &MembraneModel, shape: &Mat3) -> Mat3 {
 }
 
 /// Two vertices of the sheet, let go apart: the loss of amplitude in a period.
-fn ring_down(scene: &Scene, record: &mut Record) {
+fn ring_down(scene: &LawsScene, record: &mut Record) {
     let Sheet { youngs_modulus, thickness, density, .. } = scene.membrane.sheet;
     let (edge, gamma) = (scene.membrane.edge, 0.15);
     let mass = density * thickness * edge * edge * 0.75_f64.sqrt();

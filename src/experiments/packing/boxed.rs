@@ -21,7 +21,7 @@ use super::{
     Case,
     build::{self, SLICE, Settling, Unrest},
     moduli::Probe,
-    scene::Scene,
+    scene::PackingScene,
 };
 use crate::experiments::saved_run;
 use crate::{
@@ -121,7 +121,7 @@ pub(super) struct Place {
 
 /// A case in the periodic box.
 pub(super) struct Boxed {
-    pub(super) scene: Scene,
+    pub(super) scene: PackingScene,
     case: Case,
     final_radii: Vec<Real>,
     volume: Real,
@@ -132,7 +132,7 @@ pub(super) struct Boxed {
 
 impl Boxed {
     /// Scattered grains.
-    pub(super) fn new(scene: &Scene, case: Case) -> Result<Self, StartError> {
+    pub(super) fn new(scene: &PackingScene, case: Case) -> Result<Self, StartError> {
         let is_mono = !matches!(case, Case::Poly);
         let is_smooth = friction(scene, case) == 0.0;
         let grains = &scene.grains;
@@ -405,7 +405,7 @@ impl Boxed {
 }
 
 /// Friction of `case`.
-fn friction(scene: &Scene, case: Case) -> Real {
+fn friction(scene: &PackingScene, case: Case) -> Real {
     match case {
         Case::Mono { friction } => friction,
         Case::Poly => 0.0,
@@ -416,7 +416,7 @@ fn friction(scene: &Scene, case: Case) -> Real {
 
 /// Where compression with friction rests next, when moduli have been measured `n_probed` times; `None`
 /// at the end [Pa].
-fn next_pressure(scene: &Scene, case: Case, n_probed: usize) -> Option<Real> {
+fn next_pressure(scene: &PackingScene, case: Case, n_probed: usize) -> Option<Real> {
     match case {
         Case::Moduli => scene.moduli.pressures.get(n_probed).copied(),
         _ => Some(scene.compression.pressure_last),
@@ -429,7 +429,7 @@ fn period(volume: Real, stretch: Real) -> Vec3 {
 }
 
 /// Growth with the friction of the case.
-fn recipe(scene: &Scene, model: &Model, volume: Real, friction: Real) -> Recipe {
+fn recipe(scene: &PackingScene, model: &Model, volume: Real, friction: Real) -> Recipe {
     let compression = &scene.compression;
     let stop = if friction == 0.0 { compression.pressure_high } else { compression.pressure_first };
     let radius = scene.grains.radius_mean();

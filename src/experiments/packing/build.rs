@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::scene::{Grains, Scene};
+use super::scene::{Grains, PackingScene};
 use crate::{
     base::{
         Real, Vec3,
@@ -35,7 +35,7 @@ pub(super) fn grain_law(grains: &Grains, friction: Real) -> PairLaw {
 }
 
 /// Final radii [m]: uniform between the limits, or all the mean.
-pub(super) fn final_radii(scene: &Scene, count: usize, is_mono: bool) -> Vec<Real> {
+pub(super) fn final_radii(scene: &PackingScene, count: usize, is_mono: bool) -> Vec<Real> {
     let grains = &scene.grains;
     let mut random = Random::new(scene.seed, Stream::Radius);
     let mut draw = || random.between(grains.radius_min, grains.radius_max);
@@ -44,7 +44,7 @@ pub(super) fn final_radii(scene: &Scene, count: usize, is_mono: bool) -> Vec<Rea
 
 /// Grains at rest at `positions`, `scale` times their final size, with their final masses.
 pub(super) fn grains(
-    scene: &Scene,
+    scene: &PackingScene,
     positions: Vec<Vec3>,
     final_radii: &[Real],
     scale: Real,

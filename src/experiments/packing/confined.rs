@@ -13,7 +13,7 @@ use super::{
         record::{Column, Record},
     },
     build::{self, SLICE, Settling},
-    scene::{Confined as Keys, Scene},
+    scene::{Confined as Keys, PackingScene},
 };
 use crate::experiments::saved_run;
 use crate::{
@@ -62,7 +62,7 @@ struct Place {
 
 /// The case in the membrane.
 pub(super) struct Confined {
-    scene: Scene,
+    scene: PackingScene,
     final_radii: Vec<Real>,
     recipe: Recipe,
     growth: Growth,
@@ -72,7 +72,7 @@ pub(super) struct Confined {
 
 impl Confined {
     /// Scattered grains in the held membrane.
-    pub(super) fn new(scene: &Scene) -> Result<Self, StartError> {
+    pub(super) fn new(scene: &PackingScene) -> Result<Self, StartError> {
         let keys = &scene.confined;
         let final_radii = build::final_radii(scene, keys.count, false);
         let solid: Real = final_radii.iter().map(|&r| sphere_volume(r)).sum();
@@ -169,7 +169,7 @@ impl Confined {
 }
 
 /// Grains and a spherical membrane of `radius` [m] that is held all over.
-fn model(scene: &Scene, radius: Real) -> Result<Model, StartError> {
+fn model(scene: &PackingScene, radius: Real) -> Result<Model, StartError> {
     let (grains, keys) = (&scene.grains, &scene.confined);
     let mesh = Mesh::icosphere(radius, keys.frequency)?;
     let law = build::grain_law(grains, keys.friction);

@@ -11,7 +11,7 @@ use super::{
         record::Record,
     },
     Case, fit, moduli, plots,
-    scene::Scene,
+    scene::PackingScene,
 };
 use crate::base::Real;
 
@@ -56,7 +56,7 @@ pub(super) fn jammed(record: &Record) -> Option<Jammed> {
 }
 
 /// All that the records show.
-pub(super) fn findings(scene: &Scene, records: &[Record]) -> Findings {
+pub(super) fn findings(scene: &PackingScene, records: &[Record]) -> Findings {
     let mut findings = Findings::default();
     let of = |case: Case| records.iter().find(|it| it.case == case.name());
     curves(records, &mut findings);
@@ -303,7 +303,7 @@ fn friction_rows(jammed: &[Jammed], findings: &mut Findings) {
 }
 
 /// C6: growth as the source prepares its samples.
-fn growth_rows(scene: &Scene, record: &Record, findings: &mut Findings) {
+fn growth_rows(scene: &PackingScene, record: &Record, findings: &mut Findings) {
     let Some(at) = jammed(record) else { return missing(&record.case, "C6", findings) };
     let grains = &scene.grains;
     let uniform =
@@ -354,7 +354,7 @@ fn growth_rows(scene: &Scene, record: &Record, findings: &mut Findings) {
 }
 
 /// U22: stress inside equals pressure outside.
-fn stress_rows(scene: &Scene, record: &Record, findings: &mut Findings) {
+fn stress_rows(scene: &PackingScene, record: &Record, findings: &mut Findings) {
     let pressure = scene.confined.pressure;
     let mean = record.scalar("mean_stress").unwrap_or(Real::NAN);
     for name in ["stress_x", "stress_y", "stress_z"] {

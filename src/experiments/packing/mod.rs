@@ -20,9 +20,9 @@ use super::{Experiment, Plan, Run, SceneText, StartError, findings::Findings, re
 use crate::{
     base::Real,
     physics::measure::real,
-    scene::{SceneError, text::fill},
+    scene::{SceneError, text::read},
 };
-use scene::Scene;
+use scene::PackingScene;
 
 const SCENE_FILE: &str = "launch_configs/experiments/packing.yaml";
 const SCENE_TEXT: &str = include_str!("../../../launch_configs/experiments/packing.yaml");
@@ -44,7 +44,7 @@ impl Experiment for Packing {
     }
 
     fn read(&self, scene: &SceneText<'_>) -> Result<Box<dyn Plan>, SceneError> {
-        Ok(Box::new(Packings { scene: fill(&scene.layers(false), scene::blank())? }))
+        Ok(Box::new(Packings { scene: read(&scene.layers(false))? }))
     }
 }
 
@@ -77,7 +77,7 @@ impl Case {
 }
 
 struct Packings {
-    scene: Scene,
+    scene: PackingScene,
 }
 
 impl Packings {

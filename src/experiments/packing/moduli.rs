@@ -26,7 +26,7 @@ use serde::{Deserialize, Serialize};
 use super::{
     boxed::{Boxed, Changes, Seen},
     evaluate::quantity,
-    scene::Scene,
+    scene::PackingScene,
 };
 use crate::{
     base::Real,
@@ -91,7 +91,7 @@ impl Boxed {
 }
 
 /// Rows of both moduli and of the exponent.
-pub(super) fn rows(scene: &Scene, record: &Record, findings: &mut Findings) {
+pub(super) fn rows(scene: &PackingScene, record: &Record, findings: &mut Findings) {
     let column = |name| record.table_column(TABLE, name).unwrap_or_default();
     let last = |name| column(name).last().copied().unwrap_or(Real::NAN);
     let first = |name| column(name).first().copied().unwrap_or(Real::NAN);

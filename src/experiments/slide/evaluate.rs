@@ -5,7 +5,7 @@ use super::{
     measure::{Seen, deviations},
     plots,
     run::Case,
-    scene::Scene,
+    scene::SlideScene,
 };
 use crate::{
     base::Real,
@@ -17,7 +17,7 @@ use crate::{
 };
 
 /// Everything that the records show.
-pub(super) fn findings(scene: &Scene, cases: &[Case], records: &[Record]) -> Findings {
+pub(super) fn findings(scene: &SlideScene, cases: &[Case], records: &[Record]) -> Findings {
     let mut findings = Findings::default();
     let mut seen = Vec::new();
     for case in cases {
@@ -54,7 +54,7 @@ fn worst(seen: &[Seen<'_>], names: &[&str], of: impl Fn(&Seen<'_>) -> Real) -> O
     values.map(|it| it.into_iter().fold(0.0, |a, b| if b > a || b.is_nan() { b } else { a }))
 }
 
-fn quantities(scene: &Scene, seen: &Seen<'_>, findings: &mut Findings) {
+fn quantities(scene: &SlideScene, seen: &Seen<'_>, findings: &mut Findings) {
     let weight = seen.case.weight(scene);
     let friction = seen.spread("friction_force");
     let height = seen.spread("height");
@@ -85,9 +85,9 @@ fn quantities(scene: &Scene, seen: &Seen<'_>, findings: &mut Findings) {
 }
 
 /// All vertices held, triangles: nothing may be seen of them.
-fn triangles(scene: &Scene, seen: &[Seen<'_>], rows: &mut Vec<Row>) {
+fn triangles(scene: &SlideScene, seen: &[Seen<'_>], rows: &mut Vec<Row>) {
     let names = ["triangles_rows", "triangles_across", "triangles_skew", "triangles_heavy"];
-    let friction = scene.membrane.surface.friction;
+    let friction = scene.membrane.friction;
     let mut add = |told: Report<'_>, expected: Expected, measured: Option<Real>| {
         rows.extend(measured.map(|it| Row::new(&told, expected, it)));
     };
@@ -159,7 +159,7 @@ fn triangles(scene: &Scene, seen: &[Seen<'_>], rows: &mut Vec<Row>) {
 }
 
 /// μ N over the slope with which the friction force rises, over the law's stick length.
-fn stick(scene: &Scene, seen: &Seen<'_>) -> Real {
+fn stick(scene: &SlideScene, seen: &Seen<'_>) -> Real {
     let weight = seen.case.weight(scene);
     let law = seen.case.law(scene);
     let (x, force) = (seen.all("distance"), seen.all("friction_force"));
@@ -171,10 +171,10 @@ fn stick(scene: &Scene, seen: &Seen<'_>) -> Real {
 }
 
 /// Spheres so hard that only geometry counts.
-fn hard_spheres(scene: &Scene, seen: &[Seen<'_>], rows: &mut Vec<Row>) {
+fn hard_spheres(scene: &SlideScene, seen: &[Seen<'_>], rows: &mut Vec<Row>) {
     let reach = scene.ball.radius + scene.membrane.sphere_radius;
     let edge = scene.membrane.edge;
-    let friction = scene.membrane.surface.friction;
+    let friction = scene.membrane.friction;
     let ways = [
         ("hard_spheres_rows", "C8.particle_bridge", 2.0, edge / 2.0, "bridge, l = s/2"),
         (
@@ -245,7 +245,7 @@ fn hard_spheres(scene: &Scene, seen: &[Seen<'_>], rows: &mut Vec<Row>) {
 }
 
 /// Spheres as they are, against the quasi-static sum over all of them.
-fn spheres(scene: &Scene, seen: &[Seen<'_>], rows: &mut Vec<Row>) {
+fn spheres(scene: &SlideScene, seen: &[Seen<'_>], rows: &mut Vec<Row>) {
     let names = ["spheres_rows", "spheres_across", "spheres_skew"];
     for (name, way) in names.into_iter().zip(["along rows", "across rows", "askew"]) {
         let Some(it) = named(seen, name) else { continue };
@@ -298,11 +298,11 @@ fn spheres(scene: &Scene, seen: &[Seen<'_>], rows: &mut Vec<Row>) {
 }
 
 /// Only the edge held: facets of a sheet that gives way.
-fn framed(scene: &Scene, seen: &[Seen<'_>], rows: &mut Vec<Row>) {
+fn framed(scene: &SlideScene, seen: &[Seen<'_>], rows: &mut Vec<Row>) {
     let Some(it) = named(seen, "triangles_framed") else { return };
     let forces = it.whole_periods("friction_force");
     let mean = forces.iter().sum::<Real>() / real(forces.len());
-    let friction = scene.membrane.surface.friction * it.case.weight(scene);
+    let friction = scene.membrane.friction * it.case.weight(scene);
     rows.push(Row::new(
         &Report {
             id: "C8.framed_friction",

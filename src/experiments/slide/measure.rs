@@ -1,6 +1,6 @@
 //! A record as the rows need it: without its first period, in means, ranges and whole periods.
 
-use super::{expected::Rest, run::Case, scene::Scene};
+use super::{expected::Rest, run::Case, scene::SlideScene};
 use crate::{base::Real, experiments::record::Record, physics::measure::real};
 
 /// Places over one period at which the expected curve is known.
@@ -68,7 +68,7 @@ impl<'a> Seen<'a> {
     }
 
     /// What geometry and Hertz say over one period of spheres.
-    pub(super) fn expected(&self, scene: &Scene) -> Vec<Rest> {
+    pub(super) fn expected(&self, scene: &SlideScene) -> Vec<Rest> {
         let Ok(patch) = self.case.patch(scene) else { return Vec::new() };
         let bed = self.case.bed(scene, &patch.mesh.positions);
         bed.curve(self.case.period().norm(), N_PLACES)

@@ -17,7 +17,7 @@ use super::{Experiment, Plan, Run, SceneText, StartError, findings::Findings, re
 use crate::scene::{SceneError, text};
 use build::Way;
 use run::{Case, Ride};
-use scene::Scene;
+use scene::SlideScene;
 
 /// The scene that comes with the program.
 const SCENE_FILE: &str = "launch_configs/experiments/slide.yaml";
@@ -41,13 +41,13 @@ impl Experiment for Slide {
     }
 
     fn read(&self, scene: &SceneText<'_>) -> Result<Box<dyn Plan>, SceneError> {
-        Ok(Box::new(Rides { scene: text::fill(&scene.layers(false), scene::blank())? }))
+        Ok(Box::new(Rides { scene: text::read(&scene.layers(false))? }))
     }
 }
 
 /// All rides of a scene.
 struct Rides {
-    scene: Scene,
+    scene: SlideScene,
 }
 
 impl Plan for Rides {
@@ -69,7 +69,7 @@ impl Plan for Rides {
 }
 
 /// Both membranes along and across the rows and askew; more load; stiff contacts; a free sheet.
-fn cases(scene: &Scene) -> Vec<Case> {
+fn cases(scene: &SlideScene) -> Vec<Case> {
     let plain = Case {
         name: "triangles_rows",
         has_spheres: false,

@@ -4,7 +4,7 @@ use super::{
     evaluate::named,
     expected,
     measure::{Seen, at_phase},
-    scene::Scene,
+    scene::SlideScene,
 };
 use crate::{
     base::Real,
@@ -15,7 +15,7 @@ use crate::{
 const SHOWN: Real = 8e-3;
 
 /// Draws all pictures whose records are there.
-pub(super) fn draw(scene: &Scene, seen: &[Seen<'_>], plots: &mut Vec<Plot>) {
+pub(super) fn draw(scene: &SlideScene, seen: &[Seen<'_>], plots: &mut Vec<Plot>) {
     let sets: [(&str, &[&str]); 4] = [
         ("all vertices held, along rows", &["triangles_rows", "spheres_rows"]),
         (
@@ -37,7 +37,7 @@ pub(super) fn draw(scene: &Scene, seen: &[Seen<'_>], plots: &mut Vec<Plot>) {
     }
 }
 
-fn friction(scene: &Scene, title: &str, shown: &[&Seen<'_>]) -> Plot {
+fn friction(scene: &SlideScene, title: &str, shown: &[&Seen<'_>]) -> Plot {
     let mut series = Vec::new();
     for it in shown {
         let weight = it.case.weight(scene);
@@ -46,7 +46,7 @@ fn friction(scene: &Scene, title: &str, shown: &[&Seen<'_>]) -> Plot {
             series.push(computed(it, scene, "computed", |rest| rest.friction / weight));
         }
     }
-    let friction = scene.membrane.surface.friction;
+    let friction = scene.membrane.friction;
     let points = vec![[0.0, friction], [1e3 * SHOWN, friction]];
     series.push(Series {
         label: "μ".to_owned(),
@@ -67,7 +67,7 @@ fn friction(scene: &Scene, title: &str, shown: &[&Seen<'_>]) -> Plot {
 }
 
 /// Heights above the place where the ball starts.
-fn height(scene: &Scene, title: &str, shown: &[&Seen<'_>]) -> Plot {
+fn height(scene: &SlideScene, title: &str, shown: &[&Seen<'_>]) -> Plot {
     let mut series = Vec::new();
     let reach = scene.ball.radius + scene.membrane.sphere_radius;
     for it in shown {
@@ -113,7 +113,7 @@ fn measured(seen: &Seen<'_>, column: &str, value: impl Fn(Real) -> Real) -> Seri
 /// The quasi-static curve at the places of the record.
 fn computed(
     seen: &Seen<'_>,
-    scene: &Scene,
+    scene: &SlideScene,
     what: &str,
     value: impl Fn(&expected::Rest) -> Real,
 ) -> Series {

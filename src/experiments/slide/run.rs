@@ -7,7 +7,7 @@
 use super::{
     build::{Patch, Way},
     expected::{self, Bed},
-    scene::{Pull, Scene},
+    scene::{Pull, SlideScene},
 };
 use crate::{
     base::{Pose, Real, Vec3, real::Twist},
@@ -68,21 +68,21 @@ const COLUMNS: [(&str, &str); 6] = [
 
 impl Case {
     /// Law between ball and membrane.
-    pub(super) fn law(&self, scene: &Scene) -> PairLaw {
+    pub(super) fn law(&self, scene: &SlideScene) -> PairLaw {
         let membrane = &scene.membrane;
-        let mut law = PairLaw::between(&scene.ball.material, &membrane.material, membrane.surface);
+        let mut law = PairLaw::between(&scene.ball.material, &membrane.material, membrane.surface());
         law.modulus *= self.stiffening;
         law.shear_modulus *= self.stiffening;
         law
     }
 
     /// Load and weight [N].
-    pub(super) fn weight(&self, scene: &Scene) -> Real {
+    pub(super) fn weight(&self, scene: &SlideScene) -> Real {
         self.load + mass(scene) * GRAVITY
     }
 
     /// The spheres under one period of the way, as those that meet the ball see it.
-    pub(super) fn bed<'a>(&self, scene: &Scene, centres: &'a [Vec3]) -> Bed<'a> {
+    pub(super) fn bed<'a>(&self, scene: &SlideScene, centres: &'a [Vec3]) -> Bed<'a> {
         let (ball, sphere) = (scene.ball.radius, scene.membrane.sphere_radius);
         Bed {
             law: self.law(scene),
@@ -100,7 +100,7 @@ impl Case {
     }
 
     /// The vertices that the ball meets.
-    pub(super) fn patch(&self, scene: &Scene) -> Result<Patch, StartError> {
+    pub(super) fn patch(&self, scene: &SlideScene) -> Result<Patch, StartError> {
         let edge = self.edge;
         let margin = Vec3::repeat(scene.ball.radius + scene.membrane.sphere_radius + edge);
         let (low, high) = if self.is_framed {
@@ -115,7 +115,7 @@ impl Case {
 }
 
 /// Mass of the ball [kg].
-fn mass(scene: &Scene) -> Real {
+fn mass(scene: &SlideScene) -> Real {
     4.0 / 3.0 * std::f64::consts::PI * scene.ball.radius.powi(3) * scene.ball.material.density
 }
 
@@ -139,7 +139,7 @@ pub(super) struct Ride {
 
 impl Ride {
     /// The ball at its start.
-    pub(super) fn new(scene: &Scene, case: Case) -> Result<Self, StartError> {
+    pub(super) fn new(scene: &SlideScene, case: Case) -> Result<Self, StartError> {
         let patch = case.patch(scene)?;
         let behind = if case.is_framed { Vec::new() } else { patch.behind(case.way) };
         let period = case.period();
@@ -275,7 +275,7 @@ impl Run for Ride {
 }
 
 /// Above a vertex: at rest under its load where all vertices are held, else just in touch.
-fn start(scene: &Scene, case: &Case, patch: &Patch) -> Vec3 {
+fn start(scene: &SlideScene, case: &Case, patch: &Patch) -> Vec3 {
     let law = case.law(scene);
     let radius = scene.ball.radius;
     if case.is_framed {
@@ -291,11 +291,11 @@ fn start(scene: &Scene, case: &Case, patch: &Patch) -> Vec3 {
     Vec3::z() * height
 }
 
-fn model(scene: &Scene, case: &Case, patch: Patch) -> Model {
+fn model(scene: &SlideScene, case: &Case, patch: Patch) -> Model {
     let radius = scene.ball.radius;
     let law = case.law(scene);
     let held_positions = patch.mesh.positions.clone();
-    let mut membrane = MembraneModel::new(patch.mesh, scene.membrane.sheet);
+    let mut membrane = MembraneModel::new(patch.mesh, scene.membrane.sheet());
     let mut contact_radius = radius;
     if case.has_spheres {
         let sphere = scene.membrane.sphere_radius;
@@ -332,7 +332,7 @@ fn model(scene: &Scene, case: &Case, patch: Patch) -> Model {
     }
 }
 
-fn state(scene: &Scene, model: &Model, start: Vec3) -> State {
+fn state(scene: &SlideScene, model: &Model, start: Vec3) -> State {
     State {
         grains: Grains::at_rest(vec![start], vec![scene.ball.radius], vec![mass(scene)]),
         membrane: MembraneState::at_rest(&model.membrane.mesh),

@@ -56,7 +56,7 @@ fn setting_back_by_a_period_changes_nothing() {
     let overrides = ["length=14 mm".to_owned()];
     let (source, text) = Slide.scene();
     let text = SceneText { text, source, overrides: &overrides, size: Size::Quick };
-    let scene = text::fill(&text.layers(false), scene::blank()).unwrap();
+    let scene = text::read(&text.layers(false)).unwrap();
     for (name, far) in [("spheres_rows", Way(11, 0)), ("triangles_skew", Way(8, 4))] {
         let case = cases(&scene).into_iter().find(|case| case.name == name).unwrap();
         let short = finish(Box::new(Ride::new(&scene, case).unwrap()));

@@ -5,7 +5,7 @@
 //! to the plates and the rest is free. Grains touch the plates and the membrane. They are softer while
 //! they grow; stiffness and dissipation climb to their true values by equal factors.
 
-use super::scene::{Setup, Size};
+use super::scene::{Size, TriaxialScene};
 use crate::{
     base::{
         Pose, Real, Vec3,
@@ -78,7 +78,7 @@ pub(super) struct Choice {
 /// How the specimen is made, whatever its state.
 #[derive(Clone)]
 pub(super) struct Recipe {
-    pub(super) setup: Setup,
+    pub(super) setup: TriaxialScene,
     pub(super) choice: Choice,
     pub(super) final_radii: Vec<Real>,
     /// Common factor of the radii when they are scattered.
@@ -96,7 +96,7 @@ impl Recipe {
     ///
     /// # Errors
     /// If the membrane cannot be meshed.
-    pub(super) fn new(setup: &Setup, choice: Choice) -> Result<(Self, System), MeshFault> {
+    pub(super) fn new(setup: &TriaxialScene, choice: Choice) -> Result<(Self, System), MeshFault> {
         let Size { radius, height, .. } = setup.cases[choice.size];
         let model = model(setup, choice)?;
         let mut random = Random::new(setup.seeds[choice.initial], Stream::Radius);
@@ -165,7 +165,7 @@ impl Recipe {
     /// A packing rings where ω dt nears 2, and ω² ~ √(ξ/R): at 0.4 of the Rayleigh time for overlaps
     /// of a tenth of a diameter, far later for those of stiff grains.
     pub(super) fn step(&self, membrane: &MembraneModel, positions: &[Vec3]) -> Real {
-        let Setup { grains, time, .. } = &self.setup;
+        let TriaxialScene { grains, time, .. } = &self.setup;
         let packing = time.rayleigh_share * rayleigh_time(grains.radius_min, &grains.material);
         let sheet = critical_step_at(membrane, positions, self.contact_stiffness);
         time.safety * packing.min(sheet)
@@ -178,7 +178,7 @@ impl Recipe {
 }
 
 /// Mesh and numbers of grains of a specimen.
-fn net(setup: &Setup, choice: Choice) -> super::scene::Net {
+fn net(setup: &TriaxialScene, choice: Choice) -> super::scene::MeshSize {
     let size = &setup.cases[choice.size];
     match choice.kind {
         Kind::Triangles => size.triangles,
@@ -187,7 +187,7 @@ fn net(setup: &Setup, choice: Choice) -> super::scene::Net {
 }
 
 /// The model as it is sheared.
-fn model(setup: &Setup, choice: Choice) -> Result<Model, MeshFault> {
+fn model(setup: &TriaxialScene, choice: Choice) -> Result<Model, MeshFault> {
     let size = &setup.cases[choice.size];
     let net = net(setup, choice);
     let mesh = Mesh::tube(size.radius, size.height, net.n_around, net.n_rows)?;
@@ -239,8 +239,8 @@ fn fix_rings(model: &mut Model) {
 }
 
 /// Laws of grains with plates, grains and membrane; `softness` 1 as while they grow, 0 as they are.
-fn laws(setup: &Setup, softness: Real) -> [PairLaw; 3] {
-    let Setup { grains, growth, membrane, .. } = setup;
+fn laws(setup: &TriaxialScene, softness: Real) -> [PairLaw; 3] {
+    let TriaxialScene { grains, growth, membrane, .. } = setup;
     let between = |hard: Real, soft: Real| hard * (soft / hard).powf(softness);
     let material = Material {
         youngs_modulus: between(grains.material.youngs_modulus, growth.youngs_modulus),
@@ -257,21 +257,21 @@ fn laws(setup: &Setup, softness: Real) -> [PairLaw; 3] {
         tangential_damping: membrane.tangential_damping,
     };
     [
-        PairLaw::against_rigid(&material, surface(setup.plate_friction)),
+        PairLaw::against_rigid(&material, surface(setup.plates.friction)),
         PairLaw::between(&material, &material, surface(grains.friction)),
         PairLaw::between(&material, &membrane.material, on_sheet),
     ]
 }
 
-fn set_laws(setup: &Setup, model: &mut Model, softness: Real) {
+fn set_laws(setup: &TriaxialScene, model: &mut Model, softness: Real) {
     let [plates, grains, sheet] = laws(setup, softness);
     model.walls.iter_mut().for_each(|wall| wall.law = plates);
     (model.grain_law, model.membrane_law) = (grains, sheet);
 }
 
 /// Substep while grains grow in the held membrane [s].
-fn growth_step(setup: &Setup) -> Real {
-    let Setup { grains, growth, time, .. } = setup;
+fn growth_step(setup: &TriaxialScene) -> Real {
+    let TriaxialScene { grains, growth, time, .. } = setup;
     let soft = Material { youngs_modulus: growth.youngs_modulus, ..grains.material };
     time.safety * RAYLEIGH_SHARE * rayleigh_time(grains.radius_min, &soft)
 }

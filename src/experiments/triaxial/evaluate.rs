@@ -5,7 +5,7 @@ use super::{
     build::{Choice, Kind},
     name,
     plots::{curve, plots},
-    scene::Setup,
+    scene::TriaxialScene,
     timing_name,
 };
 use crate::{
@@ -33,7 +33,7 @@ const TABLE_3: [[[f64; 2]; 2]; 2] =
 const VERTICES: [[f64; 2]; 2] = [[1131.0, 10_440.0], [2214.0, 20_374.0]];
 
 /// All rows, curves and plots.
-pub(super) fn findings(setup: &Setup, records: &[Record]) -> Findings {
+pub(super) fn findings(setup: &TriaxialScene, records: &[Record]) -> Findings {
     let mut findings = Findings {
         curves: records.iter().filter(|it| !it.columns.is_empty()).map(curve).collect(),
         plots: plots(setup, records),
@@ -67,7 +67,7 @@ pub(super) fn findings(setup: &Setup, records: &[Record]) -> Findings {
     findings
 }
 
-fn notes(setup: &Setup) -> Vec<String> {
+fn notes(setup: &TriaxialScene) -> Vec<String> {
     let mut notes = vec![
         "Plates bear what grains put on them; the pull of the membrane's end rings is left out. The \
          rings stay at the first radius while the grains sink about a millimetre into the soft \
@@ -96,13 +96,13 @@ fn find<'a>(records: &'a [Record], case: &str) -> Option<&'a Record> {
 
 /// The specimens of one size.
 struct Group<'a> {
-    setup: &'a Setup,
+    setup: &'a TriaxialScene,
     size: usize,
     specimens: Vec<(Choice, &'a Record)>,
 }
 
 impl<'a> Group<'a> {
-    fn new(setup: &'a Setup, records: &'a [Record], size: usize) -> Self {
+    fn new(setup: &'a TriaxialScene, records: &'a [Record], size: usize) -> Self {
         let mut specimens = Vec::new();
         for kind in KINDS {
             for initial in 0..2 {
@@ -376,7 +376,7 @@ fn run_times(record: &Record, size: usize, findings: &mut Findings) {
 }
 
 /// What speed-ups change.
-fn check(setup: &Setup, records: &[Record], findings: &mut Findings) {
+fn check(setup: &TriaxialScene, records: &[Record], findings: &mut Findings) {
     let base = name(Choice { size: 0, kind: Kind::Triangles, initial: 0 });
     let (Some(fast), Some(slow)) = (find(records, &base), find(records, &(base + CHECK))) else {
         return;
@@ -403,7 +403,7 @@ fn check(setup: &Setup, records: &[Record], findings: &mut Findings) {
 }
 
 /// Spheres in a room as full as that of the triangles.
-fn loose(setup: &Setup, records: &[Record], findings: &mut Findings) {
+fn loose(setup: &TriaxialScene, records: &[Record], findings: &mut Findings) {
     let of = |name: &str| find(records, name)?.column("stress_difference");
     let choice = |kind, initial| Choice { size: 0, kind, initial };
     let (Some(loose), Some(a), Some(b)) = (

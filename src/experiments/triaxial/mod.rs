@@ -13,9 +13,9 @@ mod time_series; // the recorded series
 mod timing; // both models side by side
 
 use super::{Experiment, Plan, Run, SceneText, StartError, findings::Findings, record::Record};
-use crate::scene::{SceneError, text::fill};
+use crate::scene::{SceneError, text::read};
 use build::{Choice, Kind};
-use scene::Setup;
+use scene::TriaxialScene;
 
 /// The experiment.
 pub struct Triaxial;
@@ -37,13 +37,13 @@ impl Experiment for Triaxial {
     }
 
     fn read(&self, scene: &SceneText<'_>) -> Result<Box<dyn Plan>, SceneError> {
-        Ok(Box::new(Triaxials { setup: fill(&scene.layers(false), scene::blank())? }))
+        Ok(Box::new(Triaxials { setup: read(&scene.layers(false))? }))
     }
 }
 
 /// The cases of a scene.
 struct Triaxials {
-    setup: Setup,
+    setup: TriaxialScene,
 }
 
 /// A case.

@@ -1,6 +1,6 @@
 //! Curves and pictures of the triaxial tests.
 
-use super::{CHECK, scene::Setup};
+use super::{CHECK, scene::TriaxialScene};
 use crate::experiments::{
     findings::{Curve, Kind, Plot, Series},
     record::Record,
@@ -12,7 +12,7 @@ pub(super) fn curve(record: &Record) -> Curve {
 }
 
 /// Figure 6 and what belongs to it, for each size.
-pub(super) fn plots(setup: &Setup, records: &[Record]) -> Vec<Plot> {
+pub(super) fn plots(setup: &TriaxialScene, records: &[Record]) -> Vec<Plot> {
     let mut plots = Vec::new();
     for size in 1..=2 {
         let prefix = format!("case{size}_");
@@ -73,7 +73,7 @@ fn plot(records: &[&Record], (column, label, scale): (&str, &str, f64), title: &
 }
 
 /// The stress differences of some friction angles.
-fn mohr_coulomb(setup: &Setup) -> Vec<Series> {
+fn mohr_coulomb(setup: &TriaxialScene) -> Vec<Series> {
     let of = |degrees: f64| {
         let sine = degrees.to_radians().sin();
         let stress = setup.confining.pressure * 1e-3 * ((1.0 + sine) / (1.0 - sine) - 1.0);

@@ -4,7 +4,7 @@ use super::{
     Variant,
     build::{Choice, Kind, Recipe},
     protocol::{Course, Stage, Test, keep_between_plates},
-    scene::Setup,
+    scene::TriaxialScene,
 };
 use crate::{
     base::Real,
@@ -24,7 +24,7 @@ pub(super) struct Sheared {
 impl Sheared {
     /// The chosen specimen, as it is or changed.
     pub(super) fn new(
-        setup: &Setup,
+        setup: &TriaxialScene,
         name: &str,
         choice: Choice,
         variant: Variant,
@@ -126,7 +126,7 @@ mod tests {
     };
     use crate::{
         experiments::{Experiment, SceneText, Size},
-        scene::text::fill,
+        scene::text::read,
     };
 
     /// A specimen of 60 grains.
@@ -141,7 +141,7 @@ mod tests {
         .map(str::to_owned);
         let (source, text) = Triaxial.scene();
         let scene = SceneText { text, source, overrides: &overrides, size: Size::Quick };
-        let setup = fill(&scene.layers(false), scene::blank()).unwrap();
+        let setup = read(&scene.layers(false)).unwrap();
         let choice = Choice { size: 0, kind: Kind::Triangles, initial: 0 };
         Sheared::new(&setup, "small", choice, Variant::Plain).unwrap()
     }

@@ -7,7 +7,7 @@ use super::{
     build::{Choice, Kind, Recipe},
     protocol::{Course, Stage, Test},
     run::{slice, take},
-    scene::Setup,
+    scene::TriaxialScene,
 };
 use crate::{
     base::{Real, digest::Digest},
@@ -48,7 +48,7 @@ const KINDS: [Kind; 2] = [Kind::Triangles, Kind::Spheres];
 impl Timed {
     /// Both models of the same size, in the initial state A, with the source's hinge damping and a
     /// substep that needs no other argument.
-    pub(super) fn new(setup: &Setup, name: &str, size: usize) -> Result<Self, MeshFault> {
+    pub(super) fn new(setup: &TriaxialScene, name: &str, size: usize) -> Result<Self, MeshFault> {
         let mut setup = setup.clone();
         setup.membrane.bending_damping_spheres = setup.membrane.bending_damping;
         setup.time.rayleigh_share = setup.runs.check_rayleigh_share;
