@@ -232,8 +232,8 @@ fn advance(run: &mut dyn Run, moment: Moment) -> Result<bool, Diverged> {
     let (mut stage, mut n_slices) = ("", 0);
     loop {
         let progress = run.advance()?;
-        n_slices = if progress.stage == stage { n_slices + 1 } else { 1 };
-        stage = progress.stage;
+        n_slices = if progress.phase == stage { n_slices + 1 } else { 1 };
+        stage = progress.phase;
         if moment.is_reached(run, stage, n_slices) {
             return Ok(true);
         }

@@ -1,8 +1,8 @@
-//! A grip ready to run: its model, and where object and pump are at any time.
+//! A prepared grip: its model, and the set-points of object and pump at any time.
 
 use super::{
     cases::{Case, Change, Grip},
-    phase::{Phase, Way, staircase},
+    phase::{Phase, Stroke, staircase},
     scene::GripperScene,
 };
 use crate::{
@@ -12,10 +12,10 @@ use crate::{
 };
 
 /// How far the object goes down beyond its starting point if the bag does not let go of it [m].
-const WAY_OUT_BEYOND: Real = 0.02;
+const BEYOND_START: Real = 0.02;
 
-/// A grip ready to run.
-pub(super) struct Ready {
+/// A prepared grip.
+pub(super) struct PreparedGrip {
     pub(super) scene: GripperScene,
     model: Model,
     pub(super) change: Change,
@@ -28,9 +28,9 @@ pub(super) struct Ready {
     pub(super) tick: Real,
 }
 
-impl Ready {
-    /// The first grip of the case of several pressures goes on until the object is free: it shows
-    /// the whole record.
+impl PreparedGrip {
+    /// Prepares a grip. The first grip of a case with several pressures goes on until the object is free:
+    /// it shows the complete record.
     pub(super) fn new(
         scene: &GripperScene,
         grip: &Grip,
@@ -43,7 +43,7 @@ impl Ready {
         Ok(Self { scene, model, change, is_inserted, is_cut, n_substeps, tick })
     }
 
-    /// The system of this grip, beginning with `state`.
+    /// The system of this grip, starting from `state`.
     pub(super) fn system(&self, mut state: State) -> System {
         let mesh = &self.model.membrane.mesh;
         let n_samples = mesh.n_vertices() + mesh.triangles.len();
@@ -55,32 +55,33 @@ impl Ready {
         System::new(self.model.clone(), controls, state)
     }
 
-    fn way_in(&self) -> Way {
+    fn insertion(&self) -> Stroke {
         let protocol = &self.scene.protocol;
         let speed = protocol.insert_speed * self.scene.accelerations.insert_speed_factor;
         let length = protocol.clearance + protocol.penetration;
-        Way { length, speed, ramp: protocol.ramp_time }
+        Stroke { length, speed, ramp: protocol.ramp_time }
     }
 
-    fn way_out(&self) -> Way {
+    fn withdrawal(&self) -> Stroke {
         let protocol = &self.scene.protocol;
         let speed = protocol.withdraw_speed * self.scene.accelerations.withdraw_speed_factor;
-        let length = protocol.penetration + WAY_OUT_BEYOND;
-        Way { length, speed, ramp: protocol.ramp_time }
+        let length = protocol.penetration + BEYOND_START;
+        Stroke { length, speed, ramp: protocol.ramp_time }
     }
 
     /// How long a phase takes at most [s].
     pub(super) fn duration(&self, phase: Phase) -> Real {
         let protocol = &self.scene.protocol;
         match phase {
-            Phase::Insert => self.way_in().duration(),
+            Phase::Insert => self.insertion().duration(),
             Phase::Relax => protocol.relax_time,
             Phase::Evacuate => protocol.step_time * real(protocol.n_pressure_steps),
             Phase::Hold => protocol.hold_time,
-            Phase::Withdraw => self.way_out().duration(),
+            Phase::Withdraw => self.withdrawal().duration(),
         }
     }
 
+    /// Expected number of substeps.
     pub(super) fn n_substeps_expected(&self) -> usize {
         let first = if self.is_inserted { Phase::Evacuate } else { Phase::Insert };
         let n_ticks = |phase| {
@@ -104,13 +105,13 @@ impl Ready {
         let (start, inside) = (-protocol.clearance, protocol.penetration);
         let (top, speed) = match phase {
             Phase::Insert => {
-                let (way, speed) = self.way_in().at(time);
-                (start + way, speed)
+                let (distance, speed) = self.insertion().at(time);
+                (start + distance, speed)
             }
             Phase::Relax | Phase::Evacuate | Phase::Hold => (inside, 0.0),
             Phase::Withdraw => {
-                let (way, speed) = self.way_out().at(time);
-                (inside - way, -speed)
+                let (distance, speed) = self.withdrawal().at(time);
+                (inside - distance, -speed)
             }
         };
         let z = low + top - self.scene.gripper.object.radius;

@@ -21,7 +21,6 @@ use crate::{
         },
         record::Record,
     },
-    scene::Material,
 };
 
 pub(super) struct ChungOoi;

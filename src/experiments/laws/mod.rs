@@ -20,7 +20,7 @@ mod tests;
 
 use super::{
     Experiment, Plan, Progress, ResumeError, Run, SceneText, StartError,
-    findings::{Expected, Findings, Report, Row},
+    findings::{Expected, Findings, RowText, Row},
     record::{Column, Record},
     saved_run,
 };
@@ -133,7 +133,7 @@ impl Run for Pages {
         }
         #[expect(clippy::cast_precision_loss, reason = "some hundred points")]
         let share = self.n_done as f64 / n_points.max(1) as f64;
-        Ok(Progress { stage: "points", share, is_done: self.n_done == n_points })
+        Ok(Progress { phase: "points", share, is_done: self.n_done == n_points })
     }
 
     fn save(&self) -> Vec<u8> {
@@ -144,7 +144,7 @@ impl Run for Pages {
         let ((n_done, record), []) = saved_run::unpack(&self.record.case, bytes)?;
         let n_points = self.law.n_points(&self.scene);
         if n_done > n_points {
-            return Err(saved_run::refusal(format!(
+            return Err(saved_run::error(format!(
                 "it has {n_done} points, the scene {n_points}"
             )));
         }
@@ -191,7 +191,7 @@ type Line = (&'static str, &'static str, &'static str, Expected, &'static str);
 /// Rows of numbers without unit from the scalars of a record.
 fn judge(lines: &[Line], record: &Record, findings: &mut Findings) {
     for (id, quantity, oracle, expected, reason) in lines {
-        let told = Report { id, quantity, unit: "1", oracle, reason };
+        let told = RowText { id, quantity, unit: "1", oracle, reason };
         let measured = record.scalar(id).unwrap_or(f64::NAN);
         findings.rows.push(Row::new(&told, *expected, measured));
     }

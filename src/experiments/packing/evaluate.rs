@@ -1,4 +1,4 @@
-//! What the records show: where each packing jams, with how many contacts, and how that compares.
+//! Evaluation of the packings: where each packing jams, and with how many contacts.
 //!
 //! ```text
 //! φ_J  from φ = φ_J + a p^(2/3) through the three lowest pressures          (Hertz)
@@ -7,55 +7,20 @@
 
 use super::{
     super::{
-        findings::{Curve, Expected, Findings, Quantity, Report, Row},
+        findings::{Curve, Expected, Findings, Quantity, RowText, Row},
         record::Record,
     },
-    Case, fit, moduli, plots,
+    cases::Case,
+    fit,
+    measure::{Jammed, SILBERT, jammed, states},
+    moduli, plots,
     scene::PackingScene,
 };
 use crate::base::Real;
 
-/// Pressures from which the state without pressure is extrapolated.
-const N_LOWEST: usize = 3;
-/// The source's upper end of growth: a hundredth of its vacuum [Pa].
+/// Pressure at which growth ends in the source: a hundredth of its vacuum (Pa).
 const SOURCE_STOP: Real = 900.0;
-/// φ_J and z over friction after Silbert (2010), read from memory of its figures.
-pub(super) const SILBERT: [[Real; 3]; 5] =
-    [[0.0, 0.639, 6.0], [0.1, 0.61, 5.2], [0.3, 0.58, 4.6], [1.0, 0.56, 4.0], [10.0, 0.55, 3.9]];
-
-/// Where a packing jams.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Jammed {
-    pub(super) friction: Real,
-    pub(super) phi: Real,
-    pub(super) z: Real,
-}
-
-/// States of a record as (φ, p, z without rattlers), by falling pressure.
-pub(super) fn states(record: &Record) -> Vec<[Real; 3]> {
-    let column = |name| record.column(name).unwrap_or_default();
-    let (phi, pressure) = (column("solid_fraction"), column("pressure"));
-    let z = column("coordination_backbone");
-    let rows = phi.iter().zip(pressure).zip(z);
-    let mut states: Vec<[Real; 3]> = rows.map(|((&phi, &p), &z)| [phi, p, z]).collect();
-    states.sort_by(|a, b| b[1].total_cmp(&a[1]));
-    states
-}
-
-/// The state without pressure.
-pub(super) fn jammed(record: &Record) -> Option<Jammed> {
-    let states = states(record);
-    let lowest = states.get(states.len().checked_sub(N_LOWEST)?..)?;
-    let two_thirds: Vec<[Real; 2]> =
-        lowest.iter().map(|[phi, p, _]| [p.powf(2.0 / 3.0), *phi]).collect();
-    let phi = fit::line(&two_thirds)?.intercept;
-    let roots: Vec<[Real; 2]> =
-        lowest.iter().map(|[at, _, z]| [(at - phi).max(0.0).sqrt(), *z]).collect();
-    let z = fit::line(&roots)?.intercept;
-    Some(Jammed { friction: record.scalar("friction")?, phi, z })
-}
-
-/// All that the records show.
+/// All findings.
 pub(super) fn findings(scene: &PackingScene, records: &[Record]) -> Findings {
     let mut findings = Findings::default();
     let of = |case: Case| records.iter().find(|it| it.case == case.name());
@@ -89,7 +54,7 @@ pub(super) fn findings(scene: &PackingScene, records: &[Record]) -> Findings {
         None => missing("confined", "U22", &mut findings),
     }
     rest_rows(records, &mut findings);
-    findings.plots = plots::all(records, smooth, &over_friction);
+    findings.plots = plots::plots(records, smooth, &over_friction);
     findings.notes.push(
         "Packings jam by quasi-static isotropic compression of a dilute state with the friction of the \
          case switched on all the time; φ_J with friction depends on that protocol."
@@ -102,7 +67,7 @@ fn missing(case: &str, rows: &str, findings: &mut Findings) {
     findings.notes.push(format!("{rows}: no record of {case}"));
 }
 
-/// Every record as tables.
+/// The tables of all records.
 fn curves(records: &[Record], findings: &mut Findings) {
     for record in records {
         let name = record.case.clone();
@@ -114,22 +79,11 @@ fn curves(records: &[Record], findings: &mut Findings) {
     }
 }
 
-pub(super) fn quantity(name: &str, meaning: &str, value: Real, unit: &str) -> Quantity {
-    Quantity {
-        name: name.to_owned(),
-        meaning: meaning.to_owned(),
-        value,
-        deviation: None,
-        n: 1,
-        unit: unit.to_owned(),
-    }
-}
-
-/// U24 and U25: the frictionless packing of equal grains.
+/// U24 and U25: the packing of equal grains without friction.
 fn close_packing(record: &Record, findings: &mut Findings) {
     let Some(at) = jammed(record) else { return missing(&record.case, "U24, U25", findings) };
     findings.rows.push(Row::new(
-        &Report {
+        &RowText {
             id: "U24.phi_j",
             quantity: "solid fraction at which equal smooth spheres jam",
             unit: "1",
@@ -140,7 +94,7 @@ fn close_packing(record: &Record, findings: &mut Findings) {
         at.phi,
     ));
     findings.rows.push(Row::new(
-        &Report {
+        &RowText {
             id: "U25.isostatic",
             quantity: "contacts per grain without rattlers, extrapolated to no pressure, smooth",
             unit: "1",
@@ -154,7 +108,7 @@ fn close_packing(record: &Record, findings: &mut Findings) {
     let points: Vec<[Real; 2]> = states.iter().map(|s| [s[0], s[1]]).collect();
     if let Some((_, exponent)) = fit::onset(&points, 0.004) {
         findings.rows.push(Row::new(
-            &Report {
+            &RowText {
                 id: "U25.pressure_exponent",
                 quantity: "exponent of p over φ − φ_J, onset fitted as well",
                 unit: "1",
@@ -171,7 +125,7 @@ fn close_packing(record: &Record, findings: &mut Findings) {
         .collect();
     if let Some(exponent) = fit::exponent(&excess) {
         findings.rows.push(Row::new(
-            &Report {
+            &RowText {
                 id: "U25.contact_exponent",
                 quantity: "exponent of z − 6 over φ − φ_J",
                 unit: "1",
@@ -199,7 +153,7 @@ fn structure(record: &Record, findings: &mut Findings) {
     let (third, second) = (highest(1.66, 1.82), highest(1.9, 2.1));
     let mut row = |id, quantity, oracle, reason, expected, measured| {
         findings.rows.push(Row::new(
-            &Report { id, quantity, unit: "1", oracle, reason },
+            &RowText { id, quantity, unit: "1", oracle, reason },
             expected,
             measured,
         ));
@@ -238,13 +192,13 @@ fn structure(record: &Record, findings: &mut Findings) {
     );
 }
 
-/// U26: what friction does.
+/// U26: the effect of friction.
 fn friction_rows(jammed: &[Jammed], findings: &mut Findings) {
     for at in jammed {
         let name = format!("phi_j_friction_{}", at.friction);
-        findings.quantities.push(quantity(&name, "solid fraction without pressure", at.phi, "1"));
+        findings.quantities.push(Quantity::new(&name, "solid fraction without pressure", at.phi, "1"));
         let name = format!("z_friction_{}", at.friction);
-        findings.quantities.push(quantity(&name, "contacts per grain without pressure", at.z, "1"));
+        findings.quantities.push(Quantity::new(&name, "contacts per grain without pressure", at.z, "1"));
     }
     let largest_rise = |of: fn(&Jammed) -> Real| {
         let rises = jammed.windows(2).map(|pair| of(&pair[1]) - of(&pair[0]));
@@ -252,7 +206,7 @@ fn friction_rows(jammed: &[Jammed], findings: &mut Findings) {
     };
     let mut row = |id, quantity, oracle, reason, expected, measured| {
         findings.rows.push(Row::new(
-            &Report { id, quantity, unit: "1", oracle, reason },
+            &RowText { id, quantity, unit: "1", oracle, reason },
             expected,
             measured,
         ));
@@ -302,7 +256,7 @@ fn friction_rows(jammed: &[Jammed], findings: &mut Findings) {
     }
 }
 
-/// C6: growth as the source prepares its samples.
+/// C6: growth, as the source prepares its samples.
 fn growth_rows(scene: &PackingScene, record: &Record, findings: &mut Findings) {
     let Some(at) = jammed(record) else { return missing(&record.case, "C6", findings) };
     let grains = &scene.grains;
@@ -314,7 +268,7 @@ fn growth_rows(scene: &PackingScene, record: &Record, findings: &mut Findings) {
         .map_or(Real::NAN, |(_, overlap)| *overlap);
     let mut row = |id, quantity, oracle, reason, expected, measured| {
         findings.rows.push(Row::new(
-            &Report { id, quantity, unit: "1", oracle, reason },
+            &RowText { id, quantity, unit: "1", oracle, reason },
             expected,
             measured,
         ));
@@ -353,13 +307,13 @@ fn growth_rows(scene: &PackingScene, record: &Record, findings: &mut Findings) {
     );
 }
 
-/// U22: stress inside equals pressure outside.
+/// U22: the stress inside equals the pressure outside.
 fn stress_rows(scene: &PackingScene, record: &Record, findings: &mut Findings) {
     let pressure = scene.confined.pressure;
     let mean = record.scalar("mean_stress").unwrap_or(Real::NAN);
     for name in ["stress_x", "stress_y", "stress_z"] {
         let value = record.column(name).and_then(|it| it.last()).copied().unwrap_or(Real::NAN);
-        findings.quantities.push(quantity(
+        findings.quantities.push(Quantity::new(
             name,
             "normal stress of the confined sample",
             value,
@@ -367,7 +321,7 @@ fn stress_rows(scene: &PackingScene, record: &Record, findings: &mut Findings) {
         ));
     }
     findings.rows.push(Row::new(
-        &Report {
+        &RowText {
             id: "U22.stress",
             quantity: "mean stress of a sample in a membrane over the vacuum's pressure",
             unit: "1",
@@ -379,7 +333,7 @@ fn stress_rows(scene: &PackingScene, record: &Record, findings: &mut Findings) {
     ));
 }
 
-/// U23: at rest wherever something was recorded.
+/// U23: every recorded state is at rest.
 fn rest_rows(records: &[Record], findings: &mut Findings) {
     let worst = |name: &str| {
         let of_columns = records.iter().filter_map(|it| it.column(name)).flatten().copied();
@@ -391,7 +345,7 @@ fn rest_rows(records: &[Record], findings: &mut Findings) {
         ("U23.kinetic", "kinetic_over_elastic", "largest kinetic over elastic energy", 1e-6),
     ] {
         findings.rows.push(Row::new(
-            &Report {
+            &RowText {
                 id,
                 quantity,
                 unit: "1",

@@ -1,101 +1,97 @@
-//! What the records show: rows beside their oracles, and the quantities behind them.
+//! Evaluation of the records: rows, and the quantities behind them.
 
 use super::{
-    expected,
-    measure::{Seen, deviations},
+    cases::Case,
+    expected::{self, Bed},
+    measure::{CaseRecord, deviations, named},
     plots,
-    run::Case,
     scene::SlideScene,
 };
 use crate::{
     base::Real,
     experiments::{
-        findings::{Curve, Expected, Findings, Quantity, Report, Row},
+        findings::{Curve, Expected, Findings, Quantity, RowText, Row},
         record::Record,
     },
     physics::measure::real,
 };
 
-/// Everything that the records show.
+/// All findings.
 pub(super) fn findings(scene: &SlideScene, cases: &[Case], records: &[Record]) -> Findings {
     let mut findings = Findings::default();
-    let mut seen = Vec::new();
+    let mut measured = Vec::new();
     for case in cases {
         let record = records.iter().find(|record| record.case == case.name);
-        match record.and_then(|record| Seen::new(case, record)) {
-            Some(it) => seen.push(it),
+        match record.and_then(|record| CaseRecord::new(case, record)) {
+            Some(it) => measured.push(it),
             None => findings.notes.push(format!("{}: no record, no rows", case.name)),
         }
     }
-    for it in &seen {
+    for it in &measured {
         quantities(scene, it, &mut findings);
         let columns = it.record.columns.clone();
         findings.curves.push(Curve { name: it.case.name.to_owned(), columns });
-        for fault in it.record.validity.faults() {
-            findings.notes.push(format!("{}: {fault}", it.case.name));
+        for violation in it.record.validity.violations() {
+            findings.notes.push(format!("{}: {violation}", it.case.name));
         }
     }
-    triangles(scene, &seen, &mut findings.rows);
-    hard_spheres(scene, &seen, &mut findings.rows);
-    spheres(scene, &seen, &mut findings.rows);
-    framed(scene, &seen, &mut findings.rows);
-    plots::draw(scene, &seen, &mut findings.plots);
+    triangles(scene, &measured, &mut findings.rows);
+    hard_spheres(scene, &measured, &mut findings.rows);
+    spheres(scene, &measured, &mut findings.rows);
+    framed(scene, &measured, &mut findings.rows);
+    plots::add(scene, &measured, &mut findings.plots);
     findings
 }
 
-pub(super) fn named<'s, 'a>(seen: &'s [Seen<'a>], name: &str) -> Option<&'s Seen<'a>> {
-    seen.iter().find(|it| it.case.name == name)
-}
-
-/// The largest of what `of` gives for the named cases; `None` if one of them is missing.
-fn worst(seen: &[Seen<'_>], names: &[&str], of: impl Fn(&Seen<'_>) -> Real) -> Option<Real> {
-    let values: Option<Vec<Real>> = names.iter().map(|name| named(seen, name).map(&of)).collect();
+/// The largest value of `of` over the named cases; `None` if one of them is missing.
+fn worst(
+    records: &[CaseRecord<'_>],
+    names: &[&str],
+    of: impl Fn(&CaseRecord<'_>) -> Real,
+) -> Option<Real> {
+    let values: Option<Vec<Real>> =
+        names.iter().map(|name| named(records, name).map(&of)).collect();
     // NaN must not hide behind a number.
     values.map(|it| it.into_iter().fold(0.0, |a, b| if b > a || b.is_nan() { b } else { a }))
 }
 
-fn quantities(scene: &SlideScene, seen: &Seen<'_>, findings: &mut Findings) {
-    let weight = seen.case.weight(scene);
-    let friction = seen.spread("friction_force");
-    let height = seen.spread("height");
-    let mut add = |name: &str, meaning: &str, unit: &str, value: Real| {
-        findings.quantities.push(Quantity {
-            name: format!("{}_{name}", seen.case.name),
-            meaning: meaning.to_owned(),
-            value,
-            deviation: None,
-            n: 1,
-            unit: unit.to_owned(),
-        });
-    };
-    add("friction", "mean friction force over weight and load", "1", friction.mean / weight);
-    add(
-        "friction_least",
-        "least friction force over weight and load",
-        "1",
-        friction.least / weight,
-    );
-    add(
-        "friction_most",
-        "largest friction force over weight and load",
-        "1",
-        friction.most / weight,
-    );
-    add("height_ripple", "highest less lowest position of the ball", "m", height.range());
+fn quantities(scene: &SlideScene, it: &CaseRecord<'_>, findings: &mut Findings) {
+    let weight = it.case.weight(scene);
+    let friction = it.spread("friction_force");
+    let height = it.spread("height");
+    for (name, meaning, unit, value) in [
+        ("friction", "mean friction force over weight and load", "1", friction.mean / weight),
+        (
+            "friction_least",
+            "least friction force over weight and load",
+            "1",
+            friction.min / weight,
+        ),
+        (
+            "friction_most",
+            "largest friction force over weight and load",
+            "1",
+            friction.max / weight,
+        ),
+        ("height_ripple", "highest less lowest position of the ball", "m", height.range()),
+    ] {
+        let name = format!("{}_{name}", it.case.name);
+        findings.quantities.push(Quantity::new(&name, meaning, value, unit));
+    }
 }
 
-/// All vertices held, triangles: nothing may be seen of them.
-fn triangles(scene: &SlideScene, seen: &[Seen<'_>], rows: &mut Vec<Row>) {
+/// Triangles with all vertices held: the mesh must have no effect.
+fn triangles(scene: &SlideScene, records: &[CaseRecord<'_>], rows: &mut Vec<Row>) {
     let names = ["triangles_rows", "triangles_across", "triangles_skew", "triangles_heavy"];
     let friction = scene.membrane.friction;
-    let mut add = |told: Report<'_>, expected: Expected, measured: Option<Real>| {
-        rows.extend(measured.map(|it| Row::new(&told, expected, it)));
+    let mut add = |text: RowText<'_>, expected: Expected, measured: Option<Real>| {
+        rows.extend(measured.map(|it| Row::new(&text, expected, it)));
     };
-    let off = |it: &Seen<'_>| {
+    let off = |it: &CaseRecord<'_>| {
         (it.spread("friction_force").mean / (friction * it.case.weight(scene)) - 1.0).abs()
     };
     add(
-        Report {
+        RowText {
             id: "C8.triangle_friction",
             quantity: "friction force over triangles against μ N, worst of three ways and two loads",
             unit: "1",
@@ -103,14 +99,14 @@ fn triangles(scene: &SlideScene, seen: &[Seen<'_>], rows: &mut Vec<Row>) {
             reason: "0.1 %: what the normal force may still swing after the start",
         },
         Expected::within(0.0, 1e-3),
-        worst(seen, &names, off),
+        worst(records, &names, off),
     );
-    let ripple = |it: &Seen<'_>| {
+    let ripple = |it: &CaseRecord<'_>| {
         let friction = it.spread("friction_force");
         friction.range() / friction.mean
     };
     add(
-        Report {
+        RowText {
             id: "C8.triangle_ripple",
             quantity: "largest less smallest friction force over triangles, over the mean",
             unit: "1",
@@ -118,13 +114,13 @@ fn triangles(scene: &SlideScene, seen: &[Seen<'_>], rows: &mut Vec<Row>) {
             reason: "0.5 %: less than a line's width in the figure",
         },
         Expected::at_most(5e-3),
-        worst(seen, &names, ripple),
+        worst(records, &names, ripple),
     );
     let radius = scene.ball.radius;
-    let sunk =
-        |it: &Seen<'_>| expected::overlap(&it.case.law(scene), radius, it.case.weight(scene));
+    let sag =
+        |it: &CaseRecord<'_>| expected::overlap(&it.case.law(scene), radius, it.case.weight(scene));
     add(
-        Report {
+        RowText {
             id: "C8.triangle_height",
             quantity: "highest less lowest position over triangles, over the overlap",
             unit: "1",
@@ -132,10 +128,10 @@ fn triangles(scene: &SlideScene, seen: &[Seen<'_>], rows: &mut Vec<Row>) {
             reason: "0.1 % of the overlap, as for the force",
         },
         Expected::at_most(1e-3),
-        worst(seen, &names, |it| it.spread("height").range() / sunk(it)),
+        worst(records, &names, |it| it.spread("height").range() / sag(it)),
     );
     add(
-        Report {
+        RowText {
             id: "C8.triangle_sag",
             quantity: "how deep the ball sinks into triangles against Hertz",
             unit: "1",
@@ -143,10 +139,10 @@ fn triangles(scene: &SlideScene, seen: &[Seen<'_>], rows: &mut Vec<Row>) {
             reason: "0.1 %: one contact at rest, no swing",
         },
         Expected::within(0.0, 1e-3),
-        worst(seen, &names, |it| ((radius - it.spread("height").mean) / sunk(it) - 1.0).abs()),
+        worst(records, &names, |it| ((radius - it.spread("height").mean) / sag(it) - 1.0).abs()),
     );
     add(
-        Report {
+        RowText {
             id: "C8.triangle_stick",
             quantity: "distance over which the ball sticks before it slides, over the law's",
             unit: "1",
@@ -154,28 +150,28 @@ fn triangles(scene: &SlideScene, seen: &[Seen<'_>], rows: &mut Vec<Row>) {
             reason: "0.1 %: from the slope of the first straight piece, on which nothing else acts",
         },
         Expected::within(1.0, 1e-3),
-        named(seen, "triangles_rows").map(|it| stick(scene, it)),
+        named(records, "triangles_rows").map(|it| stick(scene, it)),
     );
 }
 
-/// μ N over the slope with which the friction force rises, over the law's stick length.
-fn stick(scene: &SlideScene, seen: &Seen<'_>) -> Real {
-    let weight = seen.case.weight(scene);
-    let law = seen.case.law(scene);
-    let (x, force) = (seen.all("distance"), seen.all("friction_force"));
-    let full = law.friction * weight;
-    let rising: Vec<usize> = (1..x.len()).take_while(|&k| force[k] < 0.9 * full).collect();
+/// μ N over the slope of the rising friction force, over the stick length of the law.
+fn stick(scene: &SlideScene, it: &CaseRecord<'_>) -> Real {
+    let weight = it.case.weight(scene);
+    let law = it.case.law(scene);
+    let (x, force) = (it.all("distance"), it.all("friction_force"));
+    let sliding = law.friction * weight;
+    let rising: Vec<usize> = (1..x.len()).take_while(|&k| force[k] < 0.9 * sliding).collect();
     let [Some(&first), Some(&last)] = [rising.first(), rising.last()] else { return Real::NAN };
     let slope = (force[last] - force[first]) / (x[last] - x[first]);
-    full / slope / expected::stick_length(&law, scene.ball.radius, weight)
+    sliding / slope / expected::stick_length(&law, scene.ball.radius, weight)
 }
 
-/// Spheres so hard that only geometry counts.
-fn hard_spheres(scene: &SlideScene, seen: &[Seen<'_>], rows: &mut Vec<Row>) {
+/// Spheres so hard that only geometry matters.
+fn hard_spheres(scene: &SlideScene, records: &[CaseRecord<'_>], rows: &mut Vec<Row>) {
     let reach = scene.ball.radius + scene.membrane.sphere_radius;
     let edge = scene.membrane.edge;
     let friction = scene.membrane.friction;
-    let ways = [
+    let paths = [
         ("hard_spheres_rows", "C8.particle_bridge", 2.0, edge / 2.0, "bridge, l = s/2"),
         (
             "hard_spheres_across",
@@ -185,18 +181,18 @@ fn hard_spheres(scene: &SlideScene, seen: &[Seen<'_>], rows: &mut Vec<Row>) {
             "hollow, l = s/√3",
         ),
     ];
-    for (name, id, n_spheres, distance, place) in ways {
-        let Some(it) = named(seen, name) else { continue };
-        let bed = it.case.bed(scene, &[]);
-        let sunk = |load: Real| expected::overlap(&bed.law, bed.shared_radius, load);
+    for (name, id, n_spheres, distance, place) in paths {
+        let Some(it) = named(records, name) else { continue };
+        let bed = Bed::new(scene, it.case, &[]);
+        let sag = |load: Real| expected::overlap(&bed.law, bed.effective_radius, load);
         // The share of the load that each of the spheres below carries along its normal.
         let upright = (1.0 - (distance / reach).powi(2)).sqrt();
-        let between = reach - sunk(bed.load / (n_spheres * upright));
-        let on_top = reach - sunk(bed.load);
-        let fallen = on_top - (between * between - distance * distance).sqrt();
+        let between = reach - sag(bed.load / (n_spheres * upright));
+        let on_top = reach - sag(bed.load);
+        let fall = on_top - (between * between - distance * distance).sqrt();
         let bare = 1e3 * expected::fall(reach, distance);
         rows.push(Row::new(
-            &Report {
+            &RowText {
                 id,
                 quantity: &format!("height ripple over hard spheres, down into a {place}"),
                 unit: "m",
@@ -206,11 +202,11 @@ fn hard_spheres(scene: &SlideScene, seen: &[Seen<'_>], rows: &mut Vec<Row>) {
                 ),
                 reason: "1 %: the ball is recorded every 20 µm and swings a little at the bottom",
             },
-            Expected::within(fallen, 0.01 * fallen),
+            Expected::within(fall, 0.01 * fall),
             it.spread("height").range(),
         ));
     }
-    let Some(it) = named(seen, "hard_spheres_rows") else { return };
+    let Some(it) = named(records, "hard_spheres_rows") else { return };
     for (id, share, place) in [
         ("C8.particle_descending", 0.25, "a quarter after the top of a sphere"),
         ("C8.particle_climbing", 0.75, "a quarter before the top of a sphere"),
@@ -218,7 +214,7 @@ fn hard_spheres(scene: &SlideScene, seen: &[Seen<'_>], rows: &mut Vec<Row>) {
         let behind = if share < 0.5 { share * edge } else { (share - 1.0) * edge };
         let oracle = expected::friction_on_one(friction, reach, behind);
         rows.push(Row::new(
-            &Report {
+            &RowText {
                 id,
                 quantity: &format!("friction force over weight and load on hard spheres, {place}"),
                 unit: "1",
@@ -232,7 +228,7 @@ fn hard_spheres(scene: &SlideScene, seen: &[Seen<'_>], rows: &mut Vec<Row>) {
     let extreme = |behind: Real| expected::friction_on_one(friction, reach, behind);
     let oracle = extreme(-edge / 2.0) - extreme(edge / 2.0);
     rows.push(Row::new(
-        &Report {
+        &RowText {
             id: "C8.particle_friction_range",
             quantity: "largest less smallest friction force over hard spheres, over weight and load",
             unit: "1",
@@ -244,15 +240,15 @@ fn hard_spheres(scene: &SlideScene, seen: &[Seen<'_>], rows: &mut Vec<Row>) {
     ));
 }
 
-/// Spheres as they are, against the quasi-static sum over all of them.
-fn spheres(scene: &SlideScene, seen: &[Seen<'_>], rows: &mut Vec<Row>) {
+/// Spheres of the scene, compared with the quasi-static sum over all of them.
+fn spheres(scene: &SlideScene, records: &[CaseRecord<'_>], rows: &mut Vec<Row>) {
     let names = ["spheres_rows", "spheres_across", "spheres_skew"];
     for (name, way) in names.into_iter().zip(["along rows", "across rows", "askew"]) {
-        let Some(it) = named(seen, name) else { continue };
+        let Some(it) = named(records, name) else { continue };
         let (height, friction) = deviations(it, &it.expected(scene));
         let short = name.trim_start_matches("spheres_");
         rows.push(Row::new(
-            &Report {
+            &RowText {
                 id: &format!("C8.particle_height_{short}"),
                 quantity: &format!("height over spheres {way} against the computed one, rms over range"),
                 unit: "1",
@@ -263,7 +259,7 @@ fn spheres(scene: &SlideScene, seen: &[Seen<'_>], rows: &mut Vec<Row>) {
             height,
         ));
         rows.push(Row::new(
-            &Report {
+            &RowText {
                 id: &format!("C8.particle_friction_{short}"),
                 quantity: &format!(
                     "friction over spheres {way} against the computed one, rms over range"
@@ -281,10 +277,10 @@ fn spheres(scene: &SlideScene, seen: &[Seen<'_>], rows: &mut Vec<Row>) {
         ("spheres_rows", "C8.particle_period_rows"),
         ("spheres_across", "C8.particle_period_across"),
     ] {
-        let Some(it) = named(seen, name) else { continue };
+        let Some(it) = named(records, name) else { continue };
         let period = it.case.period().norm();
         rows.push(Row::new(
-            &Report {
+            &RowText {
                 id,
                 quantity: "distance between two tops of the path over spheres",
                 unit: "m",
@@ -292,19 +288,19 @@ fn spheres(scene: &SlideScene, seen: &[Seen<'_>], rows: &mut Vec<Row>) {
                 reason: "0.1 %: interpolated between records, averaged over many periods",
             },
             Expected::within(period, 1e-3 * period),
-            it.ups(),
+            it.distance_of_maxima(),
         ));
     }
 }
 
-/// Only the edge held: facets of a sheet that gives way.
-fn framed(scene: &SlideScene, seen: &[Seen<'_>], rows: &mut Vec<Row>) {
-    let Some(it) = named(seen, "triangles_framed") else { return };
+/// Only the edge held: a membrane that gives way forms facets.
+fn framed(scene: &SlideScene, records: &[CaseRecord<'_>], rows: &mut Vec<Row>) {
+    let Some(it) = named(records, "triangles_framed") else { return };
     let forces = it.whole_periods("friction_force");
     let mean = forces.iter().sum::<Real>() / real(forces.len());
     let friction = scene.membrane.friction * it.case.weight(scene);
     rows.push(Row::new(
-        &Report {
+        &RowText {
             id: "C8.framed_friction",
             quantity: "mean friction force over triangles held at the edge only, over μ N",
             unit: "1",
@@ -315,19 +311,19 @@ fn framed(scene: &SlideScene, seen: &[Seen<'_>], rows: &mut Vec<Row>) {
         Expected::within(1.0, 0.02),
         mean / friction,
     ));
-    let told = "A sheet that gives way bends at its vertices into facets, of 1.33 mm under a ball of \
+    let cause = "A sheet that gives way bends at its vertices into facets, of 1.33 mm under a ball of \
                 2 mm; the ball climbs the front half of each and goes down the rear half, \
                 F_R = W tan(φ ± tilt). The source does not say how its membrane was held";
-    let reason = match named(seen, "small_triangles_framed") {
+    let reason = match named(records, "small_triangles_framed") {
         Some(small) => format!(
-            "{told}. Tried: triangles of half the size, {:.1} % in place of {:.1} %",
+            "{cause}. Tried: triangles of half the size, {:.1} % in place of {:.1} %",
             100.0 * small.ripple(),
             100.0 * it.ripple()
         ),
-        None => format!("{told}. The full size tries triangles of half the size"),
+        None => format!("{cause}. The full size tries triangles of half the size"),
     };
     rows.push(Row::new(
-        &Report {
+        &RowText {
             id: "C8.framed_ripple",
             quantity: "standard deviation of the friction force over triangles held at the edge only, \
                        over its mean",
@@ -338,9 +334,9 @@ fn framed(scene: &SlideScene, seen: &[Seen<'_>], rows: &mut Vec<Row>) {
         Expected::at_most(5e-3),
         it.ripple(),
     ));
-    let Some(spheres) = named(seen, "spheres_framed") else { return };
+    let Some(spheres) = named(records, "spheres_framed") else { return };
     rows.push(Row::new(
-        &Report {
+        &RowText {
             id: "C8.framed_smoother",
             quantity: "the same over that of spheres",
             unit: "1",
