@@ -27,7 +27,8 @@ impl Findings {
         match measured {
             Some(measured) => self.rows.push(Row::new(text, expected, measured)),
             None => {
-                self.notes.push(format!("{} is left out: its cases were not run or failed", text.id));
+                self.notes
+                    .push(format!("{} is left out: its cases were not run or failed", text.id));
             }
         }
     }

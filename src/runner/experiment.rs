@@ -12,7 +12,7 @@ use crate::{
     base::digest::Digest,
     experiments::{
         EXPERIMENTS, Experiment, Plan, SceneText, Size,
-        findings::{Expected, Findings, RowText, Row},
+        findings::{Expected, Findings, Row, RowText},
         record::{Record, Validity},
     },
     scene::SceneError,

@@ -57,8 +57,7 @@ impl<T: Unset, const N: usize> Unset for [T; N] {
 
 const NAN: Real = Real::NAN;
 const TIME: Time = Time { tick_ns: 0, substep: None, safety: NAN, density_scaling: NAN };
-const MATERIAL: Material =
-    Material { youngs_modulus: NAN, poisson_ratio: NAN, density: NAN };
+const MATERIAL: Material = Material { youngs_modulus: NAN, poisson_ratio: NAN, density: NAN };
 const GRAINS: Grains = Grains {
     count: 0,
     radius_min: NAN,

@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 use jamgrip::{
     experiments::{
         Experiment, Plan, Progress, ResumeError, Run, SceneText, StartError,
-        findings::{Curve, Expected, Findings, Kind, Plot, Quantity, Row, Series, RowText},
+        findings::{Curve, Expected, Findings, Kind, Plot, Quantity, Row, RowText, Series},
         record::{Column, Record, Validity},
     },
     host::shutdown::Shutdown,

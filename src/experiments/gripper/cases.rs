@@ -52,7 +52,9 @@ impl Change {
     pub(super) fn name(self) -> String {
         match self {
             Self::Nothing => "protocol".to_owned(),
-            Self::Pressure(pressure) => format!("pressure_{}", rounded(pressure.abs() / 1e3, "kPa")),
+            Self::Pressure(pressure) => {
+                format!("pressure_{}", rounded(pressure.abs() / 1e3, "kPa"))
+            }
             Self::Friction(friction) => format!("friction_{}", rounded(friction, "")),
             Self::Radius(radius) => format!("radius_{}", rounded(radius * 1e3, "mm")),
             Self::SpringDamping(ratio) => format!("spring_damping_{}", rounded(ratio, "")),

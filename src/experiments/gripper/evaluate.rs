@@ -110,7 +110,8 @@ fn over_modulus(results: &Results<'_>, findings: &mut Findings) {
     }
     let hard: Vec<Real> = moduli.iter().copied().filter(|&it| 1e9 <= it).collect();
     if let [.., a, b] = hard.as_slice() {
-        let pair = results.of_modulus(*a, "holding_force").zip(results.of_modulus(*b, "holding_force"));
+        let pair =
+            results.of_modulus(*a, "holding_force").zip(results.of_modulus(*b, "holding_force"));
         findings.check(
             &RowText {
                 id: "C9.hard_plateau",

@@ -158,9 +158,13 @@ impl GripperRun {
 
     /// One tick; returns true if it ends the phase.
     fn tick(&mut self) -> Result<bool, Diverged> {
-        let RunState::Grip { grip, phase, tick, tick_of_grip } = self.run_state else { return Ok(true) };
+        let RunState::Grip { grip, phase, tick, tick_of_grip } = self.run_state else {
+            return Ok(true);
+        };
         let low = self.settled.as_ref().map_or(0.0, lowest);
-        let (prepared, Some(system)) = (&self.grips[grip], &mut self.system) else { return Ok(true) };
+        let (prepared, Some(system)) = (&self.grips[grip], &mut self.system) else {
+            return Ok(true);
+        };
         let mut force = 0.0;
         for s in 0..prepared.n_substeps {
             let time = real(tick * prepared.n_substeps + s) * system.model.substep;
@@ -196,7 +200,8 @@ impl GripperRun {
         self.record.count(phase.name(), prepared.n_substeps as u64);
         self.run_state = RunState::Grip { grip, phase, tick, tick_of_grip };
         let is_free = phase == Phase::Withdraw
-            && (n_contacts == 0 || prepared.is_cut && is_past_peak(&self.record, grip, &prepared.scene));
+            && (n_contacts == 0
+                || prepared.is_cut && is_past_peak(&self.record, grip, &prepared.scene));
         let is_over = is_free || prepared.duration(phase) <= real(tick) * prepared.tick;
         if is_over {
             self.end_phase(grip, phase, tick_of_grip);

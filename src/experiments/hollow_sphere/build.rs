@@ -52,7 +52,10 @@ pub(super) struct Parts {
 }
 
 /// The system of `case` at its start: grains scattered thinly, the outer membrane held stretched.
-pub(super) fn system(scene: &HollowSphereScene, case: &Case) -> Result<(System, Parts), StartError> {
+pub(super) fn system(
+    scene: &HollowSphereScene,
+    case: &Case,
+) -> Result<(System, Parts), StartError> {
     let outer = Mesh::icosphere(scene.membrane.radius, scene.membrane.frequency)?;
     let n_outer = outer.n_vertices();
     let inner_radius = scene.object.radius + scene.inner.clearance;
@@ -91,7 +94,12 @@ pub(super) fn growth(parts: &Parts) -> Growth {
     Growth::new(parts.recipe, parts.final_radii.clone(), parts.first_scale)
 }
 
-fn model(scene: &HollowSphereScene, case: &Case, mut membrane: MembraneModel, n_outer: usize) -> Model {
+fn model(
+    scene: &HollowSphereScene,
+    case: &Case,
+    mut membrane: MembraneModel,
+    n_outer: usize,
+) -> Model {
     let material = Material {
         youngs_modulus: case.modulus,
         density: scene.grains.material.density * case.mass_factor,

@@ -6,7 +6,7 @@ use super::{
     build::{self, Parts},
     cases::Case,
     measure::object_pressure,
-    scene::{Protocol, HollowSphereScene},
+    scene::{HollowSphereScene, Protocol},
 };
 use crate::{
     base::{Real, real::count},

@@ -5,16 +5,15 @@
 //! speed. Where a contact slides, the result depends on the restitution alone, not on the law.
 
 use super::{
-    Law, Line,
+    Law, RowSpec,
     build::{Encounter, Flight, elastic},
-    judge, push,
+    measure::{push, worst},
     scene::LawsScene,
-    worst,
 };
 use crate::{
     base::{Real, Vec3},
     experiments::{
-        findings::{Curve, Expected, Findings, Kind, Plot, Series},
+        findings::{Expected, Kind, Plot, Series},
         oracles::{
             impact::{Collision, sliding_rebound},
             micro_slip,
@@ -66,12 +65,16 @@ impl Law for ChungOoi {
         POINTS[point](scene, record);
     }
 
-    fn evaluate(&self, _: &LawsScene, record: &Record, findings: &mut Findings) {
-        judge(ROWS, record, findings);
-        findings
-            .curves
-            .push(Curve { name: "laws_chung_ooi".to_owned(), columns: record.columns.clone() });
-        findings.plots.push(plot(record));
+    fn rows(&self) -> &'static [RowSpec] {
+        ROWS
+    }
+
+    fn table(&self) -> Option<&'static str> {
+        Some("laws_chung_ooi")
+    }
+
+    fn plot(&self, _: &LawsScene, record: &Record) -> Option<Plot> {
+        Some(plot(record))
     }
 }
 
@@ -261,7 +264,7 @@ const HERTZ: &str = "Hertz, with the benchmark's numbers (Chung & Ooi 2011)";
 const SLIDING: &str = "rigid-body impact: v_t' = μ (1 + e) v_n = 0.12 m/s, ω − ω' = 3.0 rad/s";
 const STEP: &str = "0.5 %: time step, and the last digits of the benchmark";
 
-const ROWS: &[Line] = &[
+const ROWS: &[RowSpec] = &[
     (
         "U3.test_1",
         "largest relative error of overlap, force and duration: two elastic spheres",
@@ -349,38 +352,19 @@ const ROWS: &[Line] = &[
 ];
 
 fn plot(record: &Record) -> Plot {
-    let column = |name: &str| record.column(name).unwrap_or(&[]);
-    let over_angle = |name: &str, kind, label: &str| Series {
-        label: label.to_owned(),
-        kind,
-        points: column("test_4_angle").iter().zip(column(name)).map(|(&x, &y)| [x, y]).collect(),
-        deviations: Vec::new(),
-    };
-    Plot {
-        title: "Chung & Ooi (2011), test 4: aluminium oxide on a plane".to_owned(),
-        source_says: "the curve that circulates falls from 0.948 at 5° to 0.616 at 20° and rises to 1;                       below 25° it belongs to a law without the factor 2/3"
-            .to_owned(),
-        x_label: "angle from the normal [deg]".to_owned(),
-        y_label: "tangential restitution e_t [-]".to_owned(),
-        log_x: false,
-        log_y: false,
-        series: vec![
-            over_angle("test_4_e_t", Kind::Points, "measured"),
-            over_angle("test_4_e_t_micro_slip", Kind::Analytic, "exact, with micro-slip"),
-            Series {
-                label: "independent integration of the law".to_owned(),
-                kind: Kind::Source,
-                points: TEST_4.to_vec(),
-                deviations: Vec::new(),
-            },
-            Series {
-                label: "circulating curve".to_owned(),
-                kind: Kind::Source,
-                points: CIRCULATING.to_vec(),
-                deviations: Vec::new(),
-            },
+    let exact = record.points("test_4_angle", "test_4_e_t_micro_slip");
+    let law = "independent integration of the law";
+    Plot::new(
+        "Chung & Ooi (2011), test 4: aluminium oxide on a plane",
+        "the curve that circulates falls from 0.948 at 5° to 0.616 at 20° and rises to 1;                       below 25° it belongs to a law without the factor 2/3",
+        ["angle from the normal [deg]", "tangential restitution e_t [-]"],
+        vec![
+            Series::new("measured", Kind::Points, record.points("test_4_angle", "test_4_e_t")),
+            Series::new("exact, with micro-slip", Kind::Analytic, exact),
+            Series::new(law, Kind::Source, TEST_4.to_vec()),
+            Series::new("circulating curve", Kind::Source, CIRCULATING.to_vec()),
         ],
-    }
+    )
 }
 
 /// Test 4 as the re-implementations quote it.

@@ -2,17 +2,13 @@
 //! scene turns the result.
 
 use super::{
-    Law, Line,
+    Law, RowSpec,
     build::{Bench, Encounter, G, elastic},
-    judge,
     scene::LawsScene,
 };
 use crate::{
     base::{Real, Vec3},
-    experiments::{
-        findings::{Expected, Findings},
-        record::Record,
-    },
+    experiments::{findings::Expected, record::Record},
     physics::measure::real,
 };
 
@@ -33,8 +29,8 @@ impl Law for Conservation {
         POINTS[point](scene, record);
     }
 
-    fn evaluate(&self, _: &LawsScene, record: &Record, findings: &mut Findings) {
-        judge(ROWS, record, findings);
+    fn rows(&self) -> &'static [RowSpec] {
+        ROWS
     }
 }
 
@@ -179,7 +175,7 @@ fn turn_pair(scene: &LawsScene, shear_over_overlap: Real) -> ([Vec3; 2], Real) {
     (tangential, normal)
 }
 
-const ROWS: &[Line] = &[
+const ROWS: &[RowSpec] = &[
     (
         "U6.momentum",
         "relative change of momentum in a collision of two unequal, spinning grains",

@@ -6,21 +6,17 @@
 //! again: what is left in the end is a jump.
 
 use super::{
-    Law, Line,
+    Law, RowSpec,
     build::{Bench, elastic},
-    judge, push,
+    measure::{push, worst},
     scene::LawsScene,
-    worst,
 };
 use crate::{
     base::{
         Real, Vec3,
         random::{Random, Stream},
     },
-    experiments::{
-        findings::{Curve, Expected, Findings},
-        record::Record,
-    },
+    experiments::{findings::Expected, record::Record},
     physics::{
         contact::law::Surface,
         measure::real,
@@ -69,11 +65,12 @@ impl Law for Crossing {
         worst(record, "C4.angular_momentum", seen.angular_momentum);
     }
 
-    fn evaluate(&self, _: &LawsScene, record: &Record, findings: &mut Findings) {
-        judge(ROWS, record, findings);
-        findings
-            .curves
-            .push(Curve { name: "laws_crossing".to_owned(), columns: record.columns.clone() });
+    fn rows(&self) -> &'static [RowSpec] {
+        ROWS
+    }
+
+    fn table(&self) -> Option<&'static str> {
+        Some("laws_crossing")
     }
 }
 
@@ -276,7 +273,7 @@ fn n_steps(steps: Real) -> usize {
     steps.round().max(1.0) as usize
 }
 
-const ROWS: &[Line] = &[
+const ROWS: &[RowSpec] = &[
     (
         "C4.flat_force",
         "largest relative distance from Hertz of the force on a grain moved over a flat sheet",

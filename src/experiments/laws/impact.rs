@@ -2,16 +2,15 @@
 //! viscoelastic law over speed and modulus (Götz 2024, eqs. 4–6).
 
 use super::{
-    Law, Line,
+    Law, RowSpec,
     build::{Encounter, elastic},
-    judge, push,
+    measure::{push, worst},
     scene::LawsScene,
-    worst,
 };
 use crate::{
     base::Real,
     experiments::{
-        findings::{Curve, Expected, Findings, Kind, Plot, Series},
+        findings::{Expected, Kind, Plot, Series},
         record::Record,
     },
     physics::{contact::law::Surface, measure::real},
@@ -60,15 +59,20 @@ impl Law for Impact {
         }
     }
 
-    fn evaluate(&self, scene: &LawsScene, record: &Record, findings: &mut Findings) {
-        judge(ROWS, &compare_sweep(scene, record), findings);
-        let names = ["modulus", "speed", "restitution", "restitution_theory"];
-        let columns = record.columns.iter().filter(|it| names.contains(&it.name.as_str()));
-        findings.curves.push(Curve {
-            name: "laws_restitution".to_owned(),
-            columns: columns.cloned().collect(),
-        });
-        findings.plots.push(plot(scene, record));
+    fn complete(&self, scene: &LawsScene, record: &mut Record) {
+        compare_sweep(scene, record);
+    }
+
+    fn rows(&self) -> &'static [RowSpec] {
+        ROWS
+    }
+
+    fn table(&self) -> Option<&'static str> {
+        Some("laws_restitution")
+    }
+
+    fn plot(&self, scene: &LawsScene, record: &Record) -> Option<Plot> {
+        Some(plot(scene, record))
     }
 }
 
@@ -111,29 +115,26 @@ fn elastic_impact(scene: &LawsScene, record: &mut Record) {
     record.set("U1.restitution", encounter.restitution(&bench), "1");
 }
 
-/// How far the swept restitutions are from theory, and whether they fall with speed and modulus.
-fn compare_sweep(scene: &LawsScene, record: &Record) -> Record {
-    let mut found = record.clone();
-    let column = |name: &str| record.column(name).unwrap_or(&[]);
-    let (measured, theory) = (column("restitution"), column("restitution_theory"));
-    for (a, b) in measured.iter().zip(theory) {
-        worst(&mut found, "U2.pade", a - b);
+/// Compares the swept restitutions with theory, and checks that they fall with speed and modulus.
+fn compare_sweep(scene: &LawsScene, record: &mut Record) {
+    for [measured, theory] in record.points("restitution", "restitution_theory") {
+        worst(record, "U2.pade", measured - theory);
     }
+    let measured = record.column("restitution").unwrap_or_default();
     let n = scene.restitution.n_speeds;
     if measured.len() == 3 * n {
         let rises = |less: usize, more: usize| measured[more] >= measured[less];
         let over_speed = (0..3 * n).filter(|k| k % n != 0 && rises(k - 1, *k)).count();
         let over_modulus = (n..3 * n).filter(|&k| rises(k - n, k)).count();
-        found.set("C1.falls_with_speed", real(over_speed), "1");
-        found.set("C1.falls_with_modulus", real(over_modulus), "1");
+        record.set("C1.falls_with_speed", real(over_speed), "1");
+        record.set("C1.falls_with_modulus", real(over_modulus), "1");
     }
-    found
 }
 
 const HERTZ: &str = "Hertz: (5 m v²/4k)^(2/5), k ξ^(3/2), 2.943275 ξ/v; Götz (2024) eq. 4";
 const STEP: &str = "0.5 %: time step; at 500 steps per contact the duration is known to 0.2 %";
 
-const ROWS: &[Line] = &[
+const ROWS: &[RowSpec] = &[
     (
         "U1.overlap",
         "largest overlap of an elastic head-on impact, over Hertz",
@@ -207,7 +208,6 @@ const ROWS: &[Line] = &[
 ];
 
 fn plot(scene: &LawsScene, record: &Record) -> Plot {
-    let column = |name: &str| record.column(name).unwrap_or(&[]);
     let n = scene.restitution.n_speeds;
     let mut series = Vec::new();
     for (m, modulus) in scene.restitution.moduli.iter().enumerate() {
@@ -215,24 +215,16 @@ fn plot(scene: &LawsScene, record: &Record) -> Plot {
             ("restitution", Kind::Points, "measured"),
             ("restitution_theory", Kind::Analytic, "theory"),
         ] {
-            let values = column("speed").iter().zip(column(name));
-            series.push(Series {
-                label: format!("{label}, {} MPa", modulus / 1e6),
-                kind,
-                points: values.skip(m * n).take(n).map(|(&x, &y)| [x, y]).collect(),
-                deviations: Vec::new(),
-            });
+            let points = record.points("speed", name).into_iter().skip(m * n).take(n).collect();
+            series.push(Series::new(&format!("{label}, {} MPa", modulus / 1e6), kind, points));
         }
     }
-    Plot {
-        title: "Restitution over closing speed".to_owned(),
-        source_says: "Götz (2024), chapter 2: falls with speed and modulus; 0.875 for the beam's \
-                      grain at 2 m/s (Götz & Pöschel 2023)"
-            .to_owned(),
-        x_label: "closing speed [m/s]".to_owned(),
-        y_label: "coefficient of restitution [-]".to_owned(),
-        log_x: true,
-        log_y: false,
+    Plot::new(
+        "Restitution over closing speed",
+        "Götz (2024), chapter 2: falls with speed and modulus; 0.875 for the beam's grain at 2 m/s \
+         (Götz & Pöschel 2023)",
+        ["closing speed [m/s]", "coefficient of restitution [-]"],
         series,
-    }
+    )
+    .with_logs([true, false])
 }

@@ -12,14 +12,18 @@
 
 use std::collections::BTreeSet;
 
-use super::{Law, Line, judge, push, scene::LawsScene, worst};
+use super::{
+    Law, RowSpec,
+    measure::{push, worst},
+    scene::LawsScene,
+};
 use crate::{
     base::{
         Real, Vec3,
         random::{Random, Stream},
     },
     experiments::{
-        findings::{Curve, Expected, Findings, Kind, Plot, Series},
+        findings::{Expected, Kind, Plot, Series},
         record::Record,
     },
     physics::{
@@ -62,12 +66,16 @@ impl Law for Inflation {
         }
     }
 
-    fn evaluate(&self, _: &LawsScene, record: &Record, findings: &mut Findings) {
-        judge(ROWS, record, findings);
-        findings
-            .curves
-            .push(Curve { name: "laws_laplace".to_owned(), columns: record.columns.clone() });
-        findings.plots.push(plot(record));
+    fn rows(&self) -> &'static [RowSpec] {
+        ROWS
+    }
+
+    fn table(&self) -> Option<&'static str> {
+        Some("laws_laplace")
+    }
+
+    fn plot(&self, _: &LawsScene, record: &Record) -> Option<Plot> {
+        Some(plot(record))
     }
 }
 
@@ -244,7 +252,7 @@ fn closed_surface(scene: &LawsScene, record: &mut Record) {
     record.set("C5.sign", if inwards { 1.0 } else { 0.0 }, "1");
 }
 
-const ROWS: &[Line] = &[
+const ROWS: &[RowSpec] = &[
     (
         "U13.sphere",
         "largest relative error of ΔR/R of a sphere under inner pressure",
@@ -304,23 +312,14 @@ const ROWS: &[Line] = &[
 ];
 
 fn plot(record: &Record) -> Plot {
-    let column = |name: &str| record.column(name).unwrap_or(&[]);
-    let over_pressure = |name: &str, kind, label: &str| Series {
-        label: label.to_owned(),
-        kind,
-        points: column("pressure").iter().zip(column(name)).map(|(&x, &y)| [x, y]).collect(),
-        deviations: Vec::new(),
-    };
-    Plot {
-        title: "A sphere under inner pressure".to_owned(),
-        source_says: "no figure; Götz (2024) eqs. 14 and 30 make a sheet under pressure".to_owned(),
-        x_label: "gauge pressure [Pa]".to_owned(),
-        y_label: "strain ΔR/R [-]".to_owned(),
-        log_x: false,
-        log_y: false,
-        series: vec![
-            over_pressure("strain", Kind::Points, "measured"),
-            over_pressure("strain_laplace", Kind::Analytic, "Laplace"),
+    let laplace = record.points("pressure", "strain_laplace");
+    Plot::new(
+        "A sphere under inner pressure",
+        "no figure; Götz (2024) eqs. 14 and 30 make a sheet under pressure",
+        ["gauge pressure [Pa]", "strain ΔR/R [-]"],
+        vec![
+            Series::new("measured", Kind::Points, record.points("pressure", "strain")),
+            Series::new("Laplace", Kind::Analytic, laplace),
         ],
-    }
+    )
 }

@@ -2,16 +2,15 @@
 //! the exact solution with micro-slip and against rigid-body impact.
 
 use super::{
-    Law, Line,
+    Law, RowSpec,
     build::{Flight, elastic},
-    judge, push,
+    measure::{push, worst},
     scene::LawsScene,
-    worst,
 };
 use crate::{
     base::{Real, Vec3},
     experiments::{
-        findings::{Curve, Expected, Findings, Kind, Plot, Series},
+        findings::{Expected, Kind, Plot, Series},
         oracles::{impact::sliding_rebound, micro_slip},
         record::Record,
     },
@@ -60,13 +59,16 @@ impl Law for Oblique {
         }
     }
 
-    fn evaluate(&self, scene: &LawsScene, record: &Record, findings: &mut Findings) {
-        judge(ROWS, record, findings);
-        findings.curves.push(Curve {
-            name: "laws_oblique_impact".to_owned(),
-            columns: record.columns.clone(),
-        });
-        findings.plots.push(plot(scene, record));
+    fn rows(&self) -> &'static [RowSpec] {
+        ROWS
+    }
+
+    fn table(&self) -> Option<&'static str> {
+        Some("laws_oblique_impact")
+    }
+
+    fn plot(&self, scene: &LawsScene, record: &Record) -> Option<Plot> {
+        Some(plot(scene, record))
     }
 }
 
@@ -113,7 +115,7 @@ fn swept(scene: &LawsScene, step: Real, record: &mut Record) {
     }
 }
 
-const ROWS: &[Line] = &[
+const ROWS: &[RowSpec] = &[
     (
         "U4.table",
         "largest relative distance of e_t from nine integrated impacts, 5° to 80°",
@@ -160,40 +162,21 @@ const ROWS: &[Line] = &[
 ];
 
 fn plot(scene: &LawsScene, record: &Record) -> Plot {
-    let column = |name: &str| record.column(name).unwrap_or(&[]);
-    let angles = column("angle");
-    let over_angle = |name: &str, kind, label: &str| Series {
-        label: label.to_owned(),
-        kind,
-        points: angles.iter().zip(column(name)).map(|(&x, &y)| [x, y]).collect(),
-        deviations: Vec::new(),
-    };
     let friction = scene.grain.surface.friction;
-    let rigid = angles.iter().filter_map(|&angle| {
+    let rigid = record.column("angle").unwrap_or_default().iter().filter_map(|&angle| {
         Some([angle, sliding_rebound(friction, 1.0, angle.to_radians())?.tangential])
     });
-    Plot {
-        title: "Oblique impact on a plane".to_owned(),
-        source_says: "no figure; Götz (2024) eqs. 7–11 give the law".to_owned(),
-        x_label: "angle from the normal [deg]".to_owned(),
-        y_label: "tangential restitution e_t [-]".to_owned(),
-        log_x: false,
-        log_y: false,
-        series: vec![
-            over_angle("e_t", Kind::Points, "measured"),
-            over_angle("e_t_micro_slip", Kind::Analytic, "exact, with micro-slip"),
-            Series {
-                label: "rigid body that slides throughout".to_owned(),
-                kind: Kind::Analytic,
-                points: rigid.collect(),
-                deviations: Vec::new(),
-            },
-            Series {
-                label: "independent integration of the law".to_owned(),
-                kind: Kind::Source,
-                points: TABLE.iter().map(|row| [row[0], row[1]]).collect(),
-                deviations: Vec::new(),
-            },
+    let integrated = TABLE.iter().map(|row| [row[0], row[1]]).collect();
+    let exact = record.points("angle", "e_t_micro_slip");
+    Plot::new(
+        "Oblique impact on a plane",
+        "no figure; Götz (2024) eqs. 7–11 give the law",
+        ["angle from the normal [deg]", "tangential restitution e_t [-]"],
+        vec![
+            Series::new("measured", Kind::Points, record.points("angle", "e_t")),
+            Series::new("exact, with micro-slip", Kind::Analytic, exact),
+            Series::new("rigid body that slides throughout", Kind::Analytic, rigid.collect()),
+            Series::new("independent integration of the law", Kind::Source, integrated),
         ],
-    }
+    )
 }

@@ -12,13 +12,10 @@
 //! E I comes from the difference between two lengths, and its growth with the width from the
 //! difference between two widths.
 
-use super::{Law, Line, judge, scene::LawsScene};
+use super::{Law, RowSpec, scene::LawsScene};
 use crate::{
     base::{Real, Vec3},
-    experiments::{
-        findings::{Expected, Findings},
-        record::Record,
-    },
+    experiments::{findings::Expected, record::Record},
     physics::{
         measure::real,
         membrane::{MembraneModel, MembraneScratch, MembraneState, Sheet, forces, mesh::Mesh},
@@ -60,8 +57,8 @@ impl Law for Plate {
         }
     }
 
-    fn evaluate(&self, _: &LawsScene, record: &Record, findings: &mut Findings) {
-        judge(ROWS, record, findings);
+    fn rows(&self) -> &'static [RowSpec] {
+        ROWS
     }
 }
 
@@ -233,7 +230,7 @@ fn ring(scene: &LawsScene, record: &mut Record) {
     record.set("U12.frequency", square.sqrt() / oracle, "1");
 }
 
-const ROWS: &[Line] = &[
+const ROWS: &[RowSpec] = &[
     (
         "U12.plate",
         "largest relative error of the bending energy: cylinders, sphere, saddles",

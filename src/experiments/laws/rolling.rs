@@ -2,15 +2,15 @@
 //! weight, and does not creep where it sticks (Götz 2024, eqs. 8–11).
 
 use super::{
-    Law, Line,
+    Law, RowSpec,
     build::{Bench, G, mass},
-    judge, push,
+    measure::push,
     scene::LawsScene,
 };
 use crate::{
     base::{Real, Vec3},
     experiments::{
-        findings::{Curve, Expected, Findings, Kind, Plot, Series},
+        findings::{Expected, Kind, Plot, Series},
         record::Record,
     },
     physics::{
@@ -39,12 +39,16 @@ impl Law for Rolling {
         POINTS[point](scene, record);
     }
 
-    fn evaluate(&self, scene: &LawsScene, record: &Record, findings: &mut Findings) {
-        judge(ROWS, record, findings);
-        findings
-            .curves
-            .push(Curve { name: "laws_rolling".to_owned(), columns: record.columns.clone() });
-        findings.plots.push(plot(scene, record));
+    fn rows(&self) -> &'static [RowSpec] {
+        ROWS
+    }
+
+    fn table(&self) -> Option<&'static str> {
+        Some("laws_rolling")
+    }
+
+    fn plot(&self, scene: &LawsScene, record: &Record) -> Option<Plot> {
+        Some(plot(scene, record))
     }
 }
 
@@ -173,7 +177,7 @@ fn shear(scene: &LawsScene, record: &mut Record) {
     record.set("C1.coulomb", sheared(5.0 * full) / (surface.friction * normal), "1");
 }
 
-const ROWS: &[Line] = &[
+const ROWS: &[RowSpec] = &[
     (
         "U5.rolling_speed",
         "speed at which a grain that slid rolls, over 5/7 of its first speed",
@@ -254,34 +258,22 @@ const ROWS: &[Line] = &[
 ];
 
 fn plot(scene: &LawsScene, record: &Record) -> Plot {
-    let column = |name: &str| record.column(name).unwrap_or(&[]);
-    let over_time = |name: &str, kind, label: &str| Series {
-        label: label.to_owned(),
-        kind,
-        points: column("time").iter().zip(column(name)).map(|(&x, &y)| [x, y]).collect(),
-        deviations: Vec::new(),
-    };
     let (v0, decay) = (scene.rolling.speed, scene.grain.surface.friction * G);
     let rolls_at = 2.0 * v0 / (7.0 * decay);
-    let analytic = |label: &str, at_start: Real| Series {
-        label: label.to_owned(),
-        kind: Kind::Analytic,
-        points: vec![[0.0, at_start], [rolls_at, 5.0 / 7.0 * v0], [2.0 * rolls_at, 5.0 / 7.0 * v0]],
-        deviations: Vec::new(),
+    let analytic = |label: &str, at_start: Real| {
+        let end = 5.0 / 7.0 * v0;
+        let points = vec![[0.0, at_start], [rolls_at, end], [2.0 * rolls_at, end]];
+        Series::new(label, Kind::Analytic, points)
     };
-    Plot {
-        title: "A grain slides until it rolls".to_owned(),
-        source_says: "no figure; the torque's sign in Götz (2024) eq. 11 makes it roll forward"
-            .to_owned(),
-        x_label: "time [s]".to_owned(),
-        y_label: "speed, rim speed [m/s]".to_owned(),
-        log_x: false,
-        log_y: false,
-        series: vec![
-            over_time("speed", Kind::Line, "speed"),
-            over_time("rim_speed", Kind::Line, "spin times radius"),
+    Plot::new(
+        "A grain slides until it rolls",
+        "no figure; the torque's sign in Götz (2024) eq. 11 makes it roll forward",
+        ["time [s]", "speed, rim speed [m/s]"],
+        vec![
+            Series::new("speed", Kind::Line, record.points("time", "speed")),
+            Series::new("spin times radius", Kind::Line, record.points("time", "rim_speed")),
             analytic("v_0 − μ g t", v0),
             analytic("5/2 μ g t", 0.0),
         ],
-    }
+    )
 }

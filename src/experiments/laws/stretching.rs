@@ -1,13 +1,10 @@
 //! The sheet in its plane: the lattice of springs as an elastic sheet, and a pair that rings down
 //! (Götz 2024, eqs. 12–16).
 
-use super::{Law, Line, judge, scene::LawsScene, worst};
+use super::{Law, RowSpec, measure::worst, scene::LawsScene};
 use crate::{
     base::{Mat3, Real, Vec3},
-    experiments::{
-        findings::{Expected, Findings},
-        record::Record,
-    },
+    experiments::{findings::Expected, record::Record},
     physics::{
         measure::real,
         membrane::{
@@ -43,8 +40,8 @@ impl Law for Stretching {
         }
     }
 
-    fn evaluate(&self, _: &LawsScene, record: &Record, findings: &mut Findings) {
-        judge(ROWS, record, findings);
+    fn rows(&self) -> &'static [RowSpec] {
+        ROWS
     }
 }
 
@@ -109,7 +106,7 @@ fn ring_down(scene: &LawsScene, record: &mut Record) {
 const ROUNDING: &str = "1e-5: second order in a strain of 1e-6, rounding of lengths over it; three mesh \
                         sizes, five directions";
 
-const ROWS: &[Line] = &[
+const ROWS: &[RowSpec] = &[
     (
         "C2.modulus",
         "largest relative error of the modulus of a patch, over mesh sizes and directions",

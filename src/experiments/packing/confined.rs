@@ -220,7 +220,8 @@ impl Run for ConfinedRun {
     }
 
     fn resume(&mut self, bytes: &[u8]) -> Result<(), ResumeError> {
-        let (progress, [state]): (RunState, _) = saved_run::unpack(&self.progress.record.case, bytes)?;
+        let (progress, [state]): (RunState, _) =
+            saved_run::unpack(&self.progress.record.case, bytes)?;
         saved_run::check_scene(&state, &self.system.state)?;
         let mut model = self.system.model.clone();
         model.radius_max = state.grains.radii.iter().copied().fold(model.radius_max, Real::max);

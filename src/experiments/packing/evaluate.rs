@@ -7,7 +7,7 @@
 
 use super::{
     super::{
-        findings::{Curve, Expected, Findings, Quantity, RowText, Row},
+        findings::{Curve, Expected, Findings, Quantity, Row, RowText},
         record::Record,
     },
     cases::Case,
@@ -196,9 +196,19 @@ fn structure(record: &Record, findings: &mut Findings) {
 fn friction_rows(jammed: &[Jammed], findings: &mut Findings) {
     for at in jammed {
         let name = format!("phi_j_friction_{}", at.friction);
-        findings.quantities.push(Quantity::new(&name, "solid fraction without pressure", at.phi, "1"));
+        findings.quantities.push(Quantity::new(
+            &name,
+            "solid fraction without pressure",
+            at.phi,
+            "1",
+        ));
         let name = format!("z_friction_{}", at.friction);
-        findings.quantities.push(Quantity::new(&name, "contacts per grain without pressure", at.z, "1"));
+        findings.quantities.push(Quantity::new(
+            &name,
+            "contacts per grain without pressure",
+            at.z,
+            "1",
+        ));
     }
     let largest_rise = |of: fn(&Jammed) -> Real| {
         let rises = jammed.windows(2).map(|pair| of(&pair[1]) - of(&pair[0]));

@@ -48,7 +48,8 @@ pub(super) fn onset(points: &[[Real; 2]], reach: Real) -> Option<(Real, Real)> {
     let fit = |x0: Real| {
         let logs = shifted(x0);
         let fitted = line(&logs)?;
-        let residuals = logs.iter().map(|p| (p[1] - fitted.intercept - fitted.slope * p[0]).powi(2));
+        let residuals =
+            logs.iter().map(|p| (p[1] - fitted.intercept - fitted.slope * p[0]).powi(2));
         Some((residuals.sum::<Real>(), x0, fitted.slope))
     };
     let tries = (1..=N_TRIES).map(|k| lowest - reach * real(k) / real(N_TRIES));

@@ -126,8 +126,7 @@ pub(super) fn system(scene: &SlideScene, case: &Case, patch: Patch, start: Vec3)
         gauge: 0.0,
         walls: vec![BodyMotion { pose: Pose::identity(), twist: Twist::zero() }],
     };
-    let controls =
-        Controls { gauge_setpoint: 0.0, walls: state.walls.clone(), bodies: Vec::new() };
+    let controls = Controls { gauge_setpoint: 0.0, walls: state.walls.clone(), bodies: Vec::new() };
     System::new(model, controls, state)
 }
 

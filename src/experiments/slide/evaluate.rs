@@ -10,7 +10,7 @@ use super::{
 use crate::{
     base::Real,
     experiments::{
-        findings::{Curve, Expected, Findings, Quantity, RowText, Row},
+        findings::{Curve, Expected, Findings, Quantity, Row, RowText},
         record::Record,
     },
     physics::measure::real,
@@ -61,12 +61,7 @@ fn quantities(scene: &SlideScene, it: &CaseRecord<'_>, findings: &mut Findings) 
     let height = it.spread("height");
     for (name, meaning, unit, value) in [
         ("friction", "mean friction force over weight and load", "1", friction.mean / weight),
-        (
-            "friction_least",
-            "least friction force over weight and load",
-            "1",
-            friction.min / weight,
-        ),
+        ("friction_least", "least friction force over weight and load", "1", friction.min / weight),
         (
             "friction_most",
             "largest friction force over weight and load",

@@ -162,6 +162,9 @@ pub(super) fn interpolate(curve: &[Rest], distance: Real) -> Rest {
 }
 
 /// The case with this name, if there is a record of it.
-pub(super) fn named<'s, 'a>(records: &'s [CaseRecord<'a>], name: &str) -> Option<&'s CaseRecord<'a>> {
+pub(super) fn named<'s, 'a>(
+    records: &'s [CaseRecord<'a>],
+    name: &str,
+) -> Option<&'s CaseRecord<'a>> {
     records.iter().find(|it| it.case.name == name)
 }

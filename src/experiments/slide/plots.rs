@@ -28,7 +28,8 @@ pub(super) fn add(scene: &SlideScene, records: &[CaseRecord<'_>], plots: &mut Ve
         ),
     ];
     for (title, names) in sets {
-        let shown: Vec<&CaseRecord<'_>> = names.iter().filter_map(|name| named(records, name)).collect();
+        let shown: Vec<&CaseRecord<'_>> =
+            names.iter().filter_map(|name| named(records, name)).collect();
         if !shown.is_empty() {
             plots.push(friction(scene, title, &shown));
             plots.push(height(scene, title, &shown));

@@ -60,7 +60,8 @@ fn setting_back_by_a_period_changes_nothing() {
     for (name, far) in [("spheres_rows", Direction(11, 0)), ("triangles_skew", Direction(8, 4))] {
         let case = cases(&scene).into_iter().find(|case| case.name == name).unwrap();
         let short = finish(Box::new(SlideRun::new(&scene, case).unwrap()));
-        let long = finish(Box::new(SlideRun::new(&scene, Case { direction: far, ..case }).unwrap()));
+        let long =
+            finish(Box::new(SlideRun::new(&scene, Case { direction: far, ..case }).unwrap()));
         for (a, b) in short.columns.iter().zip(&long.columns).take(3) {
             let scale = a.values.iter().copied().fold(0.0, f64::max);
             for (a, b) in a.values.iter().zip(&b.values) {

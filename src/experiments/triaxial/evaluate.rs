@@ -8,7 +8,7 @@ use super::{
 };
 use crate::{
     experiments::{
-        findings::{Expected, Findings, Quantity, RowText, Row},
+        findings::{Expected, Findings, Quantity, Row, RowText},
         record::Record,
     },
     physics::measure::{real, real_of},

@@ -140,7 +140,8 @@ impl TriaxialTest {
     /// Advances by one substep.
     pub(super) fn step(&mut self) {
         self.progress.n_in_phase += 1;
-        if self.progress.phase != Phase::Growing && self.progress.n_in_phase.is_multiple_of(UPDATE_SUBSTEP_EVERY)
+        if self.progress.phase != Phase::Growing
+            && self.progress.n_in_phase.is_multiple_of(UPDATE_SUBSTEP_EVERY)
         {
             self.update_substep();
         }

@@ -3,7 +3,7 @@
 use super::{
     build::{Choice, Kind, Recipe},
     cases::Variant,
-    protocol::{TestProgress, Phase, TriaxialTest, keep_between_plates},
+    protocol::{Phase, TestProgress, TriaxialTest, keep_between_plates},
     scene::TriaxialScene,
 };
 use crate::{
@@ -101,7 +101,11 @@ pub(super) fn slice(test: &TriaxialTest) -> usize {
 }
 
 /// Resumes a test from its progress and state, if they belong to the same specimen.
-pub(super) fn restore(test: &mut TriaxialTest, progress: TestProgress, state: State) -> Result<(), ResumeError> {
+pub(super) fn restore(
+    test: &mut TriaxialTest,
+    progress: TestProgress,
+    state: State,
+) -> Result<(), ResumeError> {
     saved_run::check_scene(&state, &test.system.state)?;
     test.system.state = state;
     test.resume(progress);
@@ -120,10 +124,7 @@ fn whole(value: Real) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use super::{
-        super::Triaxial,
-        *,
-    };
+    use super::{super::Triaxial, *};
     use crate::{
         experiments::{Experiment, SceneText, Size},
         scene::text::read,

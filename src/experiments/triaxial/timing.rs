@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     build::{Choice, Kind, Recipe},
-    protocol::{TestProgress, Phase, TriaxialTest},
+    protocol::{Phase, TestProgress, TriaxialTest},
     run::{restore, slice},
     scene::TriaxialScene,
 };
