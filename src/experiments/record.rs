@@ -130,7 +130,7 @@ impl Validity {
         let mut violations = Vec::new();
         let mut check = |value: f64, limit: f64, what: &str| {
             if value > limit || value.is_nan() {
-                violations.push(format!("{what} reached {value:.2e}, beyond {limit:.0e}"));
+                violations.push(format!("{what} reached {value:.2e}, above the limit {limit:.0e}"));
             }
         };
         check(self.overlap_over_diameter_max, OVERLAP_LIMIT, "overlap over diameter");

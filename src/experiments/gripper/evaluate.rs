@@ -15,9 +15,9 @@ use crate::{
 };
 
 /// Possible cause of the failure of a check that starts from the settled state.
-const HISTORY: &str = "with vary_relaxed false the two insertions push the grains aside in different \
-                       ways; a tenth less speed moves the holding force as much as half the speed \
-                       does, so this is scatter and not a rate: compare means over fillings";
+const HISTORY: &str = "with vary_relaxed false the two insertions displace the grains \
+                      differently; 10 % less speed changes the holding force as much as 50 % \
+                      less, so this is scatter and not a rate effect: compare means over fillings";
 /// Relative difference below which two holding forces of one filling count as equal.
 const SAME: Real = 0.1;
 
@@ -66,10 +66,10 @@ fn over_modulus(results: &Results<'_>, findings: &mut Findings) {
     findings.check(
         &RowText {
             id: "C9.falls_with_modulus",
-            quantity: "holding force of the softest grains over that of the hardest",
+            quantity: "holding force of the softest grains divided by that of the hardest",
             unit: "1",
             oracle: "Götz (2024), Fig. 12: large with soft grains, small with hard ones",
-            reason: "a bound: the factor cannot be read in the text; 1.5 is beyond the scatter between fillings",
+            reason: "a bound: the text gives no factor; 1.5 exceeds the scatter between fillings",
         },
         Expected::at_least(1.5),
         ends.map(|(soft, hard)| soft.value / hard.value),
@@ -79,7 +79,8 @@ fn over_modulus(results: &Results<'_>, findings: &mut Findings) {
         findings.check(
             &RowText {
                 id: "C9.falls_beyond_scatter",
-                quantity: "difference of the holding forces of softest and hardest grains over its standard error",
+                quantity: "difference between the holding forces of the softest and the hardest \
+                          grains divided by its standard error",
                 unit: "1",
                 oracle: "Götz (2024), Fig. 12",
                 reason: "three standard errors",
@@ -99,10 +100,13 @@ fn over_modulus(results: &Results<'_>, findings: &mut Findings) {
         findings.check(
             &RowText {
                 id: "C9.falls_steadily",
-                quantity: "smallest rise of the holding force to the next softer grains, over its largest value",
+                quantity: "smallest rise of the holding force to the next softer grains, divided \
+                          by its largest value",
                 unit: "1",
-                oracle: "Götz (2024), Fig. 12: it falls with the modulus throughout, from 5 MPa on",
-                reason: "neighbours may differ by less than the scatter between fillings, a tenth of the largest value",
+                oracle: "Götz (2024), Fig. 12: it falls with the modulus over the whole range \
+                        above 5 MPa",
+                reason: "neighboring values may differ by less than the scatter between fillings, \
+                        a tenth of the largest value",
             },
             Expected::at_least(-SAME),
             smallest_rise(&points),
@@ -115,9 +119,11 @@ fn over_modulus(results: &Results<'_>, findings: &mut Findings) {
         findings.check(
             &RowText {
                 id: "C9.hard_plateau",
-                quantity: "difference of the holding forces of the two hardest grains over that of the softest",
+                quantity: "difference between the holding forces of the two hardest grains \
+                          divided by that of the softest",
                 unit: "1",
-                oracle: "Gómez-Paccapelo et al. (2020): with friction alone, the force does not depend on the material of hard grains",
+                oracle: "Gómez-Paccapelo et al. (2020): with friction alone, the force does not \
+                        depend on the stiffness of hard grains",
                 reason: "the scatter between fillings, a tenth of the largest force",
             },
             Expected::within(0.0, SAME),
@@ -132,10 +138,13 @@ fn over_pressure(results: &Results<'_>, findings: &mut Findings) {
     findings.check(
         &RowText {
             id: "C9.rises_with_vacuum",
-            quantity: "smallest rise of the holding force to the next stronger vacuum, over its largest value",
+            quantity: "smallest rise of the holding force to the next stronger vacuum, divided by \
+                      its largest value",
             unit: "1",
-            oracle: "Brown et al. (2010) and all grippers since: more vacuum holds more",
-            reason: "all from one relaxed state, so that no scatter between fillings enters",
+            oracle: "Brown et al. (2010) and all later grippers: a stronger vacuum gives a larger \
+                    holding force",
+            reason: "all grips start from one relaxed state, so there is no scatter between \
+                    fillings",
         },
         Expected::at_least(0.0),
         smallest_rise(&points),
@@ -145,10 +154,10 @@ fn over_pressure(results: &Results<'_>, findings: &mut Findings) {
     findings.check(
         &RowText {
             id: "C9.no_vacuum",
-            quantity: "holding force without vacuum over that at full vacuum",
+            quantity: "holding force without vacuum divided by that at full vacuum",
             unit: "1",
-            oracle: "no vacuum, no jamming: what is left is the membrane's pre-tension",
-            reason: "the pre-tension presses the grains with some 10 kPa, a tenth of the vacuum",
+            oracle: "no jamming without vacuum: only the pre-tension of the membrane remains",
+            reason: "the pre-tension compresses the grains by about 10 kPa, a tenth of the vacuum",
         },
         Expected::within(0.0, 0.15),
         none.zip(full).map(|(none, full)| none[1] / full[1]),
@@ -159,16 +168,19 @@ fn over_pressure(results: &Results<'_>, findings: &mut Findings) {
         findings,
         &RowText {
             id: "C9.proportional_to_vacuum",
-            quantity: "holding force per vacuum at the weakest level over that at the strongest",
+            quantity: "holding force per vacuum at the weakest level divided by that at the \
+                      strongest",
             unit: "1",
-            oracle: "stresses of jammed hard grains scale with the pressure; published as about linear, saturating",
+            oracle: "stresses of jammed hard grains scale with the pressure; published curves are \
+                    roughly linear and saturate",
             reason: "20 %: soft grains change their shape with the pressure",
         },
         Expected::within(1.0, 0.2),
         weak.zip(full).map(|(weak, full)| weak[1] / weak[0] / (full[1] / full[0])),
-        "the stretched membrane pushes the object out, and a weaker vacuum leaves more of that push: \
-         it has to be unloaded over a longer way before anything is pulled, and by then the contact \
-         angle has come down to near the threshold (columns force and contact_angle of the record)",
+        "the stretched membrane pushes the object out, and a weaker vacuum leaves more of that \
+        push: it must be unloaded over a longer distance before there is any pull, and by then \
+        the contact angle has decreased to near the threshold (columns force and contact_angle of \
+        the record)",
     );
 }
 
@@ -177,10 +189,12 @@ fn over_object(results: &Results<'_>, findings: &mut Findings) {
     findings.check(
         &RowText {
             id: "C9.rises_with_friction",
-            quantity: "smallest rise of the holding force to the next higher friction, over its largest value",
+            quantity: "smallest rise of the holding force to the next higher friction, divided by \
+                      its largest value",
             unit: "1",
             oracle: "pinch formula: F_h = 2 π R² p_n [μ (θ/2 − sin 2θ/4) − ½ sin² θ] rises with μ",
-            reason: "all from one settled bag; below the threshold both forces are zero",
+            reason: "all grips start from one settled state; below the threshold both forces are \
+                    zero",
         },
         Expected::at_least(0.0),
         smallest_rise(&results.over_friction()),
@@ -189,10 +203,11 @@ fn over_object(results: &Results<'_>, findings: &mut Findings) {
     findings.check(
         &RowText {
             id: "C9.pinch_threshold",
-            quantity: "contact angle of the grip at its largest pull, over the least that holds by friction",
+            quantity: "contact angle of the grip at its largest pull divided by the smallest at \
+                      which friction holds",
             unit: "1",
-            oracle: "pinch formula under even pressure: 60.8° at μ = 1.2",
-            reason: "a bound: below it nothing could be held by friction, and something is held",
+            oracle: "pinch formula with uniform pressure: 60.8° at μ = 1.2",
+            reason: "a bound: below that angle friction could not hold anything",
         },
         Expected::at_least(1.0),
         results.protocol("contact_angle_at_best").map(|it| it / measure::pinch_threshold(friction)),
@@ -200,13 +215,15 @@ fn over_object(results: &Results<'_>, findings: &mut Findings) {
     findings.check(
         &RowText {
             id: "C9.coulomb_limit",
-            quantity: "holding force over what Coulomb friction allows with the normal forces of that instant",
+            quantity: "holding force divided by the Coulomb limit with the normal forces at that \
+                      time",
             unit: "1",
-            oracle: "|F_t| ≤ μ F_n at every sample of the sheet: F ≤ Σ F_n (μ sin θ − cos θ)",
-            reason: "5 %: the force is the mean over a tick, the limit that of its end",
+            oracle: "|F_t| ≤ μ F_n at every sample of the membrane: F ≤ Σ F_n (μ sin θ − cos θ)",
+            reason: "5 %: the force is the mean over a tick, the limit is taken at its end",
         },
         Expected::at_most(1.05),
-        results.protocol("holding_force")
+        results
+            .protocol("holding_force")
             .zip(results.protocol("coulomb_limit_at_best"))
             .map(|(force, limit)| force / limit),
     );
@@ -222,7 +239,8 @@ fn over_count(results: &Results<'_>, findings: &mut Findings) {
     findings.check(
         &RowText {
             id: "C9.push_rises_with_filling",
-            quantity: "smallest rise of the push after relaxation to the next fuller bag, over its largest value",
+            quantity: "smallest rise of the push after relaxation to the next higher filling, \
+                      divided by its largest value",
             unit: "1",
             oracle: "Kremer et al. (2022): the filling level controls the activation force",
             reason: "a sign",
@@ -241,15 +259,17 @@ fn checks(results: &Results<'_>, findings: &mut Findings) {
     let dampings = cases::others(&sweep.spring_dampings, spring_damping).map(|it| {
         (
             Change::SpringDamping(it),
-            "holding force with this damping ratio of the membrane's springs over the protocol's",
+            "holding force with this damping ratio of the membrane's springs divided by that of \
+            the protocol",
             "a quasi-static result does not depend on damping; the source's membranes have 0.3 and 0.15",
         )
     });
     let slowdowns = cases::others(&sweep.slowdowns, 1.0).map(|it| {
         (
             Change::Slowdown(it),
-            "holding force with both ways slower by this factor over the protocol's",
-            "the accelerated protocol is legal if a slower one gives the same",
+            "holding force with both speeds multiplied by this factor, divided by that of the \
+            protocol",
+            "the accelerated protocol is valid if a slower one gives the same result",
         )
     });
     for (change, quantity, oracle) in dampings.chain(slowdowns) {
@@ -260,7 +280,7 @@ fn checks(results: &Results<'_>, findings: &mut Findings) {
                 quantity,
                 unit: "1",
                 oracle,
-                reason: "10 %, what two histories of one bag may differ by",
+                reason: "10 %: the scatter between two histories of one filling",
             },
             Expected::within(1.0, SAME),
             ratio(change).map(|(changed, own)| changed / own),
@@ -271,11 +291,12 @@ fn checks(results: &Results<'_>, findings: &mut Findings) {
 
 fn notes(cases: &[Case], records: &[Record]) -> Vec<String> {
     let mut notes = vec![
-        "The source leaves the number of grains out. It fills the bag while the membrane is held at \
-         1.25 radii, \"to insert more granulate\"; the scene takes as many grains as that bowl holds."
+        "The source does not give the number of grains. It fills the membrane while it is held at \
+        1.25 radii, \"to insert more granulate\"; the scene takes as many grains as fit into that \
+        volume."
             .to_owned(),
-        "There is no suction between membrane and object, here as in the source: F_h is friction \
-         and shape alone."
+        "There is no suction between membrane and object, as in the source: F_h is due to \
+        friction and shape only."
             .to_owned(),
     ];
     for record in records.iter().filter(|it| cases.iter().any(|case| case.name == it.case)) {

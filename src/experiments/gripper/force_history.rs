@@ -42,10 +42,11 @@ pub(super) fn push(results: &Results<'_>, findings: &mut Findings) {
     findings.check(
         &RowText {
             id: "C9.fig11_zero",
-            quantity: "largest force while the object is below the bag",
+            quantity: "largest force while the object is below the membrane",
             unit: "N",
-            oracle: "Götz (2024), Fig. 11 (a): no force before contact; the object's weight is no part of it",
-            reason: "without contact there is no force, to the last bit",
+            oracle: "Götz (2024), Fig. 11 (a): no force before contact; the object's weight is \
+                    not included",
+            reason: "exact: without contact there is no force",
         },
         Expected::within(0.0, 0.0),
         before_contact(results),
@@ -54,10 +55,11 @@ pub(super) fn push(results: &Results<'_>, findings: &mut Findings) {
     findings.check(
         &RowText {
             id: "C9.fig11_push",
-            quantity: "push at the full penetration over that at half of it",
+            quantity: "push at full penetration divided by the push at half of it",
             unit: "1",
-            oracle: "Götz (2024), Fig. 11 (b): the push rises all the way",
-            reason: "a bound: the figure's numbers cannot be read in the text; 1.5 is half-way to proportional",
+            oracle: "Götz (2024), Fig. 11 (b): the push rises during the whole insertion",
+            reason: "a bound: the text gives no numbers for the figure; 1.5 is half-way to \
+                    proportionality",
         },
         Expected::at_least(1.5),
         full.zip(push_at(results, 0.5)).map(|(full, half)| full / half),
@@ -65,10 +67,10 @@ pub(super) fn push(results: &Results<'_>, findings: &mut Findings) {
     findings.check(
         &RowText {
             id: "C9.fig11_relaxation",
-            quantity: "push after the relaxation over push at its beginning",
+            quantity: "push after relaxation divided by the push before it",
             unit: "1",
-            oracle: "Götz (2024), Fig. 11 (c): under a fixed deformation a packing relaxes",
-            reason: "2 % for the last wave of the stopping object",
+            oracle: "Götz (2024), Fig. 11 (c): at fixed deformation a packing relaxes",
+            reason: "2 %: the last stress wave of the stopping object",
         },
         Expected::at_most(1.02),
         last(results, Phase::Relax).zip(full).map(|(relaxed, push)| -relaxed / push),
@@ -81,7 +83,7 @@ pub(super) fn pull(results: &Results<'_>, findings: &mut Findings) {
     findings.check(
         &RowText {
             id: "C9.fig11_evacuation",
-            quantity: "change of the force on evacuation over the push before it",
+            quantity: "change of the force during evacuation divided by the push before it",
             unit: "1",
             oracle: "Götz (2024), Fig. 11 (d): the force changes while the pressure falls",
             reason: "a bound: 5 % is many times the change during the relaxation",
@@ -97,10 +99,12 @@ pub(super) fn pull(results: &Results<'_>, findings: &mut Findings) {
     findings.check(
         &RowText {
             id: "C9.fig11_pull",
-            quantity: "holding force over the scatter of the force while nothing moves",
+            quantity: "holding force divided by the scatter of the force while nothing moves",
             unit: "1",
-            oracle: "Götz (2024), Fig. 11 (e): on the way down the force changes its sign and has a maximum",
-            reason: "ten times the scatter is no accident; a pull counts positive, so the sign is judged too",
+            oracle: "Götz (2024), Fig. 11 (e): during withdrawal the force changes its sign and \
+                    has a maximum",
+            reason: "ten times the scatter is significant; a pull is positive, so the row also \
+                    checks the sign",
         },
         Expected::at_least(10.0),
         holding.zip(noise).map(|(holding, noise)| holding / noise),
@@ -108,10 +112,11 @@ pub(super) fn pull(results: &Results<'_>, findings: &mut Findings) {
     findings.check(
         &RowText {
             id: "C9.fig11_free",
-            quantity: "force on the object at the end over the holding force",
+            quantity: "force on the object at the end divided by the holding force",
             unit: "1",
             oracle: "Götz (2024), Fig. 11 (e): the force drops to zero when the object is free",
-            reason: "the last row of the record is the mean over the tick in which the last sample parts",
+            reason: "the last row of the record is the mean over the tick in which the last \
+                    contact opens",
         },
         Expected::within(0.0, 0.01),
         results.protocol("force_at_end").zip(holding).map(|(end, holding)| end / holding),

@@ -24,7 +24,7 @@ pub(super) fn add(results: &Results<'_>, findings: &mut Findings) {
     if points.len() > 1 {
         let push = results.over_count("force_relaxed").into_iter().map(|[n, f]| [n, -f]).collect();
         let mut plot =
-            plot("Filling", "nothing: the number of grains is left out", "grains", "force [N]");
+            plot("Filling", "nothing: the number of grains is not given", "grains", "force [N]");
         plot.series = vec![
             Series::new("holding force", Kind::Points, points),
             Series::new("push after relaxation", Kind::Points, push),
@@ -62,12 +62,13 @@ fn force_record(results: &Results<'_>, findings: &mut Findings) {
 fn over_modulus(results: &Results<'_>, findings: &mut Findings) {
     let mut plot = plot(
         "Holding force over the grains' modulus (Fig. 12)",
-        "large for soft grains, small for hard ones (about 100 MPa and more); nothing below 5 MPa",
+        "large for soft grains, small for hard ones (about 100 MPa and more); no data below 5 MPa",
         "Young's modulus of the grains [Pa]",
         "holding force [N]",
     );
     plot.log_x = true;
-    let mut measured = Series::new("measured, mean and s.d.", Kind::Points, Vec::new());
+    let mut measured =
+        Series::new("measured, mean and standard deviation", Kind::Points, Vec::new());
     for modulus in cases::moduli(results.scene) {
         for (quantity, meaning, unit) in [
             ("holding_force", "largest pull, mean over fillings", "N"),
@@ -113,8 +114,12 @@ fn over_modulus(results: &Results<'_>, findings: &mut Findings) {
 fn over_pressure(results: &Results<'_>, findings: &mut Findings) {
     let points = results.over_pressure();
     let Some(&[strongest, force]) = points.last() else { return };
-    let mut plot =
-        plot("Holding force over the vacuum", "only 90 kPa", "vacuum [Pa]", "holding force [N]");
+    let mut plot = plot(
+        "Holding force over the vacuum",
+        "one value only, 90 kPa",
+        "vacuum [Pa]",
+        "holding force [N]",
+    );
     plot.series = vec![
         Series::new("measured, from one relaxed state", Kind::Points, points.clone()),
         Series::new("proportional", Kind::Analytic, vec![[0.0, 0.0], [strongest, force]]),
@@ -128,7 +133,7 @@ fn over_object(results: &Results<'_>, findings: &mut Findings) {
     if points.len() > 1 {
         let mut plot = plot(
             "Holding force over the object's friction",
-            "only 1.2",
+            "one value only, 1.2",
             "friction coefficient",
             "holding force [N]",
         );
@@ -138,7 +143,7 @@ fn over_object(results: &Results<'_>, findings: &mut Findings) {
         if let Some((normal, angle)) = pinched {
             let at = |k: i32| 0.03 * Real::from(k);
             let line = (0..=50).map(|k| [at(k), measure::pinch(normal, angle, at(k)).max(0.0)]);
-            let label = "pinch formula with normal force and angle of the reference";
+            let label = "pinch formula with the normal force and angle of the reference";
             plot.series.push(Series::new(label, Kind::Analytic, line.collect()));
         }
         findings.plots.push(plot);
@@ -148,7 +153,7 @@ fn over_object(results: &Results<'_>, findings: &mut Findings) {
     if points.len() > 1 {
         let mut plot = plot(
             "Holding force over the object's radius",
-            "only 10 mm",
+            "one value only, 10 mm",
             "radius [m]",
             "holding force [N]",
         );

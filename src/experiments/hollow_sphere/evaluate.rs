@@ -38,16 +38,16 @@ pub(super) fn findings(scene: &HollowSphereScene, records: &[Record]) -> Finding
     findings.plots.push(plots::over_vacuum(&sweep, &smooth));
     findings.curves.push(plots::table(&groups));
     findings.notes.push(
-        "In the source's law a grain sinks into the sheet with the sheet's own soft modulus, by \
-         some tenths of a millimetre under the full vacuum. Hard grains do not come that much closer \
-         together, so the inner membrane lifts off the object between them. `sweep.stiff_contacts` \
-         repeats a case with contacts as hard as the grains."
+        "In the source's contact law a grain indents the membrane with the membrane's own low \
+        modulus, by some tenths of a millimeter under full vacuum. Hard grains do not move that \
+        much closer together, so the inner membrane lifts off the object between them. \
+        `sweep.stiff_contacts` repeats a case with contacts as stiff as the grains."
             .to_owned(),
     );
     findings.notes.push(format!(
-        "Continuum theory (Götz 2024, eq. 33) has {:.1} kPa as derived from Lamé's equations and {:.1} \
-         kPa as printed; it knows only Poisson's ratio, and which of the two figure 14 shows cannot \
-         be seen from the text.",
+        "Continuum theory (Götz 2024, eq. 33) gives {:.1} kPa as derived from Lamé's equations \
+        and {:.1} kPa as printed; it depends on Poisson's ratio only, and the text does not say \
+        which of the two figure 14 shows.",
         continuum.corrected * vacuum / 1e3,
         continuum.printed * vacuum / 1e3
     ));
@@ -61,8 +61,8 @@ fn rows_of_sweep(sweep: &[&Group<'_>], findings: &mut Findings) {
         findings.rows.push(Row::new(
             &RowText {
                 id: "C10.rises_when_soft",
-                quantity: "smallest fall of the pressure on the object from one modulus to the next \
-                           harder one",
+                quantity: "smallest decrease of the pressure on the object from one modulus to \
+                          the next higher one",
                 unit: "Pa",
                 oracle: "Götz (2024), Fig. 14: p_obj rises monotonically as E_p falls",
                 reason: "a bound; the source gives no numbers in the text",
@@ -75,11 +75,12 @@ fn rows_of_sweep(sweep: &[&Group<'_>], findings: &mut Findings) {
         findings.rows.push(Row::new(
             &RowText {
                 id: "C10.not_constant",
-                quantity: "pressure on the object, softest less hardest grains, over the vacuum",
+                quantity: "pressure on the object with the softest grains minus that with the \
+                          hardest, divided by the vacuum",
                 unit: "1",
-                oracle: "Götz (2024), 4.4 and eq. 33: a continuum's would be constant, the \
-                         measured one is not",
-                reason: "a bound: a twentieth of the vacuum is more than packings scatter",
+                oracle: "Götz (2024), 4.4 and eq. 33: constant for a continuum, but not as \
+                        measured",
+                reason: "a bound: a twentieth of the vacuum exceeds the scatter between packings",
             },
             Expected::at_least(0.05),
             fall / vacuum,
@@ -108,12 +109,12 @@ fn rows_of_levels(scene: &HollowSphereScene, sweep: &[&Group<'_>], findings: &mu
         findings.rows.push(Row::new(
             &RowText {
                 id: "C10.proportional",
-                quantity: "softest grains: largest distance of p_obj(p_vac) from the straight line \
-                           between its ends, over its end",
+                quantity: "softest grains: largest deviation of p_obj(p_vac) from the straight \
+                          line between its ends, divided by its last value",
                 unit: "1",
-                oracle: "linear theory: no other pressure is in the problem",
-                reason: "overlaps of up to a tenth of a diameter and the membranes' own tension bend \
-                         the line by about as much",
+                oracle: "linear theory: the problem has no other pressure scale",
+                reason: "overlaps of up to a tenth of a diameter and the tension of the membranes \
+                        bend the curve by about as much",
             },
             Expected::at_most(0.15),
             worst,
@@ -126,11 +127,11 @@ fn rows_of_levels(scene: &HollowSphereScene, sweep: &[&Group<'_>], findings: &mu
         findings.rows.push(Row::new(
             &RowText {
                 id: "C10.relaxed_radius",
-                quantity: "mean radius of the outer membrane before the vacuum, the worst packing",
+                quantity: "mean radius of the outer membrane before evacuation, worst packing",
                 unit: "m",
                 oracle: "Götz (2024), 4.3: R_gripper = 40 mm",
-                reason: "half a grain radius: the number of grains is not given and was chosen for \
-                         this",
+                reason: "half a grain radius: the number of grains is not given and was chosen to \
+                        match this radius",
             },
             Expected::within(scene.membrane.radius, 1e-3),
             worst,
@@ -163,12 +164,13 @@ fn rows_of_smooth(scene: &HollowSphereScene, smooth: &[&Group<'_>], findings: &m
         findings.rows.push(Row::new(
             &RowText {
                 id: "C10.frictionless_flows",
-                quantity: "pressure on the object over the vacuum, hard grains without friction",
+                quantity: "pressure on the object divided by the vacuum, hard grains without \
+                          friction",
                 unit: "1",
-                oracle: "a packing that cannot bear shear is a fluid: Poisson's ratio 1/2, eq. 33 \
-                         gives 0",
-                reason: "a bound: near jamming the shear modulus is small against the bulk modulus, \
-                         not zero, and grows with the overlaps",
+                oracle: "a packing that cannot carry shear is a fluid: Poisson's ratio 1/2, eq. \
+                        33 gives 0",
+                reason: "a bound: near jamming the shear modulus is small compared with the bulk \
+                        modulus but not zero, and grows with the overlaps",
             },
             Expected::at_most(0.1),
             group.pressure().0 / scene.protocol.vacuum,
@@ -186,11 +188,12 @@ fn row_of_scaling(unscaled: &[&Group<'_>], sweep: &[&Group<'_>], findings: &mut 
         findings.rows.push(Row::new(
             &RowText {
                 id: "C10.mass_scaling",
-                quantity: "change of the pressure on the object by heavier grains, over the vacuum",
+                quantity: "change of the pressure on the object with heavier grains, divided by \
+                          the vacuum",
                 unit: "1",
-                oracle: "quasi-static results know no mass",
-                reason: "two hundredths of the vacuum: the same packing closed at another pace \
-                         rearranges a little differently",
+                oracle: "quasi-static results do not depend on mass",
+                reason: "2 % of the vacuum: the same packing rearranges slightly differently if \
+                        it is closed at another rate",
             },
             Expected::within(0.0, 0.02),
             (last(scaled.records[0], "object_pressure") - group.pressure().0)

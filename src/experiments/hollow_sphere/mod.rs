@@ -25,7 +25,7 @@ impl Experiment for HollowSphere {
     }
 
     fn about(&self) -> &'static str {
-        "pressure of an evacuated shell of grains on the object inside (Götz 2024, 4.3, 4.4)"
+        "pressure of an evacuated shell of grains on an object inside (Götz 2024, 4.3, 4.4)"
     }
 
     fn scene(&self) -> (&'static str, &'static str) {

@@ -33,14 +33,14 @@ pub(super) fn over_modulus(
     let series = [
         measured(sweep, "measured"),
         measured(smooth, "measured, without friction"),
-        measured(stiff, "measured, contacts with the sheet as hard"),
+        measured(stiff, "measured, equally stiff contacts with the membrane"),
         level("continuum, derived", continuum.corrected),
         level("continuum, as printed (eq. 33)", continuum.printed),
     ];
     Plot::new(
         "Pressure on the object over the grains' modulus",
-        "Götz (2024), Fig. 14: the pressure on the object rises as the grains get \
-                      softer; continuum theory (dashed there) does not know the modulus.",
+        "Götz (2024), Fig. 14: the pressure on the object rises as the grains get softer; \
+        continuum theory (dashed there) does not depend on the modulus.",
         ["Young's modulus of the grains [MPa]", "pressure on the object [kPa]"],
         series.into_iter().filter(|it| !it.points.is_empty()).collect(),
     )
@@ -57,7 +57,7 @@ pub(super) fn over_vacuum(sweep: &[&Group<'_>], smooth: &[&Group<'_>]) -> Plot {
     };
     Plot::new(
         "Pressure on the object while the vacuum rises",
-        "Not shown there; linear theory has straight lines through zero.",
+        "Not shown there; linear theory predicts straight lines through zero.",
         ["vacuum [kPa]", "pressure on the object [kPa]"],
         sweep.iter().chain(smooth).map(line).collect(),
     )

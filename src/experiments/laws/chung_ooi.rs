@@ -281,63 +281,69 @@ const ROWS: &[RowSpec] = &[
     ),
     (
         "U3.test_3",
-        "largest error of v'/v for wanted restitutions of 0.2 to 0.98",
-        "the wanted restitution, with the dissipation time that has it by theory",
+        "largest error of v'/v for prescribed restitutions from 0.2 to 0.98",
+        "the prescribed restitution, with the dissipation time that gives it in theory",
         Expected::at_most(1e-2),
-        "0.01: time step at strong damping, and the theory's rational form, which is known to be right          up to v* = 1.2, e ≥ 0.4. The 0.001 asked for holds for laws with a constant restitution; this          law has none",
+        "0.01: time step at strong damping, and the rational form of the theory, which is \
+        accurate up to v* = 1.2, e ≥ 0.4. The tolerance 0.001 suits laws with a constant \
+        restitution, which this law does not have",
     ),
     (
         "U3.test_4",
         "largest relative error of e_t over angles, aluminium oxide",
         "independent integration of a secant spring of 2/3 · 8 G* √(R* ξ), e = 0.98",
         Expected::at_most(1e-2),
-        "1 %: time step, three digits, another damping law with the same e. The curve that circulates          for this test belongs to a spring without the 2/3 and is no oracle below 25°",
+        "1 %: time step, three digits, another damping law with the same e. The commonly quoted \
+        curve for this test belongs to a spring without the factor 2/3 and is no oracle below 25°",
     ),
     (
         "U3.test_4_micro_slip",
-        "largest relative distance of e_t from the exact solution with micro-slip, aluminium oxide",
+        "largest relative deviation of e_t from the exact solution with micro-slip, aluminium \
+        oxide",
         "method of dimensionality reduction, e = 1",
         Expected::at_most(0.12),
-        "12 %: the single spring; it is 10 % below the exact solution at 10°, and would be 29 % above          it without the factor 2/3",
+        "12 %: the single spring; it is 10 % below the exact solution at 10°, and would be 29 % \
+        above it without the factor 2/3",
     ),
     (
         "U3.test_4_sliding",
-        "largest relative error of e_t where it slides throughout, both materials",
+        "largest relative error of e_t where the contact slides throughout, both materials",
         "e_t = 1 − μ (1 + e)/tan θ for tan θ ≥ 7/2 μ (1 + e)",
         Expected::at_most(1e-2),
         "1 %: time step and restitution",
     ),
     (
         "U3.test_5_steel",
-        "largest relative error of R ω'/(μ v_n) where it slides throughout, steel",
+        "largest relative error of R ω'/(μ v_n) where the contact slides throughout, steel",
         "rigid-body impact: −5/2 (1 + e) = −5",
         Expected::at_most(1e-2),
-        "1 %: the lever is R − ξ/2, with ξ/R up to 0.7 %",
+        "1 %: the lever arm is R − ξ/2, with ξ/R up to 0.7 %",
     ),
     (
         "U3.test_5_polyethylene",
-        "largest relative error of R ω'/(μ v_n) where it slides throughout, polyethylene",
+        "largest relative error of R ω'/(μ v_n) where the contact slides throughout, polyethylene",
         "rigid-body impact: −5/2 (1 + e) = −5",
         Expected::at_most(1.5e-2),
-        "1.5 %: the lever is R − ξ/2, and ξ/R reaches 2.7 % in this soft sphere",
+        "1.5 %: the lever arm is R − ξ/2, and ξ/R reaches 2.7 % in this soft sphere",
     ),
     (
         "U3.test_6",
-        "largest relative error of v_t' and of the lost spin where it slides throughout",
+        "largest relative error of v_t' and of the lost spin where the contact slides throughout",
         SLIDING,
         Expected::at_most(1e-2),
         "1 %: time step at a restitution of 0.5",
     ),
     (
         "U3.test_7_no_slip",
-        "largest relative change of spins and sideways velocity of spheres that spin without slip",
-        "nothing may change",
+        "largest relative change of spins and lateral velocity of spheres that spin without slip",
+        "nothing changes",
         Expected::at_most(1e-9),
         "rounding over the steps of a collision",
     ),
     (
         "U3.test_7_slip",
-        "largest relative error of sideways velocity and lost spin of spheres that spin alike",
+        "largest relative error of lateral velocity and lost spin of spheres that spin in the \
+        same direction",
         SLIDING,
         Expected::at_most(1e-2),
         "1 %: time step at a restitution of 0.5",
@@ -347,7 +353,7 @@ const ROWS: &[RowSpec] = &[
         "largest relative error of v_t' and of the lost spin on a large, dense sphere",
         SLIDING,
         Expected::at_most(1.5e-2),
-        "1.5 %: time step; nylon overlaps by 0.2 % of R, and the large sphere gives way by 1/125000",
+        "1.5 %: time step; nylon overlaps by 0.2 % of R, and the large sphere recoils by 1/125000",
     ),
 ];
 
@@ -356,13 +362,14 @@ fn plot(record: &Record) -> Plot {
     let law = "independent integration of the law";
     Plot::new(
         "Chung & Ooi (2011), test 4: aluminium oxide on a plane",
-        "the curve that circulates falls from 0.948 at 5° to 0.616 at 20° and rises to 1;                       below 25° it belongs to a law without the factor 2/3",
+        "the commonly quoted curve falls from 0.948 at 5° to 0.616 at 20° and rises to 1; below \
+        25° it belongs to a law without the factor 2/3",
         ["angle from the normal [deg]", "tangential restitution e_t [-]"],
         vec![
             Series::new("measured", Kind::Points, record.points("test_4_angle", "test_4_e_t")),
-            Series::new("exact, with micro-slip", Kind::Analytic, exact),
+            Series::new("exact solution with micro-slip", Kind::Analytic, exact),
             Series::new(law, Kind::Source, TEST_4.to_vec()),
-            Series::new("circulating curve", Kind::Source, CIRCULATING.to_vec()),
+            Series::new("commonly quoted curve", Kind::Source, CIRCULATING.to_vec()),
         ],
     )
 }

@@ -185,40 +185,41 @@ const ROWS: &[RowSpec] = &[
     ),
     (
         "U6.angular_momentum",
-        "relative change of angular momentum about the common centre",
-        "both grains get their torque from the same contact point",
+        "relative change of angular momentum about the center of mass",
+        "the torques on both grains act at the same contact point",
         Expected::at_most(1e-12),
         "rounding over the steps of a collision",
     ),
     (
         "U6.energy",
-        "largest relative drift of energy of two elastic grains over a hundred contacts",
+        "largest relative energy drift of two elastic grains over a hundred contacts",
         "conservation of energy",
         Expected::at_most(1e-4),
-        "1e-4: time step; the scheme is symplectic, so that it does not grow",
+        "1e-4: time step; the integrator is symplectic, so the drift does not grow",
     ),
     (
         "U7.turned_scene",
-        "largest relative difference of velocities and spins after a collision in a turned scene",
-        "no direction of space is special",
+        "largest relative difference of velocities and spins after a collision in a rotated scene",
+        "isotropy of space",
         Expected::at_most(1e-9),
-        "rounding of 1e-16 of positions over overlaps, carried through a collision",
+        "rounding of 1e-16 of positions relative to overlaps, propagated through a collision",
     ),
     (
         "U7.unsheared_pair",
-        "tangential over normal force of a pair that is turned as one body",
-        "a rigid motion shears nothing",
+        "tangential divided by normal force of a pair that rotates as one body",
+        "a rigid rotation causes no shear",
         Expected::at_most(1e-9),
         "rounding, summed over 20000 steps",
     ),
     (
         "U7.sheared_pair",
-        "relative change of the friction force of a sheared pair after a whole rigid turn about an \
-         axis across its normal",
-        "the spring is carried along with the tangent plane",
+        "relative change of the friction force of a sheared pair after a full rigid rotation \
+        about an axis perpendicular to its normal",
+        "the spring rotates with the tangent plane",
         Expected::at_most(1e-3),
-        "1e-3: a step of 3e-4 rad shortens one component of the spring, and keeping its length lengthens \
-         both; 4e-4 in a whole turn, ten times less with ten times the steps. About the normal itself \
-         the spring stays where it is, as in the source, which projects it and no more",
+        "1e-3: a step of 3e-4 rad shortens one component of the spring, and keeping its length \
+        lengthens both; 4e-4 in a full rotation, ten times less with ten times the steps. For \
+        rotation about the normal itself the spring does not rotate, as in the source, which only \
+        projects it",
     ),
 ];

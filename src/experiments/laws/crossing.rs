@@ -276,52 +276,53 @@ fn n_steps(steps: Real) -> usize {
 const ROWS: &[RowSpec] = &[
     (
         "C4.flat_force",
-        "largest relative distance from Hertz of the force on a grain moved over a flat sheet",
-        "Hertz: a flat sheet has no mesh",
+        "largest relative deviation from Hertz of the force on a grain moved over a flat membrane",
+        "Hertz: on a flat membrane the mesh has no effect",
         Expected::at_most(1e-6),
-        "1e-6 of the force is asked for; rounding of positions gives 1e-11",
+        "1e-6 of the force is required; rounding of positions gives 1e-11",
     ),
     (
         "C4.flat_direction",
-        "largest sideways share of that force",
-        "straight up",
+        "largest lateral share of that force",
+        "none: the force is normal to the membrane",
         Expected::at_most(1e-6),
         "as above",
     ),
     (
         "C4.flat_point",
-        "largest distance of the contact point from below the centre, over the edge",
+        "largest distance of the contact point from the point below the center, divided by the \
+        edge",
         "Götz (2024) eqs. 26, 27",
         Expected::at_most(1e-6),
         "as above",
     ),
     (
         "C4.dented_jump",
-        "largest jump of the force on a grain moved over a dented sheet, over the force",
-        "none: the force is a continuous function of place",
+        "largest jump of the force on a grain moved over a dented membrane, divided by the force",
+        "none: the force is a continuous function of position",
         Expected::at_most(1e-6),
-        "1e-6 of the force is asked for on a flat sheet; here each step that changes the force by more than \
-         1e-4 is halved 24 times, to 6e-14 m",
+        "1e-6 of the force is required on a flat membrane; here each step that changes the force \
+        by more than 1e-4 is halved 24 times, to 6e-14 m",
     ),
     (
         "C4.friction_continuous",
-        "largest change of force in half a substep of a slide with friction over a dented sheet, over \
-         that in a whole one",
-        "1/2: the friction spring is handed on from triangle to triangle; a jump would give 1",
+        "largest change of force in half a substep of a slide with friction over a dented \
+        membrane, divided by that in a whole one",
+        "1/2: the friction spring moves from triangle to triangle; a jump would give 1",
         Expected::within(0.5, 0.1),
-        "0.1: the steepest place is met by either or missed",
+        "0.1: a step may hit or miss the steepest position",
     ),
     (
         "C4.momentum",
-        "force on the grain plus those on the vertices, over the force",
+        "sum of the forces on the grain and on the vertices, divided by the force",
         "action equals reaction; Götz (2024) eq. 28",
         Expected::at_most(1e-12),
         "rounding",
     ),
     (
         "C4.angular_momentum",
-        "moment of the vertices' forces plus that of the contacts, over force times edge",
-        "barycentric weights have the contact point as centre; Götz (2024) eqs. 27, 28",
+        "moment of the vertex forces plus that of the contacts, divided by force times edge",
+        "the contact point is the center of the barycentric weights; Götz (2024) eqs. 27, 28",
         Expected::at_most(1e-12),
         "rounding",
     ),

@@ -14,7 +14,7 @@ pub(super) fn findings(scene: &LawsScene, records: &[Record]) -> Findings {
     let mut findings = Findings::default();
     for law in LAWS {
         let Some(record) = records.iter().find(|record| record.case == law.name()) else {
-            findings.notes.push(format!("{}: no record, no rows", law.name()));
+            findings.notes.push(format!("{}: no record, so no rows", law.name()));
             continue;
         };
         let mut complete = record.clone();

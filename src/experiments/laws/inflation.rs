@@ -255,56 +255,57 @@ fn closed_surface(scene: &LawsScene, record: &mut Record) {
 const ROWS: &[RowSpec] = &[
     (
         "U13.sphere",
-        "largest relative error of ΔR/R of a sphere under inner pressure",
-        "Laplace at the present radius: ε = s (1 + ε)², s = p R (1 − ν)/(2 E d)",
+        "largest relative error of ΔR/R of a sphere under internal pressure",
+        "Laplace at the current radius: ε = s (1 + ε)², s = p R (1 − ν)/(2 E d)",
         Expected::at_most(0.01),
         "1 %: edges of an icosphere differ by 15 %",
     ),
     (
         "U13.cylinder_hoop",
-        "hoop strain of a closed cylinder over its theory",
+        "hoop strain of a closed cylinder divided by theory",
         "p R/(E d) (1 − ν/2)",
         Expected::within(1.0, 0.02),
-        "2 %: strains of 0.9 % at the highest pressure enlarge the radius that carries it",
+        "2 %: strains of 0.9 % at the highest pressure enlarge the radius",
     ),
     (
         "U13.cylinder_axial",
-        "axial strain of a closed cylinder over its theory",
+        "axial strain of a closed cylinder divided by theory",
         "p R/(E d) (1/2 − ν)",
         Expected::within(1.0, 0.05),
         "5 %: it is the small difference of two strains five times as large",
     ),
     (
         "U13.disc",
-        "rise of a taut disc in the middle over its theory",
+        "rise of a taut disk in the middle divided by theory",
         "p a²/(4 T)",
         Expected::within(1.0, 0.02),
-        "2 %: where a lattice is held around a circle is known to a third of an edge of 1/20 radius",
+        "2 %: the radius at which a lattice is held on a circle is known to a third of an edge of \
+        1/20 radius",
     ),
     (
         "C5.force",
-        "net force of the air on a closed surface, over the sum of all loads",
+        "net force of the air on a closed surface divided by the sum of all loads",
         "closed surface, uniform pressure; Götz (2024) eq. 30",
         Expected::at_most(1e-12),
         "rounding of some thousand terms",
     ),
     (
         "C5.torque",
-        "net torque of the air on a closed surface, over loads times radius",
+        "net torque of the air on a closed surface divided by loads times radius",
         "closed surface, uniform pressure; Götz (2024) eq. 31",
         Expected::at_most(1e-10),
-        "rounding of some thousand terms, with an arm of 15 radii",
+        "rounding of some thousand terms, with a lever arm of 15 radii",
     ),
     (
         "C5.power",
-        "power of the air's load over gauge pressure times rate of volume",
+        "power of the air's load divided by gauge pressure times rate of volume",
         "virtual work",
         Expected::within(1.0, 1e-6),
         "central difference of a cubic",
     ),
     (
         "C5.sign",
-        "1 if vacuum pushes every vertex inwards",
+        "1 if vacuum pushes every vertex inward",
         "gauge pressure is negative under vacuum",
         Expected::within(1.0, 0.0),
         "exact",
@@ -314,8 +315,8 @@ const ROWS: &[RowSpec] = &[
 fn plot(record: &Record) -> Plot {
     let laplace = record.points("pressure", "strain_laplace");
     Plot::new(
-        "A sphere under inner pressure",
-        "no figure; Götz (2024) eqs. 14 and 30 make a sheet under pressure",
+        "A sphere under internal pressure",
+        "no figure; Götz (2024) eqs. 14 and 30 give a membrane under pressure",
         ["gauge pressure [Pa]", "strain ΔR/R [-]"],
         vec![
             Series::new("measured", Kind::Points, record.points("pressure", "strain")),

@@ -80,7 +80,8 @@ impl Experiment for Laws {
     }
 
     fn about(&self) -> &'static str {
-        "contact law, membrane and hinges against closed forms (Götz 2024, chapters 2, 3.1, 3.2)"
+        "contact law, membrane and hinges compared with closed forms (Götz 2024, chapters 2, 3.1, \
+        3.2)"
     }
 
     fn scene(&self) -> (&'static str, &'static str) {

@@ -118,43 +118,44 @@ fn swept(scene: &LawsScene, step: Real, record: &mut Record) {
 const ROWS: &[RowSpec] = &[
     (
         "U4.table",
-        "largest relative distance of e_t from nine integrated impacts, 5° to 80°",
+        "largest relative deviation of e_t from nine integrated impacts, 5° to 80°",
         "independent integration of Götz (2024) eqs. 7–11 with the factor 2/3 and k_t = 8 G* √(R* ξ)",
         Expected::at_most(0.01),
-        "1 %: time step, and the lever R − ξ/2 where the table has R",
+        "1 %: time step, and the lever arm R − ξ/2 where the table has R",
     ),
     (
         "U4.spin",
-        "largest distance of the spin from the same impacts, over the largest spin",
+        "largest deviation of the spin from the same impacts, divided by the largest spin",
         "independent integration of Götz (2024) eqs. 7–11",
         Expected::at_most(0.01),
-        "1 %: as for e_t; of the largest one, since the small ones are differences",
+        "1 %: as for e_t; relative to the largest spin, since small ones are differences",
     ),
     (
         "U4.sliding",
-        "largest relative distance of e_t from rigid-body impact, where it slides throughout",
+        "largest relative deviation of e_t from rigid-body impact where the contact slides \
+        throughout",
         "e_t = 1 − 2 μ/tan θ for tan θ ≥ 7 μ",
         Expected::at_most(0.01),
-        "1 %: overlap and lever; the friction force itself is exact",
+        "1 %: overlap and lever arm; the friction force itself is exact",
     ),
     (
         "U4.micro_slip",
-        "largest relative distance of e_t from the exact solution with micro-slip",
+        "largest relative deviation of e_t from the exact solution with micro-slip",
         "Hertz, Cattaneo, Mindlin by the method of dimensionality reduction",
         Expected::at_most(0.12),
-        "12 %: what one spring of 2/3 of Mindlin's stiffness leaves out; the independent integration \
-         of the law is 10 % off at 20°, where it is worst",
+        "12 %: the error of a single spring with 2/3 of Mindlin's stiffness; an independent \
+        integration of the law is off by 10 % at 20°, the worst angle",
     ),
     (
         "U4.damped",
-        "distance of e_t from 5/7 at 5° with tangential damping, over that without",
-        "damping takes the recoil of the spring: e_t moves towards rolling, 5/7",
+        "deviation of e_t from 5/7 at 5° with tangential damping, divided by that without",
+        "damping reduces the recoil of the spring: e_t approaches rolling, 5/7",
         Expected::at_most(1.0),
-        "below 1 is all that is known",
+        "only the bound 1 is known",
     ),
     (
         "U6.friction_takes_energy",
-        "largest energy after an elastic impact with friction, over that before",
+        "largest energy after an elastic impact with friction divided by that before",
         "conservation of energy",
         Expected::at_most(1.0 + 1e-3),
         "1e-3: time step of the elastic part",
@@ -174,7 +175,7 @@ fn plot(scene: &LawsScene, record: &Record) -> Plot {
         ["angle from the normal [deg]", "tangential restitution e_t [-]"],
         vec![
             Series::new("measured", Kind::Points, record.points("angle", "e_t")),
-            Series::new("exact, with micro-slip", Kind::Analytic, exact),
+            Series::new("exact solution with micro-slip", Kind::Analytic, exact),
             Series::new("rigid body that slides throughout", Kind::Analytic, rigid.collect()),
             Series::new("independent integration of the law", Kind::Source, integrated),
         ],

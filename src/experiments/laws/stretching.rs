@@ -103,8 +103,8 @@ fn ring_down(scene: &LawsScene, record: &mut Record) {
     record.set("C2.ring_down", stretch / (0.01 * edge), "1");
 }
 
-const ROUNDING: &str = "1e-5: second order in a strain of 1e-6, rounding of lengths over it; three mesh \
-                        sizes, five directions";
+const ROUNDING: &str = "1e-5: second order in a strain of 1e-6, rounding of lengths relative to \
+                       it; three mesh sizes, five directions";
 
 const ROWS: &[RowSpec] = &[
     (
@@ -130,7 +130,7 @@ const ROWS: &[RowSpec] = &[
     ),
     (
         "U10.tension",
-        "largest relative error of the tension under equal stretch in all directions",
+        "largest relative error of the tension under equibiaxial stretch",
         "lattice: √3 k ε",
         Expected::at_most(1e-5),
         ROUNDING,

@@ -56,8 +56,8 @@ pub(super) fn findings(scene: &PackingScene, records: &[Record]) -> Findings {
     rest_rows(records, &mut findings);
     findings.plots = plots::plots(records, smooth, &over_friction);
     findings.notes.push(
-        "Packings jam by quasi-static isotropic compression of a dilute state with the friction of the \
-         case switched on all the time; φ_J with friction depends on that protocol."
+        "Packings jam by quasi-static isotropic compression of a dilute state with the friction \
+        of the case switched on throughout; φ_J with friction depends on that protocol."
             .to_owned(),
     );
     findings
@@ -96,10 +96,11 @@ fn close_packing(record: &Record, findings: &mut Findings) {
     findings.rows.push(Row::new(
         &RowText {
             id: "U25.isostatic",
-            quantity: "contacts per grain without rattlers, extrapolated to no pressure, smooth",
+            quantity: "contacts per grain without rattlers, extrapolated to zero pressure, smooth",
             unit: "1",
             oracle: "isostatic: 6 (Maxwell's count in three dimensions)",
-            reason: "0.15: the line in √(φ − φ_J) through three states; 3 contacts of 2000 grains are 0.003",
+            reason: "0.15: linear fit in √(φ − φ_J) through three states; 3 contacts among 2000 \
+                    grains are 0.003",
         },
         Expected::within(6.0, 0.15),
         at.z,
@@ -110,10 +111,10 @@ fn close_packing(record: &Record, findings: &mut Findings) {
         findings.rows.push(Row::new(
             &RowText {
                 id: "U25.pressure_exponent",
-                quantity: "exponent of p over φ − φ_J, onset fitted as well",
+                quantity: "exponent of p over φ − φ_J, with fitted onset",
                 unit: "1",
                 oracle: "Hertz: 3/2 (O'Hern et al. 2003)",
-                reason: "0.1: z rises by a tenth over the range, and p with it",
+                reason: "0.1: z rises by a tenth over the range, and increases p",
             },
             Expected::within(1.5, 0.1),
             exponent,
@@ -160,15 +161,15 @@ fn structure(record: &Record, findings: &mut Findings) {
     };
     row(
         "U24.g_peak_at_2d",
-        "place of the second part of the second peak of g(r), in diameters",
-        "2: three grains in a line; Götz (2024), Fig. 25 shows peaks that die away, amorphous",
+        "position of the second part of the second peak of g(r), in diameters",
+        "2: three grains in a line; Götz (2024), Fig. 25 shows decaying peaks, amorphous",
         "0.03: one and a half bins",
         Expected::within(2.0, 0.03),
         second[0],
     );
     row(
         "U24.g_peak_at_sqrt3d",
-        "place of the first part of the second peak of g(r), in diameters",
+        "position of the first part of the second peak of g(r), in diameters",
         "√3: two triangles of grains that share a side",
         "0.06: the part is broad",
         Expected::within(3.0_f64.sqrt(), 0.06),
@@ -176,7 +177,7 @@ fn structure(record: &Record, findings: &mut Findings) {
     );
     row(
         "U24.g_split",
-        "g at √3 d over its lowest value between √3 d and 2 d",
+        "g at √3 d divided by its lowest value between √3 d and 2 d",
         "above 1: the second peak is split",
         "a bound",
         Expected::at_least(1.0),
@@ -185,7 +186,7 @@ fn structure(record: &Record, findings: &mut Findings) {
     row(
         "U24.g_no_lattice",
         "highest g within 0.05 d of √2 d",
-        "at most 1: a lattice has a shell of neighbours there, a random packing nearly its lowest g",
+        "at most 1: a lattice has a shell of neighbors there, a random packing almost its lowest g",
         "a bound",
         Expected::at_most(1.0),
         highest(1.364, 1.464)[1],
@@ -198,14 +199,14 @@ fn friction_rows(jammed: &[Jammed], findings: &mut Findings) {
         let name = format!("phi_j_friction_{}", at.friction);
         findings.quantities.push(Quantity::new(
             &name,
-            "solid fraction without pressure",
+            "solid fraction at zero pressure",
             at.phi,
             "1",
         ));
         let name = format!("z_friction_{}", at.friction);
         findings.quantities.push(Quantity::new(
             &name,
-            "contacts per grain without pressure",
+            "contacts per grain at zero pressure",
             at.z,
             "1",
         ));
@@ -248,9 +249,9 @@ fn friction_rows(jammed: &[Jammed], findings: &mut Findings) {
         );
         row(
             "U26.z_loosest",
-            "z at the largest friction, without pressure",
+            "z at the largest friction, extrapolated to zero pressure",
             "4: isostatic with infinite friction",
-            "0.2: Silbert's values scatter by that",
+            "0.2: the scatter of Silbert's values",
             Expected::within(4.0, 0.2),
             loosest.z,
         );
@@ -293,7 +294,7 @@ fn growth_rows(scene: &PackingScene, record: &Record, findings: &mut Findings) {
     );
     row(
         "C6.isostatic",
-        "contacts per grain without rattlers, extrapolated to no pressure",
+        "contacts per grain without rattlers, extrapolated to zero pressure",
         "isostatic: 6",
         "0.15: as for equal spheres",
         Expected::within(6.0, 0.15),
@@ -301,15 +302,15 @@ fn growth_rows(scene: &PackingScene, record: &Record, findings: &mut Findings) {
     );
     row(
         "C6.overlap",
-        "largest overlap over diameter where growth ends, below 1e-2 of the vacuum",
-        "at most 1 %: the grains still have their size",
+        "largest overlap divided by diameter where growth ends, below 1e-2 of the vacuum",
+        "at most 1 %: grains keep their size",
         "a bound",
         Expected::at_most(0.01),
         overlap,
     );
     row(
         "C6.radius_spread",
-        "standard deviation of the radii over their mean, after growth",
+        "standard deviation of the radii divided by their mean, after growth",
         "uniform between 2.3 and 2.7 mm: (R_max − R_min)/(√12 R̄), Götz (2024), table 2",
         "5 %: four standard errors of a sample of 2000",
         Expected::within(uniform, 0.05 * uniform),
@@ -333,10 +334,11 @@ fn stress_rows(scene: &PackingScene, record: &Record, findings: &mut Findings) {
     findings.rows.push(Row::new(
         &RowText {
             id: "U22.stress",
-            quantity: "mean stress of a sample in a membrane over the vacuum's pressure",
+            quantity: "mean stress of a sample in a membrane divided by the vacuum",
             unit: "1",
             oracle: "1: equilibrium, σ = 1/V Σ f l (Love, Weber)",
-            reason: "2 %: what the tension of the membrane takes, 2/3 of its work over the volume's",
+            reason: "2 %: the share carried by the tension of the membrane, 2/3 of its work \
+                    divided by that of the volume",
         },
         Expected::within(1.0, 0.02),
         mean / pressure,
@@ -351,8 +353,13 @@ fn rest_rows(records: &[Record], findings: &mut Findings) {
         of_columns.chain(of_scalars).fold(Real::NEG_INFINITY, Real::max)
     };
     for (id, name, quantity, bound) in [
-        ("U23.unbalanced", "unbalanced_force", "largest unbalanced force over contact force", 1e-3),
-        ("U23.kinetic", "kinetic_over_elastic", "largest kinetic over elastic energy", 1e-6),
+        (
+            "U23.unbalanced",
+            "unbalanced_force",
+            "largest unbalanced force divided by contact force",
+            1e-3,
+        ),
+        ("U23.kinetic", "kinetic_over_elastic", "largest kinetic divided by elastic energy", 1e-6),
     ] {
         findings.rows.push(Row::new(
             &RowText {

@@ -92,9 +92,9 @@ pub(super) fn rows(scene: &PackingScene, record: &Record, findings: &mut Finding
     let shear_emt = (5.0 - 4.0 * nu) / (5.0 * (2.0 - nu)) * (1.5 * factor).cbrt();
     let (bulk, shear) = (last("bulk_modulus"), last("shear_modulus"));
     for (name, meaning, value) in [
-        ("bulk_modulus", "of the packing at the seeds' vacuum", bulk),
+        ("bulk_modulus", "of the packing at the source's vacuum", bulk),
         ("bulk_modulus_emt", "by effective-medium theory", bulk_emt),
-        ("shear_modulus", "of the packing at the seeds' vacuum", shear),
+        ("shear_modulus", "of the packing at the source's vacuum", shear),
         ("shear_modulus_emt", "by effective-medium theory", shear_emt),
     ] {
         findings.quantities.push(Quantity::new(name, meaning, value, "Pa"));
@@ -106,14 +106,14 @@ pub(super) fn rows(scene: &PackingScene, record: &Record, findings: &mut Finding
     };
     row(
         "U21.bulk_modulus",
-        "bulk modulus over that of effective-medium theory",
+        "bulk modulus divided by that of effective-medium theory",
         "0.7 to 1.0: the theory moves all grains affinely, real ones relax (Makse et al. 1999)",
         Expected::between(0.7, 1.0),
         bulk / bulk_emt,
     );
     row(
         "U21.shear_modulus",
-        "shear modulus over that of effective-medium theory",
+        "shear modulus divided by that of effective-medium theory",
         "0.4 to 0.8: real grains relax far more under shear (Makse et al. 1999)",
         Expected::between(0.4, 0.8),
         shear / shear_emt,
@@ -122,7 +122,7 @@ pub(super) fn rows(scene: &PackingScene, record: &Record, findings: &mut Finding
         row(
             "U21.pressure_exponent",
             "exponent with which the bulk modulus rises with pressure",
-            "1/3 to 1/2: 1/3 by Hertz at a fixed number of contacts, more as contacts are gained",
+            "1/3 to 1/2: 1/3 by Hertz at a constant number of contacts, more if the number grows",
             Expected::between(1.0 / 3.0, 0.5),
             (bulk / first("bulk_modulus")).ln() / (p / first("pressure")).ln(),
         );

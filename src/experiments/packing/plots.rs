@@ -44,7 +44,7 @@ fn pressures(records: &[Record]) -> Plot {
     let boxed = records.iter().filter(|it| it.column("solid_fraction").is_some());
     plot(
         "Pressure over solid fraction",
-        "p grows as (φ − φ_J)^(3/2) from where the packing jams (O'Hern et al. 2003)",
+        "p grows as (φ − φ_J)^(3/2) from jamming on (O'Hern et al. 2003)",
         ["solid fraction", "pressure [Pa]"],
         [false, true],
         boxed.map(of).collect(),
@@ -118,9 +118,9 @@ fn table(record: &Record, name: &str) -> Vec<[Real; 2]> {
 fn structure(record: &Record) -> Plot {
     let ones = vec![[0.0, 1.0], [4.0, 1.0]];
     plot(
-        "Pair distribution, centre to centre",
-        "Götz (2024), Fig. 25: peaks that die away, amorphous; a random packing's second peak is split \
-         at √3 d and 2 d, a lattice has one at √2 d",
+        "Pair distribution of the centers",
+        "Götz (2024), Fig. 25: decaying peaks, amorphous; a random packing's second peak is split \
+        at √3 d and 2 d, a lattice has a peak at √2 d",
         ["distance / diameter", "g"],
         [false, false],
         vec![
@@ -137,8 +137,8 @@ fn cut(record: &Record) -> Plot {
     let without = points.iter().map(|p| [p[0], limit(p[0])]).filter(|p| p[0] > 0.5).collect();
     plot(
         "Pair distribution as in eq. 42",
-        "Götz (2024), eq. 42: grains that a sphere cuts; the kernel is a diameter wide and hides narrow \
-         peaks",
+        "Götz (2024), eq. 42: grains intersected by a sphere; the kernel is a diameter wide and \
+        hides narrow peaks",
         ["distance / diameter", "g of eq. 42"],
         [false, false],
         vec![

@@ -24,7 +24,7 @@ pub(super) fn findings(scene: &SlideScene, cases: &[Case], records: &[Record]) -
         let record = records.iter().find(|record| record.case == case.name);
         match record.and_then(|record| CaseRecord::new(case, record)) {
             Some(it) => measured.push(it),
-            None => findings.notes.push(format!("{}: no record, no rows", case.name)),
+            None => findings.notes.push(format!("{}: no record, so no rows", case.name)),
         }
     }
     for it in &measured {
@@ -60,15 +60,20 @@ fn quantities(scene: &SlideScene, it: &CaseRecord<'_>, findings: &mut Findings) 
     let friction = it.spread("friction_force");
     let height = it.spread("height");
     for (name, meaning, unit, value) in [
-        ("friction", "mean friction force over weight and load", "1", friction.mean / weight),
-        ("friction_least", "least friction force over weight and load", "1", friction.min / weight),
+        ("friction", "mean friction force divided by weight and load", "1", friction.mean / weight),
+        (
+            "friction_least",
+            "smallest friction force divided by weight and load",
+            "1",
+            friction.min / weight,
+        ),
         (
             "friction_most",
-            "largest friction force over weight and load",
+            "largest friction force divided by weight and load",
             "1",
             friction.max / weight,
         ),
-        ("height_ripple", "highest less lowest position of the ball", "m", height.range()),
+        ("height_ripple", "highest minus lowest position of the ball", "m", height.range()),
     ] {
         let name = format!("{}_{name}", it.case.name);
         findings.quantities.push(Quantity::new(&name, meaning, value, unit));
@@ -88,10 +93,11 @@ fn triangles(scene: &SlideScene, records: &[CaseRecord<'_>], rows: &mut Vec<Row>
     add(
         RowText {
             id: "C8.triangle_friction",
-            quantity: "friction force over triangles against μ N, worst of three ways and two loads",
+            quantity: "friction force over triangles compared with μ N, worst of three directions \
+                      and two loads",
             unit: "1",
             oracle: "Coulomb, F_R = μ N; Götz (2024), Fig. 8 (a): constant",
-            reason: "0.1 %: what the normal force may still swing after the start",
+            reason: "0.1 %: remaining oscillation of the normal force after the start",
         },
         Expected::within(0.0, 1e-3),
         worst(records, &names, off),
@@ -103,7 +109,8 @@ fn triangles(scene: &SlideScene, records: &[CaseRecord<'_>], rows: &mut Vec<Row>
     add(
         RowText {
             id: "C8.triangle_ripple",
-            quantity: "largest less smallest friction force over triangles, over the mean",
+            quantity: "maximum minus minimum of the friction force over triangles, divided by the \
+                      mean",
             unit: "1",
             oracle: "Götz (2024), Fig. 8 (a): constant with triangles",
             reason: "0.5 %: less than a line's width in the figure",
@@ -117,7 +124,7 @@ fn triangles(scene: &SlideScene, records: &[CaseRecord<'_>], rows: &mut Vec<Row>
     add(
         RowText {
             id: "C8.triangle_height",
-            quantity: "highest less lowest position over triangles, over the overlap",
+            quantity: "highest minus lowest position over triangles, divided by the overlap",
             unit: "1",
             oracle: "Götz (2024), Fig. 8 (b): constant with triangles",
             reason: "0.1 % of the overlap, as for the force",
@@ -128,10 +135,10 @@ fn triangles(scene: &SlideScene, records: &[CaseRecord<'_>], rows: &mut Vec<Row>
     add(
         RowText {
             id: "C8.triangle_sag",
-            quantity: "how deep the ball sinks into triangles against Hertz",
+            quantity: "overlap of the ball with triangles compared with Hertz",
             unit: "1",
             oracle: "Hertz, ξ = (3 W / 4 E* √R)^(2/3)",
-            reason: "0.1 %: one contact at rest, no swing",
+            reason: "0.1 %: one contact at rest, without oscillation",
         },
         Expected::within(0.0, 1e-3),
         worst(records, &names, |it| ((radius - it.spread("height").mean) / sag(it) - 1.0).abs()),
@@ -139,10 +146,11 @@ fn triangles(scene: &SlideScene, records: &[CaseRecord<'_>], rows: &mut Vec<Row>
     add(
         RowText {
             id: "C8.triangle_stick",
-            quantity: "distance over which the ball sticks before it slides, over the law's",
+            quantity: "distance over which the ball sticks before it slides, divided by that of \
+                      the law",
             unit: "1",
-            oracle: "ξ_t = μ N / (2/3 · 8 G* √(R ξ)) (Götz 2024, eqs. 8 to 10 as resolved)",
-            reason: "0.1 %: from the slope of the first straight piece, on which nothing else acts",
+            oracle: "ξ_t = μ N / (2/3 · 8 G* √(R ξ)) (Götz 2024, eqs. 8 to 10)",
+            reason: "0.1 %: from the slope of the first linear part, where nothing else acts",
         },
         Expected::within(1.0, 1e-3),
         named(records, "triangles_rows").map(|it| stick(scene, it)),
@@ -192,10 +200,11 @@ fn hard_spheres(scene: &SlideScene, records: &[CaseRecord<'_>], rows: &mut Vec<R
                 quantity: &format!("height ripple over hard spheres, down into a {place}"),
                 unit: "m",
                 oracle: &format!(
-                    "(R + r) − √((R + r)² − l²) = {bare:.3} mm, less the difference of Hertz sags; \
-                     Götz (2024), Fig. 8 (b)"
+                    "(R + r) − √((R + r)² − l²) = {bare:.3} mm, minus the difference of the Hertz \
+                    overlaps; Götz (2024), Fig. 8 (b)"
                 ),
-                reason: "1 %: the ball is recorded every 20 µm and swings a little at the bottom",
+                reason: "1 %: the ball is recorded every 20 µm and oscillates slightly at the \
+                        bottom",
             },
             Expected::within(fall, 0.01 * fall),
             it.spread("height").range(),
@@ -203,18 +212,21 @@ fn hard_spheres(scene: &SlideScene, records: &[CaseRecord<'_>], rows: &mut Vec<R
     }
     let Some(it) = named(records, "hard_spheres_rows") else { return };
     for (id, share, place) in [
-        ("C8.particle_descending", 0.25, "a quarter after the top of a sphere"),
-        ("C8.particle_climbing", 0.75, "a quarter before the top of a sphere"),
+        ("C8.particle_descending", 0.25, "a quarter period after the top of a sphere"),
+        ("C8.particle_climbing", 0.75, "a quarter period before the top of a sphere"),
     ] {
         let behind = if share < 0.5 { share * edge } else { (share - 1.0) * edge };
         let oracle = expected::friction_on_one(friction, reach, behind);
         rows.push(Row::new(
             &RowText {
                 id,
-                quantity: &format!("friction force over weight and load on hard spheres, {place}"),
+                quantity: &format!(
+                    "friction force divided by weight and load on hard spheres, \
+                                   {place}"
+                ),
                 unit: "1",
                 oracle: "one sphere, F_R = W tan(φ − θ), sin θ = u/(R + r), tan φ = μ",
-                reason: "1 %: contact of finite stiffness, so that the path is not quite a circle",
+                reason: "1 %: the finite contact stiffness makes the path deviate from a circle",
             },
             Expected::within(oracle, 0.01 * oracle),
             it.friction_at(share) / it.case.weight(scene),
@@ -225,10 +237,12 @@ fn hard_spheres(scene: &SlideScene, records: &[CaseRecord<'_>], rows: &mut Vec<R
     rows.push(Row::new(
         &RowText {
             id: "C8.particle_friction_range",
-            quantity: "largest less smallest friction force over hard spheres, over weight and load",
+            quantity: "maximum minus minimum of the friction force over hard spheres, divided by \
+                      weight and load",
             unit: "1",
             oracle: "one sphere at both ends of a bridge, tan(φ + θ) − tan(φ − θ), sin θ = s/2(R + r)",
-            reason: "2 %: both extremes lie where the ball is handed on, within 20 µm",
+            reason: "2 %: both extremes are where the ball moves from one sphere to the next, \
+                    within 20 µm",
         },
         Expected::within(oracle, 0.02 * oracle),
         it.spread("friction_force").range() / it.case.weight(scene),
@@ -238,17 +252,21 @@ fn hard_spheres(scene: &SlideScene, records: &[CaseRecord<'_>], rows: &mut Vec<R
 /// Spheres of the scene, compared with the quasi-static sum over all of them.
 fn spheres(scene: &SlideScene, records: &[CaseRecord<'_>], rows: &mut Vec<Row>) {
     let names = ["spheres_rows", "spheres_across", "spheres_skew"];
-    for (name, way) in names.into_iter().zip(["along rows", "across rows", "askew"]) {
+    for (name, way) in names.into_iter().zip(["along rows", "across rows", "at an angle"]) {
         let Some(it) = named(records, name) else { continue };
         let (height, friction) = deviations(it, &it.expected(scene));
         let short = name.trim_start_matches("spheres_");
         rows.push(Row::new(
             &RowText {
                 id: &format!("C8.particle_height_{short}"),
-                quantity: &format!("height over spheres {way} against the computed one, rms over range"),
+                quantity: &format!(
+                    "height over spheres {way} compared with the computed one, rms \
+                                   deviation divided by range"
+                ),
                 unit: "1",
-                oracle: "forces of all touched spheres in balance; Götz (2024), Fig. 8 (b)",
-                reason: "3 %: inertia at 50 mm/s, 1 % of the load, and the friction spring's memory",
+                oracle: "equilibrium of the forces of all touched spheres; Götz (2024), Fig. 8 (b)",
+                reason: "3 %: inertia at 50 mm/s, 1 % of the load, and the memory of the friction \
+                        spring",
             },
             Expected::at_most(0.03),
             height,
@@ -257,7 +275,8 @@ fn spheres(scene: &SlideScene, records: &[CaseRecord<'_>], rows: &mut Vec<Row>) 
             &RowText {
                 id: &format!("C8.particle_friction_{short}"),
                 quantity: &format!(
-                    "friction over spheres {way} against the computed one, rms over range"
+                    "friction over spheres {way} compared with the computed one, rms deviation \
+                    divided by range"
                 ),
                 unit: "1",
                 oracle: "horizontal part of normal forces and friction; Götz (2024), Fig. 8 (a)",
@@ -277,7 +296,7 @@ fn spheres(scene: &SlideScene, records: &[CaseRecord<'_>], rows: &mut Vec<Row>) 
         rows.push(Row::new(
             &RowText {
                 id,
-                quantity: "distance between two tops of the path over spheres",
+                quantity: "distance between two maxima of the path over spheres",
                 unit: "m",
                 oracle: "the lattice: s along rows, √3 s across",
                 reason: "0.1 %: interpolated between records, averaged over many periods",
@@ -297,21 +316,22 @@ fn framed(scene: &SlideScene, records: &[CaseRecord<'_>], rows: &mut Vec<Row>) {
     rows.push(Row::new(
         &RowText {
             id: "C8.framed_friction",
-            quantity: "mean friction force over triangles held at the edge only, over μ N",
+            quantity: "mean friction force over triangles held at the edge only, divided by μ N",
             unit: "1",
-            oracle: "Coulomb: ups and downs of facets cancel over whole periods",
-            reason: "2 %: the way through the bowl of the sheet is not quite symmetric, and facets \
-                     that tilt by some degrees make it longer",
+            oracle: "Coulomb: slopes of facets cancel over whole periods",
+            reason: "2 %: the path through the dent of the membrane is not quite symmetric, and \
+                    facets that tilt by some degrees make it longer",
         },
         Expected::within(1.0, 0.02),
         mean / friction,
     ));
-    let cause = "A sheet that gives way bends at its vertices into facets, of 1.33 mm under a ball of \
-                2 mm; the ball climbs the front half of each and goes down the rear half, \
-                F_R = W tan(φ ± tilt). The source does not say how its membrane was held";
+    let cause = "A membrane that gives way bends at its vertices and forms facets, of 1.33 mm \
+                under a ball of 2 mm; the ball goes up on the front half of each and down on the \
+                rear half, F_R = W tan(φ ± tilt). The source does not say how its membrane was \
+                held";
     let reason = match named(records, "small_triangles_framed") {
         Some(small) => format!(
-            "{cause}. Tried: triangles of half the size, {:.1} % in place of {:.1} %",
+            "{cause}. Tried: triangles of half the size, {:.1} % instead of {:.1} %",
             100.0 * small.ripple(),
             100.0 * it.ripple()
         ),
@@ -320,8 +340,8 @@ fn framed(scene: &SlideScene, records: &[CaseRecord<'_>], rows: &mut Vec<Row>) {
     rows.push(Row::new(
         &RowText {
             id: "C8.framed_ripple",
-            quantity: "standard deviation of the friction force over triangles held at the edge only, \
-                       over its mean",
+            quantity: "standard deviation of the friction force over triangles held at the edge \
+                      only, divided by its mean",
             unit: "1",
             oracle: "Götz (2024), Fig. 8 (a): constant with triangles",
             reason: &reason,
@@ -333,7 +353,7 @@ fn framed(scene: &SlideScene, records: &[CaseRecord<'_>], rows: &mut Vec<Row>) {
     rows.push(Row::new(
         &RowText {
             id: "C8.framed_smoother",
-            quantity: "the same over that of spheres",
+            quantity: "the same divided by that of spheres",
             unit: "1",
             oracle: "Götz (2024), section 3.3.2: triangles are smoother",
             reason: "A bound: the source gives no number",

@@ -18,7 +18,7 @@ pub(super) fn add(scene: &SlideScene, records: &[CaseRecord<'_>], plots: &mut Ve
     let sets: [(&str, &[&str]); 4] = [
         ("all vertices held, along rows", &["triangles_rows", "spheres_rows"]),
         (
-            "all vertices held, across rows and askew",
+            "all vertices held, across rows and at an angle",
             &["triangles_across", "spheres_across", "spheres_skew"],
         ),
         ("hard contacts, slowly", &["hard_spheres_rows", "hard_spheres_across"]),

@@ -55,10 +55,11 @@ pub(super) fn findings(scene: &TriaxialScene, records: &[Record]) -> Findings {
     let n_leaked: u64 = records.iter().map(|it| it.validity.n_leaked).sum();
     let text = RowText {
         id: "C7.no_leak",
-        quantity: "specimens whose membrane let a grain through",
+        quantity: "number of specimens whose membrane leaked a grain",
         unit: "1",
         oracle: "Götz (2024), section 3.3.1: the membrane holds the grains",
-        reason: "a whole number; a specimen that leaks while it is sheared ends there, with its curve up to there",
+        reason: "a whole number; a specimen that leaks while it is sheared ends there and keeps \
+                its curve up to there",
     };
     findings.rows.push(Row::new(&text, Expected::at_most(0.0), real_of(n_leaked)));
     findings.notes.extend(notes(scene));
@@ -67,21 +68,22 @@ pub(super) fn findings(scene: &TriaxialScene, records: &[Record]) -> Findings {
 
 fn notes(scene: &TriaxialScene) -> Vec<String> {
     let mut notes = vec![
-        "Plates bear what grains put on them; the pull of the membrane's end rings is left out. The \
-         rings stay at the first radius while the grains sink about a millimetre into the soft \
-         membrane, so the cross-section V/h is smaller than the plates' circle, and the air on the \
-         slanted sheet beside the rings presses some of the outer grains on the plates: before shearing \
-         the plates bear p_c while the axial stress in the middle is some 7 % less."
+        "The force on a plate is that of the grains; the pull of the membrane's end rings is not \
+        included. The rings keep the initial radius while the grains indent the soft membrane by \
+        about a millimeter, so the cross-section V/h is smaller than the circle of the plates, \
+        and the air on the inclined membrane near the rings presses some of the outer grains \
+        against the plates: before shearing the plates carry p_c while the axial stress in the \
+        middle is about 7 % lower."
             .to_owned(),
-        "Hinges take the initial areas of their triangles, as the source says. With current areas the \
-         model with spheres blows up at 4 % strain: beside the plates its fine triangles are squeezed \
-         flat, and their hinges get stiffer without limit."
+        "Hinges use the initial areas of their triangles, as the source states. With current \
+        areas the model with spheres diverges at 4 % strain: near the plates its fine triangles \
+        are squeezed flat, and their hinges stiffen without limit."
             .to_owned(),
     ];
     if scene.shear.speed_factor > 1.0 {
         notes.push(format!(
-            "Plates are {} times as fast as the source's; case1_triangles_A{CHECK} says what this and \
-             the longer substeps change.",
+            "Plates are {} times as fast as in the source; case1_triangles_A{CHECK} shows the \
+            effect of this and of the longer substeps.",
             scene.shear.speed_factor
         ));
     }
@@ -161,7 +163,7 @@ impl<'a> Group<'a> {
                 unit: "1",
                 oracle: "Götz (2024), table 3: numbers of grains in the cylinder's volume",
                 reason: "the mean volume of that many random grains scatters by 0.2 %, and the \
-                         polygon around the cylinder holds 0.4 % less",
+                        polygonal cylinder has 0.4 % less volume",
             };
             findings.rows.push(Row::new(&text, Expected::within(expected, 5e-3), found));
         }
@@ -176,20 +178,21 @@ impl<'a> Group<'a> {
         };
         let text = RowText {
             id: &self.id("isotropic_plates"),
-            quantity: "stress difference before shearing over confining pressure, largest",
+            quantity: "largest stress difference before shearing, divided by the confining \
+                      pressure",
             unit: "1",
             oracle: "Götz (2024), section 3.3.1: p_plate = p_c at h_0",
-            reason: "the servo stops within 0.5 %; a substep's forces scatter by as much",
+            reason: "the servo stops within 0.5 %; the forces of a substep scatter by as much",
         };
         let worst = largest(first("stress_difference").iter().map(|it| (it / pressure).abs()));
         findings.rows.push(Row::new(&text, Expected::at_most(0.01), worst));
         let text = RowText {
             id: &self.id("isotropic_stress"),
-            quantity: "lateral stress of the contacts before shearing over confining pressure and \
-                       the membrane's hoop, mean",
+            quantity: "mean lateral stress of the contacts before shearing, divided by confining \
+                      pressure plus hoop pressure of the membrane",
             unit: "1",
             oracle: "U22: σ = 1/V Σ f l equals the applied pressure",
-            reason: "2 %, as U22 has it; the hoop is that of the springs, without hinges",
+            reason: "2 % as for U22; the hoop pressure is that of the springs, without hinges",
         };
         let (stresses, hoops) = (first("lateral_stress"), first("hoop_pressure"));
         let shares = stresses.iter().zip(&hoops).map(|(it, hoop)| it / (pressure + hoop));
@@ -215,7 +218,7 @@ impl<'a> Group<'a> {
             .collect();
         let text = RowText {
             id: &self.id("mohr_coulomb"),
-            quantity: "friction angle at the largest stress difference, mean of all specimens",
+            quantity: "friction angle at the largest stress difference, mean over all specimens",
             unit: "deg",
             oracle: "Mohr and Coulomb, σ_d/p_c = (1 + sin φ)/(1 − sin φ) − 1; spheres with μ = 0.25 \
                      and a solid fraction of 0.58 have 20 to 25 degrees",
@@ -234,11 +237,11 @@ impl<'a> Group<'a> {
         };
         let text = RowText {
             id: &self.id("same_strength"),
-            quantity: "largest stress difference with spheres over that with triangles, means of A \
-                       and B",
+            quantity: "largest stress difference with spheres divided by that with triangles, \
+                      means of A and B",
             unit: "1",
             oracle: "Götz (2024), figure 6: no significant difference between the models",
-            reason: "10 %: about what 1700 grains scatter by",
+            reason: "10 %: about the scatter of 1700 grains",
         };
         let ratio = strength(Kind::Spheres) / strength(Kind::Triangles);
         if ratio.is_finite() {
@@ -260,17 +263,17 @@ impl<'a> Group<'a> {
         let difference = root_mean(&|k| 0.5 * (a[k] + b[k] - c[k] - d[k]));
         let scatter = root_mean(&|k| (a[k] - b[k]).abs().max((c[k] - d[k]).abs()));
         let height = root_mean(&|k| 0.25 * (a[k] + b[k] + c[k] + d[k]));
-        let reason = "the first 0.5 % of strain is left out. If it fails: spheres of 0.65 mm on the \
-                      same cylinder leave less room, which table 3's numbers of grains fill more \
-                      densely: they are jammed when they are grown, those with triangles are not, \
-                      and rise faster. Tried: fewer grains among the spheres \
-                      (C7.same_stress_loose), which then rise more slowly than the triangles: the \
-                      rise depends on the filling more than on the model; C7 same_strength compares \
-                      the plateaus";
+        let reason = "the first 0.5 % of strain is left out. If it fails: spheres of 0.65 mm on \
+                     the same cylinder leave less room, which the grain numbers of table 3 fill \
+                     more densely: after growth they are jammed, unlike those with triangles, and \
+                     their stress rises faster. Tried: fewer grains with the spheres \
+                     (C7.same_stress_loose), whose stress then rises more slowly than with \
+                     triangles: the rise depends more on the filling than on the model; \
+                     C7.same_strength compares the plateaus";
         let text = RowText {
             id: &self.id("same_stress"),
-            quantity: "distance of both models' mean stress difference over the larger distance of \
-                       the initial states A and B",
+            quantity: "difference between the mean stress differences of both models, divided by \
+                      the larger difference between the initial states A and B",
             unit: "1",
             oracle: "Götz (2024), figure 6: no significant difference between the models",
             reason: &format!("within the scatter of A and B, root mean squares; {reason}"),
@@ -278,10 +281,11 @@ impl<'a> Group<'a> {
         findings.rows.push(Row::new(&text, Expected::at_most(1.0), difference / scatter));
         let text = RowText {
             id: &self.id("same_stress_relative"),
-            quantity: "distance of both models' mean stress difference over their mean",
+            quantity: "difference between the mean stress differences of both models, divided by \
+                      their mean",
             unit: "1",
             oracle: "Götz (2024), figure 6: no significant difference between the models",
-            reason: &format!("10 %: about what 1700 grains scatter by; {reason}"),
+            reason: &format!("10 %: about the scatter of 1700 grains; {reason}"),
         };
         findings.rows.push(Row::new(&text, Expected::at_most(0.1), difference / height));
     }
@@ -295,7 +299,8 @@ impl<'a> Group<'a> {
         let barrel = mean(self.specimens.iter().filter_map(|it| ratio(it.1)));
         let text = RowText {
             id: &self.id("barrel"),
-            quantity: "growth of the membrane's radius in the middle over that at the ends, mean",
+            quantity: "mean growth of the membrane's radius in the middle divided by that at the \
+                      ends",
             unit: "1",
             oracle: "Götz (2024), figure 5: the ends are held by the plates",
             reason: "a bound",
@@ -307,9 +312,9 @@ impl<'a> Group<'a> {
         };
         let text = RowText {
             id: &self.id("dilates"),
-            quantity: "volumetric strain at the end above its smallest, mean",
+            quantity: "mean volumetric strain at the end above its minimum",
             unit: "1",
-            oracle: "dense grains must rise over each other to be sheared (Reynolds 1885)",
+            oracle: "dense grains must move apart to be sheared (Reynolds 1885)",
             reason: "a bound",
         };
         let risen = mean(self.specimens.iter().filter_map(|it| dilation(it.1)));
@@ -318,8 +323,8 @@ impl<'a> Group<'a> {
         let added = largest(hoops.iter().filter_map(|it| it.last()).copied());
         let text = RowText {
             id: &self.id("hoop"),
-            quantity: "what the hoop tension of the membrane adds to the confining pressure at the \
-                       end, largest",
+            quantity: "largest pressure that the hoop tension of the membrane adds to the \
+                      confining pressure at the end",
             unit: "Pa",
             oracle: "4 E d ε/D at a hoop strain ε of 10 %, D = 50 mm",
             reason: "a bound: 3 % of the confining pressure is neglected",
@@ -339,23 +344,24 @@ fn run_times(record: &Record, size: usize, findings: &mut Findings) {
         let minutes = TABLE_4[size][which];
         let text = RowText {
             id: &format!("C7.run_time_{}.case{}", kind.name(), size + 1),
-            quantity: &format!("time to compute 20 ms with {}, one thread", kind.name()),
+            quantity: &format!("run time for 20 ms with {}, one thread", kind.name()),
             unit: "min",
             oracle: "Götz (2024), table 4, 8 threads of an AMD Epyc 7702",
-            reason: "a bound; the substep counts as much as the processor: the source does not say \
-                     its own",
+            reason: "a bound; the substep matters as much as the processor, and the source does \
+                    not give it",
         };
         findings.rows.push(Row::new(&text, Expected::at_most(minutes), times[which] / 60.0));
     }
     let ratio = times[1] / times[0];
     let text = RowText {
         id: &format!("C7.run_time_ratio.case{}", size + 1),
-        quantity: "run time with spheres over run time with triangles, in turns on one thread",
+        quantity: "run time with spheres divided by run time with triangles, alternating on one \
+                  thread",
         unit: "1",
         oracle: "Götz (2024), table 4 and section 3.3.1: faster by a factor of 5",
-        reason: "a bound, with the source's hinge damping, which asks for shorter substeps on the fine \
-                 mesh. There are 9 vertices to 1, but contacts between grains, which both models have, \
-                 take their share",
+        reason: "a bound, with the source's hinge damping, which requires shorter substeps on the \
+                fine mesh. The mesh has 9 times as many vertices, but contacts between grains \
+                take time in both models",
     };
     findings.rows.push(Row::new(&text, Expected::at_least(5.0), ratio));
     let steps =
@@ -363,7 +369,7 @@ fn run_times(record: &Record, size: usize, findings: &mut Findings) {
     let walls = KINDS.map(|kind| record.wall_s.get(kind.name()).copied().unwrap_or(f64::NAN));
     findings.quantities.push(Quantity::new(
         &format!("run_time_ratio_of_a_substep_case{}", size + 1),
-        "time of a substep with spheres over that with triangles",
+        "time of a substep with spheres divided by that with triangles",
         (walls[1] / steps[1]) / (walls[0] / steps[0]),
         "1",
     ));
@@ -391,7 +397,7 @@ fn check(scene: &TriaxialScene, records: &[Record], findings: &mut Findings) {
         quantity: "change of the stress difference at half the speed, mean over strain, relative",
         unit: "1",
         oracle: "quasi-static: the inertial number is 1e-3 at most",
-        reason: "3 % per halving; the check has the shorter substep as well",
+        reason: "3 % per halving; the check also has a shorter substep",
     };
     findings.rows.push(Row::new(&text, Expected::at_most(0.03), (difference / height).abs()));
 }
@@ -414,13 +420,14 @@ fn loose(scene: &TriaxialScene, records: &[Record], findings: &mut Findings) {
     let height = mean(later.iter().map(|&k| (0.5 * (a[k] + b[k])).powi(2))).sqrt();
     let text = RowText {
         id: "C7.same_stress_loose",
-        quantity: "distance of the stress difference with spheres in a room as full as that of the \
-                   triangles, over the latter's mean",
+        quantity: "difference between the stress differences with spheres filled as densely as \
+                  the triangles and with triangles, divided by the mean of the latter",
         unit: "1",
         oracle: "Götz (2024), figure 6: no significant difference between the models",
-        reason: "10 %: about what 1700 grains scatter by; the first 0.5 % of strain is left out. If \
-                 it fails: as full in the straight tube is not as full when the soft membranes have \
-                 given way; a number of grains between these would hit the triangles' rise",
+        reason: "10 %: about the scatter of 1700 grains; the first 0.5 % of strain is left out. \
+                If it fails: equal densities in the straight tube are not equal after the soft \
+                membranes have given way; an intermediate number of grains would match the rise \
+                with triangles",
     };
     findings.rows.push(Row::new(&text, Expected::at_most(0.1), difference / height));
 }
