@@ -1,5 +1,5 @@
-//! Findings of an experiment: quantities with units, curves, plots, and rows that compare a measured
-//! value with its oracle, the value it must have.
+//! Findings of an experiment: quantities with units, curves, plots, and rows that compare a
+//! measured value with its oracle, the value it must have.
 
 use serde::{Deserialize, Serialize};
 

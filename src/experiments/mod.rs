@@ -13,9 +13,10 @@
 //! | `plots.rs` | plots and tables of the report |
 //! | `mod.rs` | the `Experiment` and its `Plan`, which tie these together |
 //!
-//! A file may use those above it. To add an experiment, write `launch_configs/experiments/NAME.yaml`,
-//! these files, and a line in `EXPERIMENTS`. Findings are computed from records alone, without clock
-//! or files; tests, reports and benchmarks run the same cases.
+//! A file may use those above it. To add an experiment, write
+//! `launch_configs/experiments/NAME.yaml`, these files, and a line in `EXPERIMENTS`. Findings are
+//! computed from records alone, without clock or files; tests, reports and benchmarks run the same
+//! cases.
 
 pub mod findings; // results and verdicts
 pub mod gripper; // holding force of the gripper

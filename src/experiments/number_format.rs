@@ -1,5 +1,5 @@
-//! Numbers in text formats: JSON has no NaN and no infinity, so NaN is written as `null` and infinity
-//! as a string. Binary formats keep all numbers as they are.
+//! Numbers in text formats: JSON has no NaN and no infinity, so NaN is written as `null` and
+//! infinity as a string. Binary formats keep all numbers as they are.
 
 use serde::{
     Deserialize, Deserializer, Serialize, Serializer,

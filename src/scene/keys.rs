@@ -14,7 +14,8 @@
 //! ```
 //!
 //! The key is the name of the field, or the literal after it. The expression says what is allowed:
-//! see the implementations of `Limits`. The order of the fields is the order in which keys are read.
+//! see the implementations of `Limits`. The order of the fields is the order in which keys are
+//! read.
 
 use std::ops::RangeInclusive;
 

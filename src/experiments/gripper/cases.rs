@@ -1,7 +1,9 @@
-//! The cases: which grips belong together, what each of them varies, and from which state it starts.
+//! The cases: which grips belong together, what each of them varies, and from which state it
+//! starts.
 //!
-//! A case is one filling. Its grips share the settled state, and those that differ only from the relaxed
-//! state on share the insertion, too, so that the scatter between fillings does not affect comparisons.
+//! A case is one filling. Its grips share the settled state, and those that differ only from the
+//! relaxed state on share the insertion, too, so that the scatter between fillings does not affect
+//! comparisons.
 
 use super::scene::GripperScene;
 use crate::{base::Real, physics::measure::real};
@@ -116,8 +118,8 @@ fn variations(scene: &GripperScene) -> Vec<Change> {
         .collect()
 }
 
-/// The protocol for each modulus and filling. The first filling of the reference modulus also covers
-/// other pressures and everything that is varied from the relaxed state on.
+/// The protocol for each modulus and filling. The first filling of the reference modulus also
+/// covers other pressures and everything that is varied from the relaxed state on.
 fn over_modulus(scene: &GripperScene) -> Vec<Case> {
     let own = &scene.gripper.grains;
     let mut cases = Vec::new();
@@ -140,8 +142,8 @@ fn over_modulus(scene: &GripperScene) -> Vec<Case> {
     cases
 }
 
-/// Run time of a grip of 4200 soft grains at ten times the source's speed, on one thread of a machine
-/// of 2026 (s); the filling takes half of it.
+/// Run time of a grip of 4200 soft grains at ten times the source's speed, on one thread of a
+/// machine of 2026 (s); the filling takes half of it.
 const GRIP_S: Real = 35.0;
 /// Modulus above which the grains, not the membrane, limit the substep (Pa).
 const HARD: Real = 3.2e7;

@@ -12,8 +12,8 @@ use crate::{
     },
 };
 
-/// Share of the normal force on the object that acts within the contact angle; the rest may come from
-/// single samples that barely touch.
+/// Share of the normal force on the object that acts within the contact angle; the rest may come
+/// from single samples that barely touch.
 const FORCE_WITHIN: Real = 0.98;
 
 /// Columns of the record, with one row for each tick.
@@ -54,8 +54,8 @@ pub(super) struct Tick {
     pub(super) force: Real,
 }
 
-/// Records a tick. Returns the largest overlap over mean diameter, the pressure in the grains (Pa), and
-/// the number of contacts with the object.
+/// Records a tick. Returns the largest overlap over mean diameter, the pressure in the grains (Pa),
+/// and the number of contacts with the object.
 pub(super) fn record_tick(record: &mut Record, system: &System, tick: Tick) -> (Real, Real, usize) {
     let System { model, state, scratch, .. } = system;
     let packing = measure::packing(state, scratch);
@@ -81,8 +81,8 @@ pub(super) fn record_tick(record: &mut Record, system: &System, tick: Tick) -> (
     (packing.overlap_max / (2.0 * model.radius_mean), pressure, packing.n_body_contacts)
 }
 
-/// Mean normal stress of the grains, p = Σ F_n l / 3 V over the branch lengths l of all contacts (Pa),
-/// and the elastic energy of the contacts, Σ 2/5 F_n ξ (J).
+/// Mean normal stress of the grains, p = Σ F_n l / 3 V over the branch lengths l of all contacts
+/// (Pa), and the elastic energy of the contacts, Σ 2/5 F_n ξ (J).
 fn contacts(system: &System, volume: Real) -> (Real, Real) {
     let System { state, scratch, .. } = system;
     let radii = &state.grains.radii;
@@ -111,7 +111,8 @@ struct ObjectContact {
     normal_force: Real,
     /// Polar angle from the top within which the membrane presses (rad).
     angle: Real,
-    /// Largest pull that Coulomb friction allows with these normal forces, Σ F_n (μ sin θ − cos θ) (N).
+    /// Largest pull that Coulomb friction allows with these normal forces, Σ F_n (μ sin θ − cos θ)
+    /// (N).
     coulomb_limit: Real,
 }
 
@@ -144,8 +145,8 @@ fn angle_from_top(arm: &Vec3) -> Real {
     arm.z.atan2(arm.x.hypot(arm.y)).mul_add(-1.0, FRAC_PI_2)
 }
 
-/// Holding force (N) of a sphere with a uniform pressure of the total `normal_force` (N) from the top to
-/// the polar angle `angle` (rad), with fully mobilized friction:
+/// Holding force (N) of a sphere with a uniform pressure of the total `normal_force` (N) from the
+/// top to the polar angle `angle` (rad), with fully mobilized friction:
 ///
 /// ```text
 /// F_h = 2 π R² p_n [ μ (θ/2 − sin 2θ / 4) − ½ sin² θ ],   p_n = Σ F_n / 2 π R² (1 − cos θ)
@@ -155,8 +156,8 @@ pub(super) fn pinch(normal_force: Real, angle: Real, friction: Real) -> Real {
     uniform * (friction * (angle / 2.0 - (2.0 * angle).sin() / 4.0) - 0.5 * angle.sin().powi(2))
 }
 
-/// Smallest contact angle (rad) at which friction holds a sphere under uniform pressure: where `pinch`
-/// changes its sign.
+/// Smallest contact angle (rad) at which friction holds a sphere under uniform pressure: where
+/// `pinch` changes its sign.
 pub(super) fn pinch_threshold(friction: Real) -> Real {
     let (mut low, mut high) = (1e-6, PI);
     for _ in 0..60 {
@@ -166,15 +167,15 @@ pub(super) fn pinch_threshold(friction: Real) -> Real {
     0.5 * (low + high)
 }
 
-/// Share of the penetration without any pull after which none is expected: without vacuum, the membrane
-/// pushes the object out all the way.
+/// Share of the penetration without any pull after which none is expected: without vacuum, the
+/// membrane pushes the object out all the way.
 const NO_PULL_WITHIN: Real = 1.0 / 3.0;
 
 /// Distance after the largest pull beyond which a smaller pull is no fluctuation (m).
 const DISTANCE_AFTER_PEAK: Real = 1e-3;
 
-/// True if the grip may end: the pull has fallen far enough below its peak, or there was none on the
-/// first third of the distance.
+/// True if the grip may end: the pull has fallen far enough below its peak, or there was none on
+/// the first third of the distance.
 pub(super) fn is_past_peak(record: &Record, grip: usize, scene: &GripperScene) -> bool {
     let until = scene.accelerations.withdraw_until;
     let force = rows(record, grip, Phase::Withdraw, "force");

@@ -1,5 +1,6 @@
 //! The granular gripper (Götz 2024, section 4.2): a sphere is pushed into the vented gripper, the
-//! gripper is evacuated in steps, and the sphere is pulled out. The largest pull is the holding force.
+//! gripper is evacuated in steps, and the sphere is pulled out. The largest pull is the holding
+//! force.
 //!
 //! The motion of the object is prescribed and the flange does not move, so there is no rigid-body
 //! dynamics: only grains, membrane and air are advanced and saved.

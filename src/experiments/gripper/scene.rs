@@ -33,7 +33,8 @@ scene_keys! {
         sweep: Sweep = Map,
     }
 
-    /// Gripper and object: a scene without table, motion limits and outputs, which nothing uses here.
+    /// Gripper and object: a scene without table, motion limits and outputs, which nothing uses
+    /// here.
     pub(super) struct Gripper {
         /// Name of the scene.
         name: String = Text,
@@ -97,7 +98,8 @@ scene_keys! {
         withdraw_until: Real = Range::Between(0.0, 0.95),
         /// Modulus with which stiffer grains are filled in, before they stiffen at rest (Pa).
         filling_modulus: Option<Real> = QuantityOr("own", SOME_MODULUS),
-        /// True varies friction, damping and speed from the relaxed state on, not from the settled one.
+        /// True varies friction, damping and speed from the relaxed state on, not from the settled
+        /// one.
         is_varied_relaxed ("vary_relaxed"): bool = Flag,
     }
 

@@ -1,5 +1,5 @@
-//! The hollow sphere (Götz 2024, sections 4.3 and 4.4): an object inside a shell of grains between two
-//! membranes, as a model of a gripper.
+//! The hollow sphere (Götz 2024, sections 4.3 and 4.4): an object inside a shell of grains between
+//! two membranes, as a model of a gripper.
 
 mod build; // the system
 mod cases; // the list of cases

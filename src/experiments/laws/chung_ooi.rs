@@ -1,8 +1,8 @@
 //! The eight benchmarks of Chung & Ooi (2011) for one and two spheres.
 //!
-//! Their tests 3, 4 and 6 to 8 want a constant coefficient of restitution. The law here has none: its
-//! dissipation time is chosen so that the theory of `oracles::impact` gives that restitution at that
-//! speed. Where a contact slides, the result depends on the restitution alone, not on the law.
+//! Their tests 3, 4 and 6 to 8 assume a constant coefficient of restitution. The law here has none:
+//! its dissipation time is chosen so that the theory of `oracles::impact` gives that restitution at
+//! that speed. Where a contact slides, the result depends on the restitution alone, not on the law.
 
 use super::{
     Law, RowSpec,
@@ -26,8 +26,8 @@ pub(super) struct ChungOoi;
 
 /// Restitutions of test 3.
 const RESTITUTIONS: [Real; 5] = [0.2, 0.4, 0.6, 0.8, 0.98];
-/// Test 4 with aluminium oxide: angle [deg] and e_t of a secant spring of 2/3 · 8 G* √(R* ξ), integrated
-/// independently.
+/// Test 4 with aluminium oxide: angle [deg] and e_t of a secant spring of 2/3 · 8 G* √(R* ξ),
+/// integrated independently.
 const TEST_4: [[Real; 2]; 9] = [
     [5.0, 0.684],
     [10.0, 0.577],
@@ -41,14 +41,14 @@ const TEST_4: [[Real; 2]; 9] = [
 ];
 /// Tangential over μ times normal speed in test 5.
 const RATIOS: [Real; 9] = [0.5, 1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 20.0];
-/// Spins of test 6 [rad/s]. A rigid sphere slides throughout from 4.2 rad/s on; with a spring, which
-/// sticks for a moment, it takes somewhat more.
+/// Spins of test 6 (rad/s). A rigid sphere slides throughout from 4.2 rad/s on; with a spring,
+/// which sticks for a moment, it takes somewhat more.
 const SPINS: [Real; 7] = [0.175, 1.0, 2.5, 4.5, 8.0, 15.0, 22.9];
 
-/// Spin from which on the closed form is expected to hold [rad/s].
+/// Smallest spin at which the closed form is expected to hold (rad/s).
 const SLIDES: Real = 6.0;
 
-/// Tests 1 to 8 of one pair of materials each; the points of the case.
+/// The points of the case: tests 1 to 8, each for one pair of materials.
 const POINTS: [fn(&LawsScene, &mut Record); 8] =
     [test_1, test_2, test_3, test_4, test_5, test_6, test_7, test_8];
 
@@ -114,7 +114,7 @@ fn test_2(scene: &LawsScene, record: &mut Record) {
 /// Head-on with restitution, 2.5 mm at 3.9 m/s on a rigid plane.
 fn test_3(scene: &LawsScene, record: &mut Record) {
     for name in ["aluminium_oxide", "cast_iron"] {
-        for wanted in RESTITUTIONS {
+        for prescribed in RESTITUTIONS {
             let mut flight = Flight {
                 radius: 2.5e-3,
                 material: scene.material(name),
@@ -122,9 +122,9 @@ fn test_3(scene: &LawsScene, record: &mut Record) {
                 velocity: Vec3::z() * -3.9,
                 spin: Vec3::zeros(),
             };
-            flight.surface.dissipation_time = dissipation_time(&flight.collision(), wanted);
+            flight.surface.dissipation_time = dissipation_time(&flight.collision(), prescribed);
             let (bench, _) = flight.land(scene.steps_per_contact, record);
-            worst(record, "U3.test_3", bench.grains().velocities[0].z / 3.9 - wanted);
+            worst(record, "U3.test_3", bench.grains().velocities[0].z / 3.9 - prescribed);
         }
     }
 }
@@ -175,7 +175,7 @@ fn test_5(scene: &LawsScene, record: &mut Record) {
                 spin: Vec3::zeros(),
             };
             let (bench, _) = flight.land(scene.steps_per_contact, record);
-            // Their sign: the spin of a sphere that rolls forward is negative.
+            // Sign convention of the source: the spin of a sphere that rolls forward is negative.
             let spin = -bench.grains().spins[0].y * flight.radius / (0.3 * 5.0);
             if ratio >= 7.0 {
                 worst(record, id, spin / -5.0 - 1.0);
@@ -211,7 +211,7 @@ fn test_6(scene: &LawsScene, record: &mut Record) {
     }
 }
 
-/// Two equal spheres of 100 mm at ±0.2 m/s that spin against each other, or alike.
+/// Two equal spheres of 100 mm at ±0.2 m/s that spin in opposite directions, or in the same.
 fn test_7(scene: &LawsScene, record: &mut Record) {
     for name in ["aluminium_alloy", "copper"] {
         for spin in [1.0, 8.0, 22.9] {
@@ -369,13 +369,13 @@ fn plot(record: &Record) -> Plot {
             Series::new("measured", Kind::Points, record.points("test_4_angle", "test_4_e_t")),
             Series::new("exact solution with micro-slip", Kind::Analytic, exact),
             Series::new(law, Kind::Source, TEST_4.to_vec()),
-            Series::new("commonly quoted curve", Kind::Source, CIRCULATING.to_vec()),
+            Series::new("commonly quoted curve", Kind::Source, COMMONLY_QUOTED.to_vec()),
         ],
     )
 }
 
-/// Test 4 as the re-implementations quote it.
-const CIRCULATING: [[Real; 2]; 9] = [
+/// Test 4 as re-implementations commonly quote it.
+const COMMONLY_QUOTED: [[Real; 2]; 9] = [
     [5.0, 0.948],
     [10.0, 0.687],
     [15.0, 0.624],

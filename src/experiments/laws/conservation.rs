@@ -1,5 +1,5 @@
-//! What no contact law may change: momentum, angular momentum, energy, and that turning the whole
-//! scene turns the result.
+//! Invariants of every contact law: momentum, angular momentum, energy, and invariance under rotation
+//! of the whole scene.
 
 use super::{
     Law, RowSpec,
@@ -14,7 +14,7 @@ use crate::{
 
 pub(super) struct Conservation;
 
-const POINTS: [fn(&LawsScene, &mut Record); 4] = [momenta, stack, turned, rigid_rotation];
+const POINTS: [fn(&LawsScene, &mut Record); 4] = [momenta, stack, rotated, rigid_rotation];
 
 impl Law for Conservation {
     fn name(&self) -> &'static str {
@@ -34,26 +34,26 @@ impl Law for Conservation {
     }
 }
 
-/// Two unequal grains, one of which spins, meet off centre; everything turned by `turn`.
-fn off_centre(scene: &LawsScene, turn: &nalgebra::Rotation3<Real>) -> (Bench, Real) {
+/// Off-center collision of two unequal grains, one of which spins; everything rotated by `turn`.
+fn off_center(scene: &LawsScene, rotation: &nalgebra::Rotation3<Real>) -> (Bench, Real) {
     let grain = &scene.grain;
     let encounter = Encounter::equal(grain.radius, grain.material, grain.surface, 0.5);
     let dt = encounter.collision().duration() / real(scene.steps_per_contact);
     let mut bench = Bench::on_plane(&grain.material, grain.surface, dt);
-    // Clear of the plane, and no higher: the further from the origin, the more is rounded.
+    // Just clear of the plane: rounding grows with the distance from the origin.
     let high = Vec3::z() * (4.0 * grain.radius);
-    for (place, radius) in [(Vec3::zeros(), 1.0), (Vec3::new(1.46, 0.25, 0.3), 0.5)] {
-        let position = high + turn * place * grain.radius;
+    for (offset, radius) in [(Vec3::zeros(), 1.0), (Vec3::new(1.46, 0.25, 0.3), 0.5)] {
+        let position = high + rotation * offset * grain.radius;
         bench.add_grain(position, radius * grain.radius, grain.material.density);
     }
-    bench.grains_mut().velocities[0] = turn * Vec3::new(0.5, 0.1, 0.0);
-    bench.grains_mut().spins[0] = turn * Vec3::new(30.0, -60.0, 100.0);
+    bench.grains_mut().velocities[0] = rotation * Vec3::new(0.5, 0.1, 0.0);
+    bench.grains_mut().spins[0] = rotation * Vec3::new(30.0, -60.0, 100.0);
     (bench, 3.0 * real(scene.steps_per_contact))
 }
 
 fn momenta(scene: &LawsScene, record: &mut Record) {
-    let (mut bench, n_steps) = off_centre(scene, &nalgebra::Rotation3::identity());
-    let about_centre = |bench: &Bench| {
+    let (mut bench, n_steps) = off_center(scene, &nalgebra::Rotation3::identity());
+    let about_center = |bench: &Bench| {
         let (linear, angular) = bench.momenta();
         let grains = bench.grains();
         let mass: Real = grains.masses.iter().sum();
@@ -61,15 +61,16 @@ fn momenta(scene: &LawsScene, record: &mut Record) {
             grains.positions[0] * grains.masses[0] + grains.positions[1] * grains.masses[1];
         (linear, angular - (moment / mass).cross(&linear))
     };
-    let before = about_centre(&bench);
+    let before = about_center(&bench);
     let mut step = 0;
     while real(step) < n_steps {
         bench.step();
         step += 1;
     }
-    let after = about_centre(&bench);
-    let met = bench.grains().velocities[1].norm() > 0.1;
-    let change = |a: Vec3, b: Vec3| if met { (a - b).norm() / b.norm() } else { Real::NAN };
+    let after = about_center(&bench);
+    let has_collided = bench.grains().velocities[1].norm() > 0.1;
+    let change =
+        |a: Vec3, b: Vec3| if has_collided { (a - b).norm() / b.norm() } else { Real::NAN };
     record.set("U6.momentum", change(after.0, before.0), "1");
     record.set("U6.angular_momentum", change(after.1, before.1), "1");
 }
@@ -103,11 +104,11 @@ fn stack(scene: &LawsScene, record: &mut Record) {
     record.set("U6.energy", worst, "1");
 }
 
-/// The same collision in a turned scene, turned back.
-fn turned(scene: &LawsScene, record: &mut Record) {
-    let turn = nalgebra::Rotation3::from_euler_angles(0.3, -1.1, 2.0);
-    let (mut bench, n_steps) = off_centre(scene, &nalgebra::Rotation3::identity());
-    let (mut other, _) = off_centre(scene, &turn);
+/// The same collision in a rotated scene, rotated back.
+fn rotated(scene: &LawsScene, record: &mut Record) {
+    let rotation = nalgebra::Rotation3::from_euler_angles(0.3, -1.1, 2.0);
+    let (mut bench, n_steps) = off_center(scene, &nalgebra::Rotation3::identity());
+    let (mut other, _) = off_center(scene, &rotation);
     let mut step = 0;
     while real(step) < n_steps {
         bench.step();
@@ -117,25 +118,25 @@ fn turned(scene: &LawsScene, record: &mut Record) {
     let mut worst = 0.0_f64;
     for i in 0..2 {
         let (a, b) = (bench.grains(), other.grains());
-        let speed = (turn * a.velocities[i] - b.velocities[i]).norm() / a.velocities[i].norm();
-        let spin = (turn * a.spins[i] - b.spins[i]).norm() / a.spins[i].norm();
+        let speed = (rotation * a.velocities[i] - b.velocities[i]).norm() / a.velocities[i].norm();
+        let spin = (rotation * a.spins[i] - b.spins[i]).norm() / a.spins[i].norm();
         worst = worst.max(speed).max(spin);
     }
     record.set("U7.turned_scene", worst, "1");
 }
 
-/// A pair that is turned as one body about an axis across its normal: once without and once with a
-/// stretched friction spring.
+/// A pair that rotates as one body about an axis perpendicular to its normal, once without and once with
+/// a stretched friction spring.
 fn rigid_rotation(scene: &LawsScene, record: &mut Record) {
-    let (force, normal) = turn_pair(scene, 0.0);
+    let (force, normal) = rotate_pair(scene, 0.0);
     record.set("U7.unsheared_pair", force[1].norm() / normal, "1");
-    let (force, _) = turn_pair(scene, 1e-3);
-    // After a whole turn the force must be what it was.
+    let (force, _) = rotate_pair(scene, 1e-3);
+    // After a full rotation the force must be the same.
     record.set("U7.sheared_pair", (force[1] - force[0]).norm() / force[0].norm(), "1");
 }
 
-/// Tangential force at the start and after a whole turn [N], and the normal force.
-fn turn_pair(scene: &LawsScene, shear_over_overlap: Real) -> ([Vec3; 2], Real) {
+/// Tangential force at the start and after a full rotation (N), and the normal force (N).
+fn rotate_pair(scene: &LawsScene, shear_over_overlap: Real) -> ([Vec3; 2], Real) {
     let grain = &scene.grain;
     let (radius, n_steps) = (grain.radius, 20_000);
     let overlap = 0.01 * radius;
@@ -159,7 +160,7 @@ fn turn_pair(scene: &LawsScene, shear_over_overlap: Real) -> ([Vec3; 2], Real) {
             grains.velocities[i] = (Vec3::z() * spin).cross(&arm);
         }
         if step == 0 {
-            // One step of shear, along and across the plane of the turn.
+            // One step of shear, parallel and perpendicular to the plane of rotation.
             let shear = Vec3::new(0.0, 1.0, 0.5) * (shear_over_overlap * overlap / 1e-6);
             grains.velocities[0] += shear;
         }

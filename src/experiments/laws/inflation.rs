@@ -1,14 +1,14 @@
-//! The sheet under air: Laplace's law for sphere, cylinder and taut disc, no resultant on a closed
-//! surface, and the work of the pressure (Götz 2024, eqs. 30, 31).
+//! The membrane under pressure: Laplace's law for sphere, cylinder and taut disk, zero resultant on a
+//! closed surface, and the work of the pressure (Götz 2024, eqs. 30, 31).
 //!
 //! ```text
 //! sphere    ΔR/R = ε,  ε = s (1 + ε)²,   s = p R (1 − ν)/(2 E d)
 //! cylinder  ε_θ = p R/(E d) (1 − ν/2),  ε_z = p R/(E d) (1/2 − ν)
-//! disc      w = p a²/(4 T),             T = √3 k ε of edges stretched by ε
+//! disk      w = p a²/(4 T),             T = √3 k ε of edges stretched by ε
 //! ```
 //!
-//! The sphere's factor (1 + ε)² is Laplace at the present radius, with springs that are linear in it:
-//! the last 0.7 % at a strain of 0.36 %.
+//! The factor (1 + ε)² of the sphere is Laplace's law at the current radius, with springs that are
+//! linear in it: the last 0.7 % at a strain of 0.36 %.
 
 use std::collections::BTreeSet;
 
@@ -35,11 +35,12 @@ use crate::{
     },
 };
 
-/// Force on a vertex over the air's load on it that counts as none.
+/// Force on a vertex, relative to the air's load on it, that counts as zero.
 const REST: Real = 1e-4;
-/// Substeps between two looks at the kinetic energy.
+/// Substeps between two measurements of the kinetic energy.
 const STOP_EVERY: usize = 20;
-/// Substeps after which a sheet that still moves is taken as it is; the scene's take some thousands.
+/// Substeps after which a sheet that still moves is taken as it is; the scene's take some
+/// thousands.
 const N_STEPS_MAX: usize = 100_000;
 
 pub(super) struct Inflation;
@@ -60,7 +61,7 @@ impl Law for Inflation {
         } else if point == n {
             cylinder(scene, record);
         } else if point == n + 1 {
-            disc(scene, record);
+            disk(scene, record);
         } else {
             closed_surface(scene, record);
         }
@@ -79,16 +80,16 @@ impl Law for Inflation {
     }
 }
 
-/// The scene's sheet without bending, well damped.
-fn bag(scene: &LawsScene) -> Sheet {
+/// The scene's membrane without bending, well damped.
+fn stretch_only(scene: &LawsScene) -> Sheet {
     let sheet = scene.membrane.sheet;
     Sheet { bending_stiffness: 0.0, bending_damping: 0.0, spring_damping: 0.5, ..sheet }
 }
 
-/// Lets the free vertices come to rest under `pressure` [Pa] and the `pull` on each vertex [N].
+/// Lets the free vertices come to rest under `pressure` (Pa) and the `pull` on each vertex (N).
 ///
-/// Kinetic damping (Cundall 1976): all are stopped behind each peak of the kinetic energy, until what
-/// is left of the forces counts for nothing against the air's.
+/// Kinetic damping (Cundall 1976): all vertices are stopped after each peak of the kinetic energy, until
+/// the remaining forces are negligible compared with the air's.
 fn settle(
     model: &MembraneModel,
     state: &mut MembraneState,
@@ -114,7 +115,8 @@ fn settle(
         if unbalanced < REST * load {
             return;
         }
-        // Looked at now and then: quick modes have their own peaks, which are not those of slow ones.
+        // Looked at now and then: quick modes have their own peaks, which are not those of slow
+        // ones.
         if step % STOP_EVERY == 0 {
             if energy < last {
                 state.velocities.fill(Vec3::zeros());
@@ -128,7 +130,7 @@ fn settle(
 fn sphere(scene: &LawsScene, share: Real, record: &mut Record) {
     let radius = scene.membrane.radius;
     let mesh = Mesh::icosphere(radius, scene.laplace.frequency).expect("a frequency above zero");
-    let model = MembraneModel::new(mesh, bag(scene));
+    let model = MembraneModel::new(mesh, stretch_only(scene));
     let mut state = MembraneState::at_rest(&model.mesh);
     let overpressure = share * scene.laplace.pressure_max;
     let pull = vec![Vec3::zeros(); model.masses.len()];
@@ -144,15 +146,15 @@ fn sphere(scene: &LawsScene, share: Real, record: &mut Record) {
     worst(record, "U13.sphere", found / oracle - 1.0);
 }
 
-/// A tube of rows of triangles; its ends carry what a lid would put on them.
+/// A tube of rows of triangles; its ends carry the load of a lid.
 fn cylinder(scene: &LawsScene, record: &mut Record) {
     let (radius, n_around, n_rows) = (scene.membrane.radius, 48, 24);
     let (model, height) = tube(scene, n_around, n_rows);
     let overpressure = scene.laplace.pressure_max;
     let lid = overpressure * std::f64::consts::PI * radius * radius / real(n_around);
-    let place = |row: usize| height * (real(row) - 0.5 * real(n_rows));
+    let row_height = |row: usize| height * (real(row) - 0.5 * real(n_rows));
     let in_row =
-        |v: usize, row: usize| (model.mesh.positions[v].z - place(row)).abs() < 0.5 * height;
+        |v: usize, row: usize| (model.mesh.positions[v].z - row_height(row)).abs() < 0.5 * height;
     let pull: Vec<Vec3> = (0..model.masses.len())
         .map(|v| {
             let end = f64::from(u8::from(in_row(v, n_rows))) - f64::from(u8::from(in_row(v, 0)));
@@ -174,33 +176,34 @@ fn cylinder(scene: &LawsScene, record: &mut Record) {
     record.set("U13.cylinder_axial", axial / (unit / 6.0), "1");
 }
 
-/// The tube, and the height of its rows [m].
+/// The tube, and the height of its rows (m).
 fn tube(scene: &LawsScene, n_around: usize, n_rows: usize) -> (MembraneModel, Real) {
     let radius = scene.membrane.radius;
     let half_turn = std::f64::consts::PI / real(n_around);
     let edge = 2.0 * radius * half_turn.sin();
-    // Rows are turned by half an edge: the height that makes all edges equal.
+    // Rows are shifted by half an edge; this height makes all edges equal.
     let sagitta = radius * (1.0 - half_turn.cos());
     let height = (0.75 * edge * edge - sagitta * sagitta).sqrt();
     let mesh = Mesh::tube(radius, height * real(n_rows), n_around, n_rows + 1);
-    (MembraneModel::new(mesh.expect("a tube is a surface"), bag(scene)), height)
+    (MembraneModel::new(mesh.expect("a tube is a surface"), stretch_only(scene)), height)
 }
 
-/// Rings of the disc's mesh.
+/// Rings of the disk's mesh.
 const N_RINGS: usize = 24;
-/// How far its edges are stretched over their length at rest.
+/// Stretch of its edges relative to their rest length.
 const TAUT: Real = 0.05;
-/// How far the middle is to rise over the disc's radius: the slope adds a thousandth to the stretch.
+/// How far the middle is to rise over the disc's radius: the slope adds a thousandth to the
+/// stretch.
 const RISE: Real = 0.01;
 
-/// A flat sheet that is stretched and held around a circle bulges as a paraboloid.
-fn disc(scene: &LawsScene, record: &mut Record) {
+/// A flat membrane that is stretched and held on a circle bulges as a paraboloid.
+fn disk(scene: &LawsScene, record: &mut Record) {
     let mesh = Mesh::hexagonal_patch(scene.membrane.edge, N_RINGS).expect("it has rings");
-    let mut model = MembraneModel::new(mesh, bag(scene));
+    let mut model = MembraneModel::new(mesh, stretch_only(scene));
     model.scale_rest_lengths(1.0 / (1.0 + TAUT));
     let inside = 0.75_f64.sqrt() * real(N_RINGS) * scene.membrane.edge;
     let is_free = |p: &Vec3| p.norm() < inside;
-    // The circle lies where the sheet is held: at the held vertices next to free ones.
+    // The radius of the circle is that of the held vertices next to free ones.
     let at = |v: u32| &model.mesh.positions[v as usize];
     let bordering = model.mesh.edges.iter().filter(|[a, b]| is_free(at(*a)) != is_free(at(*b)));
     let held: BTreeSet<u32> = bordering.map(|&[a, b]| if is_free(at(a)) { b } else { a }).collect();
@@ -216,11 +219,11 @@ fn disc(scene: &LawsScene, record: &mut Record) {
     record.set("U13.disc", middle / (RISE * radius), "1");
 }
 
-/// Force, torque and power of the air on a sphere with dents that is off the origin and moves.
+/// Force, torque and power of the air on a dented, moving sphere away from the origin.
 fn closed_surface(scene: &LawsScene, record: &mut Record) {
     let radius = scene.membrane.radius;
     let mesh = Mesh::icosphere(radius, scene.laplace.frequency).expect("a frequency above zero");
-    let slack = Sheet { youngs_modulus: 0.0, ..bag(scene) };
+    let slack = Sheet { youngs_modulus: 0.0, ..stretch_only(scene) };
     let model = MembraneModel::new(mesh, slack);
     let mut random = Random::new(1, Stream::Position);
     let mut draw = |size: Real| Vec3::from_fn(|_, _| random.between(-size, size));
@@ -245,11 +248,11 @@ fn closed_surface(scene: &LawsScene, record: &mut Record) {
     };
     let rate = (volume_at(1e-5) - volume_at(-1e-5)) / 2e-5;
     record.set("C5.power", power / (gauge * rate), "1");
-    let inwards = loads
+    let inward = loads
         .iter()
         .zip(&state.positions)
         .all(|(f, r)| f.dot(&(r - Vec3::new(0.3, -0.2, 0.5))) < 0.0);
-    record.set("C5.sign", if inwards { 1.0 } else { 0.0 }, "1");
+    record.set("C5.sign", if inward { 1.0 } else { 0.0 }, "1");
 }
 
 const ROWS: &[RowSpec] = &[

@@ -11,7 +11,8 @@ pub(super) fn push(record: &mut Record, name: &str, unit: &str, value: f64) {
     record.columns[index].values.push(value);
 }
 
-/// Sets the scalar `name` to the absolute `deviation` if that is larger; NaN is larger than any number.
+/// Sets the scalar `name` to the absolute `deviation` if that is larger; NaN is larger than any
+/// number.
 pub(super) fn worst(record: &mut Record, name: &str, deviation: f64) {
     let so_far = record.scalar(name).unwrap_or(0.0);
     let is_larger = deviation.abs() > so_far || deviation.is_nan();

@@ -1,8 +1,8 @@
-//! The laws compared with closed forms: one or two grains, or a piece of membrane, for every equation of
-//! chapters 2, 3.1 and 3.2 of Götz (2024) that yields a number.
+//! The laws compared with closed forms: one or two grains, or a piece of membrane, for every
+//! equation of chapters 2, 3.1 and 3.2 of Götz (2024) that yields a number.
 //!
-//! Each law is a case. A case is a list of points, collisions or pieces of membrane, each measured within
-//! a moment; a saved case consists of the points that are done.
+//! Each law is a case. A case is a list of points, collisions or pieces of membrane, each measured
+//! within a moment; a saved case consists of the points that are done.
 
 mod build; // one or two grains, a flat membrane
 mod chung_ooi; // published benchmark impacts

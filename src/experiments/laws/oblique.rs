@@ -1,5 +1,5 @@
-//! A grain that hits a rigid plane at an angle: the tangential law (Götz 2024, eqs. 7–11) against
-//! the exact solution with micro-slip and against rigid-body impact.
+//! A grain that hits a rigid plane at an angle: the tangential law (Götz 2024, eqs. 7–11) compared with
+//! the exact solution with micro-slip and with rigid-body impact.
 
 use super::{
     Law, RowSpec,
@@ -19,8 +19,8 @@ use crate::{
 
 pub(super) struct Oblique;
 
-/// Angle [deg], e_t and R ω'/v of this law: integrated independently for ν = 0.245, μ = 0.25, A = 0,
-/// γ_t = 0.
+/// Angle (deg), e_t and R ω'/v of this law: integrated independently for ν = 0.245, μ = 0.25, A =
+/// 0, γ_t = 0.
 const TABLE: [[Real; 3]; 9] = [
     [5.0, 0.7474, 0.0550],
     [10.0, 0.7121, 0.1250],
@@ -45,15 +45,15 @@ impl Law for Oblique {
     fn measure(&self, scene: &LawsScene, point: usize, record: &mut Record) {
         let n = n_angles(scene);
         if point < n {
-            swept(scene, crate::physics::measure::real(point + 1), record);
+            sweep(scene, crate::physics::measure::real(point + 1), record);
         } else if let Some([degrees, e_t, spin]) = TABLE.get(point - n) {
-            let found = fly(scene, degrees.to_radians(), 0.0, record);
+            let found = impact(scene, degrees.to_radians(), 0.0, record);
             worst(record, "U4.table", found[0] / e_t - 1.0);
             worst(record, "U4.spin", (found[1] - spin) / 0.7564);
         } else {
             let angle = Real::to_radians(5.0);
-            let free = fly(scene, angle, 0.0, record)[0];
-            let damped = fly(scene, angle, scene.grain.surface.tangential_damping, record)[0];
+            let free = impact(scene, angle, 0.0, record)[0];
+            let damped = impact(scene, angle, scene.grain.surface.tangential_damping, record)[0];
             let from_rolling = |e_t: Real| (e_t - 5.0 / 7.0).abs();
             record.set("U4.damped", from_rolling(damped) / from_rolling(free), "1");
         }
@@ -77,8 +77,8 @@ fn n_angles(scene: &LawsScene) -> usize {
     (Real::to_radians(89.9) / scene.oblique.angle_step) as usize
 }
 
-/// e_t, R ω'/v and the share of the energy that is left.
-fn fly(scene: &LawsScene, angle: Real, damping: Real, record: &mut Record) -> [Real; 3] {
+/// e_t, R ω'/v and the remaining share of the energy.
+fn impact(scene: &LawsScene, angle: Real, damping: Real, record: &mut Record) -> [Real; 3] {
     let (grain, speed) = (&scene.grain, scene.oblique.speed);
     let mut surface = elastic(grain.surface.friction);
     surface.tangential_damping = damping;
@@ -98,9 +98,9 @@ fn fly(scene: &LawsScene, angle: Real, damping: Real, record: &mut Record) -> [R
     ]
 }
 
-fn swept(scene: &LawsScene, step: Real, record: &mut Record) {
+fn sweep(scene: &LawsScene, step: Real, record: &mut Record) {
     let angle = step * scene.oblique.angle_step;
-    let [e_t, spin, energy] = fly(scene, angle, 0.0, record);
+    let [e_t, spin, energy] = impact(scene, angle, 0.0, record);
     let ratio = micro_slip::stiffness_ratio(scene.grain.material.poisson_ratio);
     let exact = micro_slip::rebound(ratio, scene.grain.surface.friction, angle);
     push(record, "angle", "deg", angle.to_degrees());

@@ -1,5 +1,5 @@
-//! A grain on a plane that slides until it rolls, rolls or slips down an incline, sinks in by its
-//! weight, and does not creep where it sticks (Götz 2024, eqs. 8–11).
+//! A grain on a plane: it slides until it rolls, rolls or slips down an incline, overlaps by its weight,
+//! and does not creep while it sticks (Götz 2024, eqs. 8–11).
 
 use super::{
     Law, RowSpec,
@@ -21,9 +21,9 @@ use crate::{
 
 pub(super) struct Rolling;
 
-/// Points: the slide, then inclines, weight, creep and the spring.
+/// The points: sliding, inclines, weight, creep and the spring.
 const POINTS: [fn(&LawsScene, &mut Record); 5] = [slide, inclines, weight, creep, shear];
-/// Steps between recorded ones.
+/// Steps between two recorded rows.
 const EVERY: usize = 20;
 
 impl Law for Rolling {
@@ -52,7 +52,7 @@ impl Law for Rolling {
     }
 }
 
-/// One grain that lies on the plane in equilibrium, `tilt` [rad] about y.
+/// A grain at rest on the plane, which is tilted by `tilt` (rad) about y.
 fn resting(scene: &LawsScene, surface: Surface, tilt: Real) -> Bench {
     let grain = &scene.grain;
     let mut bench = Bench::on_plane(&grain.material, surface, scene.rolling.substep);
@@ -71,7 +71,7 @@ fn resting_overlap(scene: &LawsScene, tilt: Real) -> Real {
     (mass(grain.radius, grain.material.density) * G * tilt.cos() / k).powf(2.0 / 3.0)
 }
 
-/// A grain that begins to slide at v_0 rolls from 2 v_0/(7 μ g) on.
+/// A grain that starts to slide with v_0 rolls after 2 v_0/(7 μ g).
 fn slide(scene: &LawsScene, record: &mut Record) {
     let (grain, v0) = (&scene.grain, scene.rolling.speed);
     let mut bench = resting(scene, grain.surface, 0.0);
@@ -90,7 +90,7 @@ fn slide(scene: &LawsScene, record: &mut Record) {
         step += 1;
         let slip = bench.grains().velocities[0].x - bench.grains().spins[0].y * grain.radius;
         if rolled_at.is_none() && slip < 0.01 * v0 {
-            // The last percent of the slip would take a percent of the time.
+            // Extrapolated: the last percent of the slip takes a percent of the time.
             let time = real(step) * scene.rolling.substep / 0.99;
             rolled_at = Some((time, bench.grains().positions[0].x));
         }
@@ -98,14 +98,14 @@ fn slide(scene: &LawsScene, record: &mut Record) {
     let (v, spin) = (bench.grains().velocities[0].x, bench.grains().spins[0].y);
     record.set("U5.rolling_speed", v / (5.0 / 7.0 * v0), "1");
     record.set("U5.rolls", spin * grain.radius / v, "1");
-    let (time, place) = rolled_at.unwrap_or((Real::NAN, Real::NAN));
+    let (time, distance) = rolled_at.unwrap_or((Real::NAN, Real::NAN));
     record.set("U5.time", time / rolls_at, "1");
-    record.set("U5.place", place / (6.0 / 7.0 * v0 * rolls_at), "1");
+    record.set("U5.place", distance / (6.0 / 7.0 * v0 * rolls_at), "1");
     let energy = bench.kinetic_energy() / (0.5 * bench.grains().masses[0] * v0 * v0);
     record.set("U5.energy", energy / (5.0 / 7.0), "1");
 }
 
-/// Down an incline: rolling while tan θ < 7/2 μ, else slipping.
+/// Down an incline: rolling if tan θ < 7/2 μ, otherwise slipping.
 fn inclines(scene: &LawsScene, record: &mut Record) {
     let friction = scene.grain.surface.friction;
     for (id, tan) in [("U5.rolls_down", 1.6 * friction), ("U5.slips_down", 6.0 * friction)] {
@@ -125,7 +125,7 @@ fn inclines(scene: &LawsScene, record: &mut Record) {
     }
 }
 
-/// Laid down without overlap, it sinks in until the plane carries it.
+/// A grain placed without overlap settles until the plane carries its weight.
 fn weight(scene: &LawsScene, record: &mut Record) {
     let surface = Surface { dissipation_time: 1e-4, ..scene.grain.surface };
     let mut bench = resting(scene, surface, 0.0);
@@ -136,7 +136,7 @@ fn weight(scene: &LawsScene, record: &mut Record) {
     record.set("U8.weight", bench.overlap() / resting_overlap(scene, 0.0), "1");
 }
 
-/// A grain that may not roll, at 0.9 of the angle of friction.
+/// A grain that cannot roll, at 0.9 of the friction angle.
 fn creep(scene: &LawsScene, record: &mut Record) {
     let surface = Surface { dissipation_time: 1e-4, ..scene.grain.surface };
     let mut bench = resting(scene, surface, (0.9 * surface.friction).atan());
@@ -152,7 +152,7 @@ fn creep(scene: &LawsScene, record: &mut Record) {
     record.set("U8.creep", (end - settled).abs() / scene.grain.radius, "1");
 }
 
-/// A contact held at one overlap and sheared by a little: the stiffness of the spring.
+/// A contact that is sheared slightly at constant overlap: the stiffness of the spring.
 fn shear(scene: &LawsScene, record: &mut Record) {
     let grain = &scene.grain;
     let surface = Surface { tangential_damping: 0.0, dissipation_time: 0.0, ..grain.surface };
@@ -162,7 +162,7 @@ fn shear(scene: &LawsScene, record: &mut Record) {
     let law = PairLaw::against_rigid(&grain.material, surface);
     let mindlin = 8.0 * law.shear_modulus * (grain.radius * overlap).sqrt();
     let normal = 4.0 / 3.0 * law.modulus * grain.radius.sqrt() * overlap.powf(1.5);
-    let full = surface.friction * normal / (2.0 / 3.0 * mindlin);
+    let sliding = surface.friction * normal / (2.0 / 3.0 * mindlin);
     let mut sheared = |distance: Real| {
         for _ in 0..n_steps {
             let grains = bench.grains_mut();
@@ -173,8 +173,8 @@ fn shear(scene: &LawsScene, record: &mut Record) {
         }
         -bench.system.scratch.wall_forces[0].force.x
     };
-    record.set("C1.shear_stiffness", sheared(0.5 * full) / (mindlin * 0.5 * full), "1");
-    record.set("C1.coulomb", sheared(5.0 * full) / (surface.friction * normal), "1");
+    record.set("C1.shear_stiffness", sheared(0.5 * sliding) / (mindlin * 0.5 * sliding), "1");
+    record.set("C1.coulomb", sheared(5.0 * sliding) / (surface.friction * normal), "1");
 }
 
 const ROWS: &[RowSpec] = &[

@@ -1,4 +1,4 @@
-//! The sheet in its plane: the lattice of springs as an elastic sheet, and a pair that rings down
+//! The membrane in its plane: the lattice of springs as an elastic sheet, and the decay of an oscillation
 //! (Götz 2024, eqs. 12–16).
 
 use super::{Law, RowSpec, measure::worst, scene::LawsScene};
@@ -20,7 +20,7 @@ pub(super) struct Stretching;
 
 /// Rings of the patches.
 const RINGS: [usize; 3] = [3, 6, 12];
-/// Directions of the pull [rad].
+/// Directions of the strain (rad).
 const DIRECTIONS: [Real; 5] = [0.0, 0.2, 0.5, 1.0, 1.4];
 const STRAIN: Real = 1e-6;
 
@@ -45,7 +45,7 @@ impl Law for Stretching {
     }
 }
 
-/// A flat hexagon of the scene's sheet without bending.
+/// A flat hexagon of the scene's membrane without bending.
 fn patch(scene: &LawsScene, rings: usize, record: &mut Record) {
     let sheet = Sheet { bending_stiffness: 0.0, bending_damping: 0.0, ..scene.membrane.sheet };
     let mesh = Mesh::hexagonal_patch(scene.membrane.edge, rings).expect("there are rings");
@@ -71,7 +71,7 @@ fn patch(scene: &LawsScene, rings: usize, record: &mut Record) {
     }
 }
 
-/// Mean stress [N/m] under a strain of this shape: the virial −Σ r ⊗ F / area.
+/// Mean stress (N/m) under a strain of this shape: the virial −Σ r ⊗ F / area.
 fn stress(model: &MembraneModel, shape: &Mat3) -> Mat3 {
     let mut state = MembraneState::at_rest(&model.mesh);
     for position in &mut state.positions {
@@ -84,7 +84,7 @@ fn stress(model: &MembraneModel, shape: &Mat3) -> Mat3 {
     -virial / pressure::area(&model.mesh, &model.mesh.positions)
 }
 
-/// Two vertices of the sheet, let go apart: the loss of amplitude in a period.
+/// Two vertices of the membrane released from a stretched state: the decay of amplitude in a period.
 fn ring_down(scene: &LawsScene, record: &mut Record) {
     let Sheet { youngs_modulus, thickness, density, .. } = scene.membrane.sheet;
     let (edge, gamma) = (scene.membrane.edge, 0.15);

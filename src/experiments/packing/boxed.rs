@@ -6,9 +6,10 @@
 //! moduli:              at each pressure the small strains of `moduli`
 //! ```
 //!
-//! Enlarging all grains by a factor is equivalent to compressing the box by it, since the contact law
-//! has no intrinsic length. Friction stays on, so packings with friction jam where grains first hold
-//! each other. Without friction the packing is decompressed: that is reversible, and p(φ) follows Hertz.
+//! Enlarging all grains by a factor is equivalent to compressing the box by it, since the contact
+//! law has no intrinsic length. Friction stays on, so packings with friction jam where grains first
+//! hold each other. Without friction the packing is decompressed: that is reversible, and p(φ)
+//! follows Hertz.
 
 use serde::{Deserialize, Serialize};
 
@@ -215,8 +216,8 @@ impl BoxRun {
         build::drag(&mut self.system, self.scene.compression.drag_time);
     }
 
-    /// Lets the grown grains rest. Without friction they are decompressed slightly first: under the full
-    /// pressure they would creep for a long time.
+    /// Lets the grown grains rest. Without friction they are decompressed slightly first: under the
+    /// full pressure they would creep for a long time.
     fn begin(&mut self) {
         self.progress.phase = Phase::Resting(Settling::default());
         if friction(&self.scene, self.case) == 0.0 {
@@ -266,8 +267,8 @@ impl BoxRun {
         }
     }
 
-    /// Makes the box longer along x and narrower along y, and moves all grains with it. Friction springs,
-    /// which integrate velocities, are updated for this motion.
+    /// Makes the box longer along x and narrower along y, and moves all grains with it. Friction
+    /// springs, which integrate velocities, are updated for this motion.
     fn stretch(&mut self, step: Real) {
         let by = 1.0 + step / self.progress.stretch;
         let System { model, state, scratch, .. } = &mut self.system;
@@ -296,8 +297,8 @@ impl BoxRun {
         (self.scene.compression.pressure_first / stiffness).powf(2.0 / 3.0)
     }
 
-    /// Makes all grains, which are now under `pressure` [Pa], or the box larger by the share `growth`,
-    /// steadily.
+    /// Makes all grains, which are now under `pressure` [Pa], or the box larger by the share
+    /// `growth`, steadily.
     pub(super) fn ramp(&mut self, what: Change, growth: Real, pressure: Real) {
         let (compression, grains) = (&self.scene.compression, &self.scene.grains);
         let rate = growth / compression.ramp_time;
@@ -411,8 +412,8 @@ fn friction(scene: &PackingScene, case: Case) -> Real {
     }
 }
 
-/// Pressure at which compression with friction rests next, after moduli have been measured `n_probed`
-/// times (Pa); `None` at the end.
+/// Pressure at which compression with friction rests next, after moduli have been measured
+/// `n_probed` times (Pa); `None` at the end.
 fn next_pressure(scene: &PackingScene, case: Case, n_probed: usize) -> Option<Real> {
     match case {
         Case::Moduli => scene.moduli.pressures.get(n_probed).copied(),

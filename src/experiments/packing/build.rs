@@ -63,7 +63,8 @@ pub(super) fn drag(system: &mut System, drag_time: Real) {
 }
 
 /// Kinetic damping (Cundall 1976): grains and membrane move freely until their kinetic energy has
-/// passed a peak, and are then stopped. Slow modes come to rest several times faster than with drag.
+/// passed a peak, and are then stopped. Slow modes come to rest several times faster than with
+/// drag.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Settling {
     /// Substeps so far.

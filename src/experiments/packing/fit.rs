@@ -35,8 +35,8 @@ pub(super) fn exponent(points: &[[Real; 2]]) -> Option<Real> {
     line(&logs).map(|it| it.slope)
 }
 
-/// Onset x₀ and exponent b of the power law y ~ (x − x₀)^b through `points` (x, y): of the onsets up to
-/// `reach` below the smallest x, the one at which the logarithms fit a line best.
+/// Onset x₀ and exponent b of the power law y ~ (x − x₀)^b through `points` (x, y): of the onsets
+/// up to `reach` below the smallest x, the one at which the logarithms fit a line best.
 pub(super) fn onset(points: &[[Real; 2]], reach: Real) -> Option<(Real, Real)> {
     if points.len() < 3 {
         return None;

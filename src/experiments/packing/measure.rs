@@ -1,5 +1,5 @@
-//! Quantities from records: where a packing jams, and its structure; and the state of a measurement of
-//! elastic moduli.
+//! Quantities from records: where a packing jams, and its structure; and the state of a measurement
+//! of elastic moduli.
 
 use serde::{Deserialize, Serialize};
 

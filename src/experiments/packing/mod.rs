@@ -1,10 +1,10 @@
-//! Dense packings: where spheres jam, their contacts and structure over friction, the elastic moduli of
-//! a packing, and whether its stress equals the applied pressure.
+//! Dense packings: where spheres jam, their contacts and structure over friction, the elastic
+//! moduli of a packing, and whether its stress equals the applied pressure.
 //!
-//! All cases in the periodic box follow one protocol: grains grow quasi-statically from a dilute state,
-//! with the friction of the case, until they jam; then their size changes in small steps with a rest
-//! after each. The solid fraction at which the pressure vanishes follows from Hertz' law,
-//! p ~ (φ − φ_J)^(3/2).
+//! All cases in the periodic box follow one protocol: grains grow quasi-statically from a dilute
+//! state, with the friction of the case, until they jam; then their size changes in small steps
+//! with a rest after each. The solid fraction at which the pressure vanishes follows from Hertz'
+//! law, p ~ (φ − φ_J)^(3/2).
 
 mod boxed; // grains in a periodic box
 mod build; // grains, drag, rest

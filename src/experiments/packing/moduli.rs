@@ -16,8 +16,8 @@
 //! | z, φ | contacts per grain, solid fraction | – |
 //! | G_p, ν | shear modulus and Poisson's ratio of the grains | Pa, – |
 //!
-//! The theory moves all grains affinely. Real ones relax, slightly in compression and strongly in shear:
-//! Makse, Gland, Johnson & Schwartz (1999).
+//! The theory moves all grains affinely. Real ones relax, slightly in compression and strongly in
+//! shear: Makse, Gland, Johnson & Schwartz (1999).
 
 use std::f64::consts::PI;
 

@@ -97,8 +97,8 @@ fn count(value: Real) -> i32 {
     value.ceil() as i32
 }
 
-/// Position of the ball at the start (m), above a vertex: at rest under its load if all vertices are
-/// held, otherwise just touching.
+/// Position of the ball at the start (m), above a vertex: at rest under its load if all vertices
+/// are held, otherwise just touching.
 pub(super) fn start(scene: &SlideScene, case: &Case, patch: &Patch) -> Vec3 {
     let law = case.law(scene);
     let radius = scene.ball.radius;

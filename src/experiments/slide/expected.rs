@@ -19,8 +19,9 @@
 //! | d, e_z | unit vectors in the direction of the pull and up | – |
 //! | n_i, t_i | normal from sphere to ball, direction of slip | – |
 //!
-//! The motion is quasi-static and all contacts slide. Neglected are inertia (v²/(R + r) is a tenth of
-//! gravity), viscous contact forces, and the memory of the friction spring over the last stick length.
+//! The motion is quasi-static and all contacts slide. Neglected are inertia (v²/(R + r) is a tenth
+//! of gravity), viscous contact forces, and the memory of the friction spring over the last stick
+//! length.
 
 use super::{cases::Case, scene::SlideScene};
 use crate::{
@@ -127,7 +128,8 @@ impl<'a> Bed<'a> {
     }
 }
 
-/// How far a ball falls from the top of a sphere to a position at `distance` (m) from the next ones.
+/// How far a ball falls from the top of a sphere to a position at `distance` (m) from the next
+/// ones.
 pub(super) fn fall(reach: Real, distance: Real) -> Real {
     reach - (reach * reach - distance * distance).sqrt()
 }

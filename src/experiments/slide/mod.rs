@@ -1,7 +1,8 @@
-//! The slide test (Götz 2024, section 3.3.2): a ball that cannot turn is pulled over a flat membrane.
+//! The slide test (Götz 2024, section 3.3.2): a ball that cannot turn is pulled over a flat
+//! membrane.
 //!
-//! With triangles, friction force and height are constant. With spheres on the vertices, the classic
-//! mass-spring membrane, the ball goes up and down.
+//! With triangles, friction force and height are constant. With spheres on the vertices, the
+//! classic mass-spring membrane, the ball goes up and down.
 
 mod build; // the lattice, the ball on it
 mod cases; // the list of cases

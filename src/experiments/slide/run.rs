@@ -1,8 +1,8 @@
 //! One case: the ball is pulled over the membrane, substep by substep.
 //!
 //! The system moves freely for one substep. Then the load, which the system does not know, is added
-//! to the ball's fall, its horizontal motion is replaced by the prescribed one, and its spin is set to
-//! zero. That is equivalent to a force and a guide that act during the substep.
+//! to the ball's fall, its horizontal motion is replaced by the prescribed one, and its spin is set
+//! to zero. That is equivalent to a force and a guide that act during the substep.
 
 use super::{
     build::{self, Patch},

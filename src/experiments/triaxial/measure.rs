@@ -5,11 +5,11 @@
 //! σ_zz = 1/V_m Σ_c f_z l_z,   σ_rr = 1/2V_m Σ_c (f_x l_x + f_y l_y)
 //! ```
 //!
-//! F is the force of the grains on a plate, V the volume inside membrane and plates, h the distance of
-//! the plates. Stresses are those in the middle half of the height, away from the end rings, which hold
-//! the membrane: V_m is its volume; f and l are force and branch vector of each contact, and of l only
-//! the part inside V_m counts. For contacts with the membrane l goes from the contact point to the
-//! center of the grain.
+//! F is the force of the grains on a plate, V the volume inside membrane and plates, h the distance
+//! of the plates. Stresses are those in the middle half of the height, away from the end rings,
+//! which hold the membrane: V_m is its volume; f and l are force and branch vector of each contact,
+//! and of l only the part inside V_m counts. For contacts with the membrane l goes from the contact
+//! point to the center of the grain.
 
 use super::build::{BOTTOM, TOP};
 use crate::{
@@ -45,7 +45,8 @@ pub(super) fn volume(system: &System) -> Real {
     pressure::volume(&system.model.membrane.mesh, &system.state.membrane.positions)
 }
 
-/// Mean distance of the membrane from the axis in the middle half of the height and at the ends (m).
+/// Mean distance of the membrane from the axis in the middle half of the height and at the ends
+/// (m).
 pub(super) fn radii(system: &System) -> [Real; 2] {
     let mesh = &system.model.membrane.mesh;
     let top = mesh.positions.iter().map(|p| p.z).fold(0.0, Real::max);
@@ -64,8 +65,8 @@ pub(super) fn radii(system: &System) -> [Real; 2] {
 
 /// Pressure that the springs of the membrane add to the confining pressure in the middle half (Pa);
 /// negative if the grains have contracted. It is the lateral virial of the springs over twice the
-/// volume, Σ F (Δx² + Δy²)/L / 2V, from the means over the edges around the axis and the other edges,
-/// of which there are twice as many.
+/// volume, Σ F (Δx² + Δy²)/L / 2V, from the means over the edges around the axis and the other
+/// edges, of which there are twice as many.
 pub(super) fn hoop_pressure(system: &System) -> Real {
     let membrane = &system.model.membrane;
     let (mesh, sheet) = (&membrane.mesh, &membrane.sheet);

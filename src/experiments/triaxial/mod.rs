@@ -1,6 +1,6 @@
 //! The triaxial test (Götz 2024, section 3.3.1): stress over strain of grains in a membrane under a
-//! confining pressure, with both membrane models, two sizes and two initial states, and the run times
-//! of both models.
+//! confining pressure, with both membrane models, two sizes and two initial states, and the run
+//! times of both models.
 
 mod build; // grains, membrane, plates
 mod cases; // the list of cases

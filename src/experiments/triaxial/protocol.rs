@@ -1,6 +1,6 @@
-//! The protocol of the test: grains grow, the membrane is released under rising pressure, the plates
-//! follow until they carry the same pressure, the specimen comes to rest, and then the plates approach
-//! at constant speed.
+//! The protocol of the test: grains grow, the membrane is released under rising pressure, the
+//! plates follow until they carry the same pressure, the specimen comes to rest, and then the
+//! plates approach at constant speed.
 //!
 //! ```text
 //! servo of a plate:   v = v_servo (1 − p_plate/p_c), at most v_max     toward the grains
@@ -162,8 +162,8 @@ impl TriaxialTest {
         self.progress.substep = model.substep;
     }
 
-    /// Checks the state. A leak of the membrane while shearing ends the test as in the laboratory: the
-    /// curve up to that point is valid.
+    /// Checks the state. A leak of the membrane while shearing ends the test as in the laboratory:
+    /// the curve up to that point is valid.
     ///
     /// # Errors
     /// If the simulation has diverged, or leaks before shearing.
@@ -334,8 +334,8 @@ impl TriaxialTest {
     }
 }
 
-/// Stops vertices at the plates: air presses the membrane against the plates where no grain holds it
-/// off, and its friction there is high.
+/// Stops vertices at the plates: air presses the membrane against the plates where no grain holds
+/// it off, and its friction there is high.
 pub(super) fn keep_between_plates(system: &mut System) {
     let state = &mut system.state;
     let [bottom, top] = [BOTTOM, TOP].map(|wall| {

@@ -156,8 +156,8 @@ mod tests {
         }
     }
 
-    /// Oracle: the definition. A leak while shearing ends the test with its curve; an earlier one is an
-    /// error.
+    /// Oracle: the definition. A leak while shearing ends the test with its curve; an earlier one
+    /// is an error.
     #[test]
     fn a_leak_while_shearing_ends_the_test_and_keeps_the_curve() {
         let mut run = small();

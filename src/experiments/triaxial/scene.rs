@@ -115,7 +115,8 @@ scene_keys! {
 
     /// Growth of the grains inside the held membrane.
     pub(super) struct Growth {
-        /// Modulus while they grow (Pa): with their own, the short substep would make it take hours.
+        /// Modulus while they grow (Pa): with their own, the short substep would make it take
+        /// hours.
         youngs_modulus: Real = Quantity::above_zero(&PRESSURE),
         /// Coulomb friction of all contacts while they grow.
         friction: Real = Range::AtLeast(0.0),

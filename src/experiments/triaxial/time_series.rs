@@ -92,8 +92,8 @@ impl TimeSeries {
         self.point(system);
     }
 
-    /// Records a substep of shearing at a relative speed (m/s) up to a last strain, with grains of a
-    /// density (kg/m³). Returns true at the last point.
+    /// Records a substep of shearing at a relative speed (m/s) up to a last strain, with grains of
+    /// a density (kg/m³). Returns true at the last point.
     pub(super) fn record(
         &mut self,
         system: &System,

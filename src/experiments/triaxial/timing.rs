@@ -1,5 +1,5 @@
-//! Run times of both membrane models: the same simulated time, in alternating slices whose wall-clock
-//! times are counted separately.
+//! Run times of both membrane models: the same simulated time, in alternating slices whose
+//! wall-clock times are counted separately.
 
 use serde::{Deserialize, Serialize};
 
