@@ -12,7 +12,7 @@ mod cases; // the list of cases
 pub mod history_csv; // results kept over time
 #[cfg(all(feature = "ros", feature = "shm"))]
 mod latency; // latency of the loop
-mod lift; // a whole session
+mod lift; // a complete session
 mod packing; // grains in a box
 mod prepare; // initial states
 mod process; // resource use of the process

@@ -194,7 +194,7 @@ pub enum StartError {
 
 /// Why a saved run cannot be resumed.
 #[derive(Debug, PartialEq, Eq, thiserror::Error)]
-#[error("saved state: {reason}; the case starts anew")]
+#[error("saved state: {reason}; the case restarts from its beginning")]
 pub struct ResumeError {
     /// What is wrong with it.
     pub reason: String,

@@ -200,3 +200,63 @@ macro_rules! sections_of_schema {
 sections_of_schema!(
     Time: time, Material: material, Grains: grains, Membrane: membrane, Chamber: chamber
 );
+
+#[cfg(test)]
+mod tests {
+    use super::{super::text, *};
+    use crate::scene::{quantity::LENGTH, unset::Unset};
+
+    scene_keys! {
+        /// A scene with a key of every form.
+        struct Example {
+            /// Renamed.
+            is_on ("on"): bool = Flag,
+            /// Inline.
+            material: Material = Inline,
+            /// A map.
+            part: Part = Map,
+            /// Values under keys of their own.
+            ends: [Real; 2] = Each(["left", "right"], Quantity::any(&LENGTH)),
+            /// Counted.
+            counts: [u64; 2] = MapOf(["a", "b"], 1..=9),
+        }
+
+        /// A map.
+        struct Part {
+            /// Optional.
+            gap: Option<Real> = QuantityOr("none", Quantity::above_zero(&LENGTH)),
+        }
+    }
+
+    impl text::Keys for Example {
+        fn unfit(&self) -> Vec<(&'static str, String, &'static str)> {
+            Vec::new()
+        }
+    }
+
+    const TEXT: &str = "on: true\nyoungs_modulus: 1 MPa\npoisson_ratio: 0.3\ndensity: 2000 kg/m^3\n\
+                        part: { gap: none }\nleft: -1 mm\nright: 2 mm\ncounts: { a: 1, b: 9 }\n";
+
+    fn read(text: &str) -> Result<Example, String> {
+        let variants = (["quick"].as_slice(), "quick");
+        let layers =
+            text::Layers { text, source: "x.yaml", variants, overrides: &[], on_defaults: false };
+        text::read(&layers).map_err(|error| error.to_string())
+    }
+
+    /// Oracle: the text, value by value; a value out of its limits is named by its key.
+    #[test]
+    fn every_form_of_a_key_is_read_and_checked() {
+        let unset = Example::unset();
+        assert!(!unset.is_on && unset.material.density.is_nan() && unset.counts == [0; 2]);
+        let scene = read(TEXT).unwrap();
+        assert!(scene.is_on && scene.part.gap.is_none());
+        assert_eq!(scene.material.density.to_bits(), 2000.0_f64.to_bits());
+        assert_eq!(scene.ends.map(f64::to_bits), [-1e-3, 2e-3].map(f64::to_bits));
+        assert_eq!(scene.counts, [1, 9]);
+        let error = read(&TEXT.replace("b: 9", "b: 10")).unwrap_err();
+        assert!(error.contains("counts.b") && error.contains("from 1 to 9"), "{error}");
+        let error = read(&TEXT.replace("on: true\n", "")).unwrap_err();
+        assert!(error.contains("`on`") || error.contains("on:"), "{error}");
+    }
+}

@@ -66,7 +66,7 @@ mod tests {
         assert_eq!(found, "0.5 [8637.0, 8647.0] 5.9e-7");
     }
 
-    /// Every line that is missing or garbled is an error that shows what was output instead.
+    /// Every missing or damaged line is an error that shows the output.
     #[test]
     fn anything_else_is_rejected() {
         for (from, to) in [

@@ -187,8 +187,8 @@ pub(super) fn counts(scene: &GripperScene) -> Vec<usize> {
         clippy::cast_sign_loss,
         reason = "the scene's limits keep it between 1 and 200 000"
     )]
-    let whole = |it: &Real| it.round() as usize;
-    let counts = scene.sweep.counts.iter().map(whole);
+    let rounded = |it: &Real| it.round() as usize;
+    let counts = scene.sweep.counts.iter().map(rounded);
     counts.filter(|&it| it != scene.gripper.grains.count).collect()
 }
 

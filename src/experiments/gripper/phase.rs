@@ -8,13 +8,13 @@ use crate::base::Real;
 /// The phases of a grip, in their order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub(super) enum Phase {
-    /// The object moves up into the bag.
+    /// The object moves up into the gripper.
     Insert,
-    /// Nothing moves, the bag is still vented.
+    /// Nothing moves, the gripper is still vented.
     Relax,
     /// The pressure falls in steps.
     Evacuate,
-    /// Nothing moves, the bag is jammed.
+    /// Nothing moves, the gripper is jammed.
     Hold,
     /// The object moves down until it is free.
     Withdraw,

@@ -48,7 +48,17 @@ impl Kind {
             Self::Plain => "",
             Self::Frictionless => " without friction",
             Self::Unscaled => " with true mass",
-            Self::StiffContacts => " on a sheet with contacts as hard",
+            Self::StiffContacts => " with equally stiff membrane contacts",
+        }
+    }
+
+    /// Suffix of the names of its quantities.
+    pub(super) fn suffix(self) -> &'static str {
+        match self {
+            Self::Plain => "",
+            Self::Frictionless => "_without_friction",
+            Self::Unscaled => "_with_true_mass",
+            Self::StiffContacts => "_on_a_sheet_with_contacts_as_hard",
         }
     }
 }

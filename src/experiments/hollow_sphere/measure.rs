@@ -66,8 +66,9 @@ impl Group<'_> {
     /// The pressure on the object as a quantity.
     pub(super) fn quantity(&self) -> Quantity {
         let (value, deviation) = self.pressure();
+        let modulus = cases::modulus_text(self.case.modulus);
         Quantity {
-            name: format!("object_pressure_{}", self.label().replace(' ', "_")),
+            name: format!("object_pressure_{modulus}{}", self.case.kind.suffix()),
             meaning: format!(
                 "pressure on the object under full vacuum, grains of {}",
                 self.label()

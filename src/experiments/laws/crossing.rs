@@ -74,7 +74,7 @@ impl Law for Crossing {
     }
 }
 
-/// With friction, at one speed on the same ways: the largest change of force in a substep, and in
+/// With friction, at one speed on the same paths: the largest change of force in a substep, and in
 /// half of it. What is continuous changes half as much.
 fn slide(scene: &LawsScene, record: &mut Record) {
     let substep = 4e-5;

@@ -39,8 +39,7 @@ use crate::{
 const REST: Real = 1e-4;
 /// Substeps between two measurements of the kinetic energy.
 const STOP_EVERY: usize = 20;
-/// Substeps after which a sheet that still moves is taken as it is; the scene's take some
-/// thousands.
+/// Largest number of substeps; the membranes of the scene need some thousands.
 const N_STEPS_MAX: usize = 100_000;
 
 pub(super) struct Inflation;
@@ -115,8 +114,8 @@ fn settle(
         if unbalanced < REST * load {
             return;
         }
-        // Looked at now and then: quick modes have their own peaks, which are not those of slow
-        // ones.
+        // Not in every substep: fast modes have peaks of their own, which differ from those of slow
+        // modes.
         if step % STOP_EVERY == 0 {
             if energy < last {
                 state.velocities.fill(Vec3::zeros());
@@ -192,8 +191,7 @@ fn tube(scene: &LawsScene, n_around: usize, n_rows: usize) -> (MembraneModel, Re
 const N_RINGS: usize = 24;
 /// Stretch of its edges relative to their rest length.
 const TAUT: Real = 0.05;
-/// How far the middle is to rise over the disc's radius: the slope adds a thousandth to the
-/// stretch.
+/// Rise of the middle relative to the disk's radius; the slope adds a thousandth to the stretch.
 const RISE: Real = 0.01;
 
 /// A flat membrane that is stretched and held on a circle bulges as a paraboloid.

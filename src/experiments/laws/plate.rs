@@ -1,4 +1,4 @@
-//! The sheet bent: the lattice of hinges as an elastic plate, and strips that are clamped at one
+//! Bending of the membrane: the lattice of hinges as an elastic plate, and strips clamped at one
 //! end (Götz 2024, eqs. 17–25).
 //!
 //! ```text

@@ -184,7 +184,7 @@ fn hard_spheres(scene: &SlideScene, records: &[CaseRecord<'_>], rows: &mut Vec<R
             "hollow, l = s/√3",
         ),
     ];
-    for (name, id, n_spheres, distance, place) in paths {
+    for (name, id, n_spheres, distance, position) in paths {
         let Some(it) = named(records, name) else { continue };
         let bed = Bed::new(scene, it.case, &[]);
         let sag = |load: Real| expected::overlap(&bed.law, bed.effective_radius, load);
@@ -197,7 +197,7 @@ fn hard_spheres(scene: &SlideScene, records: &[CaseRecord<'_>], rows: &mut Vec<R
         rows.push(Row::new(
             &RowText {
                 id,
-                quantity: &format!("height ripple over hard spheres, down into a {place}"),
+                quantity: &format!("height ripple over hard spheres, down into a {position}"),
                 unit: "m",
                 oracle: &format!(
                     "(R + r) − √((R + r)² − l²) = {bare:.3} mm, minus the difference of the Hertz \
@@ -211,7 +211,7 @@ fn hard_spheres(scene: &SlideScene, records: &[CaseRecord<'_>], rows: &mut Vec<R
         ));
     }
     let Some(it) = named(records, "hard_spheres_rows") else { return };
-    for (id, share, place) in [
+    for (id, share, position) in [
         ("C8.particle_descending", 0.25, "a quarter period after the top of a sphere"),
         ("C8.particle_climbing", 0.75, "a quarter period before the top of a sphere"),
     ] {
@@ -222,7 +222,7 @@ fn hard_spheres(scene: &SlideScene, records: &[CaseRecord<'_>], rows: &mut Vec<R
                 id,
                 quantity: &format!(
                     "friction force divided by weight and load on hard spheres, \
-                                   {place}"
+                                   {position}"
                 ),
                 unit: "1",
                 oracle: "one sphere, F_R = W tan(φ − θ), sin θ = u/(R + r), tan φ = μ",
@@ -252,7 +252,7 @@ fn hard_spheres(scene: &SlideScene, records: &[CaseRecord<'_>], rows: &mut Vec<R
 /// Spheres of the scene, compared with the quasi-static sum over all of them.
 fn spheres(scene: &SlideScene, records: &[CaseRecord<'_>], rows: &mut Vec<Row>) {
     let names = ["spheres_rows", "spheres_across", "spheres_skew"];
-    for (name, way) in names.into_iter().zip(["along rows", "across rows", "at an angle"]) {
+    for (name, direction) in names.into_iter().zip(["along rows", "across rows", "at an angle"]) {
         let Some(it) = named(records, name) else { continue };
         let (height, friction) = deviations(it, &it.expected(scene));
         let short = name.trim_start_matches("spheres_");
@@ -260,7 +260,7 @@ fn spheres(scene: &SlideScene, records: &[CaseRecord<'_>], rows: &mut Vec<Row>) 
             &RowText {
                 id: &format!("C8.particle_height_{short}"),
                 quantity: &format!(
-                    "height over spheres {way} compared with the computed one, rms \
+                    "height over spheres {direction} compared with the computed one, rms \
                                    deviation divided by range"
                 ),
                 unit: "1",
@@ -275,7 +275,7 @@ fn spheres(scene: &SlideScene, records: &[CaseRecord<'_>], rows: &mut Vec<Row>) 
             &RowText {
                 id: &format!("C8.particle_friction_{short}"),
                 quantity: &format!(
-                    "friction over spheres {way} compared with the computed one, rms deviation \
+                    "friction over spheres {direction} compared with the computed one, rms deviation \
                     divided by range"
                 ),
                 unit: "1",

@@ -16,7 +16,7 @@ pub(super) struct CaseRecord<'a> {
     pub(super) case: &'a Case,
     pub(super) record: &'a Record,
     /// Index of the first row after the first period.
-    begin: usize,
+    first: usize,
 }
 
 /// Smallest, largest and mean value.
@@ -44,8 +44,8 @@ impl Spread {
 impl<'a> CaseRecord<'a> {
     pub(super) fn new(case: &'a Case, record: &'a Record) -> Option<Self> {
         let period = case.period().norm();
-        let begin = record.column("distance")?.iter().position(|&it| it >= period)?;
-        Some(Self { case, record, begin })
+        let first = record.column("distance")?.iter().position(|&it| it >= period)?;
+        Some(Self { case, record, first })
     }
 
     /// A whole column.
@@ -55,7 +55,7 @@ impl<'a> CaseRecord<'a> {
 
     /// A column after the first period.
     pub(super) fn column(&self, name: &str) -> &'a [Real] {
-        &self.all(name)[self.begin..]
+        &self.all(name)[self.first..]
     }
 
     /// A column after the first period, over as many whole periods as there are.

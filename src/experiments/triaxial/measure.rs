@@ -221,11 +221,12 @@ fn of_grains(system: &System, sum: &mut Sum) {
 }
 
 fn of_membrane(system: &System, sum: &mut Sum) {
-    let (grains, sheet) = (&system.state.grains, &system.state.membrane);
+    let (grains, membrane) = (&system.state.grains, &system.state.membrane);
     let triangles = &system.model.membrane.mesh.triangles;
     for (patches, center) in system.scratch.patch_forces.iter().zip(&grains.positions) {
         for patch in &patches.contacts[..patches.n] {
-            let corners = triangles[patch.triangle as usize].map(|v| sheet.positions[v as usize]);
+            let corners =
+                triangles[patch.triangle as usize].map(|v| membrane.positions[v as usize]);
             let point: Vec3 = corners.iter().zip(patch.weights).map(|(r, w)| r * w).sum();
             sum.add(&patch.force, center, &(center - point), patch.normal * patch.overlap);
         }
@@ -235,7 +236,7 @@ fn of_membrane(system: &System, sum: &mut Sum) {
         if contact.overlap > 0.0 {
             let grain = *grain as usize;
             let center = &grains.positions[grain];
-            let arm = center - sheet.positions[*vertex as usize];
+            let arm = center - membrane.positions[*vertex as usize];
             let branch = arm.normalize() * (grains.radii[grain] - 0.5 * contact.overlap);
             sum.add(&contact.force, center, &branch, contact.normal * contact.overlap);
         }

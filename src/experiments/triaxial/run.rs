@@ -46,7 +46,7 @@ impl TriaxialRun {
         };
         // The strains of the points stay the same: curves are compared point by point.
         let step = shear.strain / real(shear.n_points);
-        shear.n_points = whole(strain / step);
+        shear.n_points = rounded(strain / step);
         shear.strain = step * real(shear.n_points);
         let end = (setup.shear.strain, setup.shear.n_points);
         let (recipe, system) = Recipe::new(&setup, choice)?;
@@ -118,7 +118,7 @@ pub(super) fn restore(
     clippy::cast_sign_loss,
     reason = "a small number of points"
 )]
-fn whole(value: Real) -> usize {
+fn rounded(value: Real) -> usize {
     value.round().max(1.0) as usize
 }
 
