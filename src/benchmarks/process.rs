@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use crate::{base::Real, physics::measure::real_of};
+use crate::base::{Real, real::real_of};
 
 /// Resets the peak of memory, so that only later memory counts.
 pub(super) fn reset_peak() {

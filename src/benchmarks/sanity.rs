@@ -2,12 +2,10 @@
 //! would be very fast.
 
 use crate::{
-    base::Real,
+    base::{Real, real::real},
+    measure::{kinetic_energy, packing},
     node::lift_monitor::LiftMetrics,
-    physics::{
-        Model, Scratch, State,
-        measure::{kinetic_energy, packing, real},
-    },
+    physics::{Model, Scratch, State},
 };
 
 /// Summary of a state.
@@ -115,7 +113,7 @@ impl StateSummary {
         Self {
             n_grains: state.grains.len(),
             n_grain_contacts: packing.n_grain_contacts,
-            n_wall_contacts: scratch.wall_forces.iter().filter(|wall| wall.normal > 0.0).count(),
+            n_wall_contacts: scratch.wall_forces.iter().filter(|wall| wall.flags.touches()).count(),
             n_membrane_contacts: packing.n_membrane_contacts,
             n_body_contacts: packing.n_body_contacts,
             overlap_max: packing.overlap_max,
@@ -210,7 +208,7 @@ mod tests {
         // The walls have moved away.
         let mut open = packed.clone();
         for (wall, model) in open.controls.walls.iter_mut().zip(&open.model.walls) {
-            let WallShape::Plane { normal } = model.shape else { panic!("a box has planes") };
+            let WallShape::Plane { normal } = &model.shape else { panic!("a box has planes") };
             wall.pose.translation.vector -= normal;
         }
         open.state.walls.clone_from(&open.controls.walls);

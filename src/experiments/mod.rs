@@ -187,6 +187,9 @@ pub enum StartError {
     /// The membrane cannot be meshed.
     #[error("membrane: {0}")]
     Mesh(#[from] crate::physics::membrane::mesh::MeshFault),
+    /// The parts of the system do not fit each other.
+    #[error("system: {0}")]
+    Build(#[from] crate::physics::builder::BuildError),
     /// There is no room for the grains.
     #[error("packing: {0}")]
     NoRoom(#[from] crate::physics::packing::scatter::NoRoom),

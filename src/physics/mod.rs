@@ -13,7 +13,7 @@ pub mod critical_step; // how long a substep may be
 pub mod fill; // grains into the bag
 pub mod health; // can the run go on?
 pub mod integrate;
-pub mod measure; // energies, stresses, coordination
+pub mod law; // contact laws
 pub mod membrane; // the flexible bag
 pub mod model;
 pub mod neighbours; // who may touch whom
@@ -22,7 +22,9 @@ pub mod scratch;
 pub mod state;
 pub mod substep;
 pub mod system;
+pub mod builder; // any system from its parts
 
+pub use builder::SystemBuilder;
 pub use controls::Controls;
 pub use model::Model;
 pub use scratch::Scratch;

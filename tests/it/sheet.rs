@@ -4,8 +4,8 @@
 use jamgrip::{
     base::{Real, Vec3, parallel},
     physics::{
-        contact::law::Surface,
         health,
+        law::Surface,
         membrane::{CARRIER_ID, FREE, mesh::Mesh},
         scratch::PatchForce,
     },
@@ -145,7 +145,7 @@ fn friction_does_not_see_edges() {
         for step in 0..n_steps {
             let velocity = &mut rig.state.grains.velocities[0];
             (velocity.x, velocity.y) = (0.05, 0.0);
-            rig.state.grains.spins[0] = Vec3::zeros();
+            rig.state.grains.angular_velocities[0] = Vec3::zeros();
             rig.step();
             if 0.05 * 1e-5 * Real::from(step) > 2.0 * stick {
                 let patches = &rig.scratch.patch_forces[0];
@@ -229,7 +229,7 @@ fn sag(n: i32, edge: Real, offset: [Real; 2]) -> (Real, Real) {
     let mut rig = rig(hexagon(n, edge), surface, RADIUS, 4e-6);
     let on_rim = |&it: &bool| if it { CARRIER_ID } else { FREE };
     rig.model.membrane.holders = rig.model.membrane.mesh.is_on_rim.iter().map(on_rim).collect();
-    rig.model.membrane.sheet.bending_stiffness = 1e-7;
+    rig.model.membrane.material.bending_stiffness = 1e-7;
     rig.model.membrane.scale_rest_lengths(0.9);
     rig.state.grains.masses[0] = 1.3e-3;
     rig.state.grains.positions[0] += Vec3::new(offset[0], offset[1], 0.0) * edge;

@@ -19,14 +19,16 @@ use serde::{Deserialize, Serialize};
 
 use super::{BenchError, BenchResult, Case, Options, lift};
 use crate::{
-    base::Real,
+    base::{
+        Real,
+        real::{real, real_of},
+    },
     host::{progress_bar::Progress, shutdown::Shutdown},
     io::{fanout::Delivery, sink::RunStatistics},
     node::{
         RunContext, command_sources::CommandSources, lift_monitor::LiftMonitor, lockstep::Gate,
         outputs::OutputSinks, schedule::Schedule,
     },
-    physics::measure::{real, real_of},
     ros::{
         discovery::{DiscoveryExtent, DiscoveryRange},
         node::{RosNode, RosSink},
@@ -109,7 +111,7 @@ fn measure(case: &Case, options: &Options) -> Result<BenchResult, BenchError> {
     let seconds = options.seconds.max(SECONDS_MIN);
     let mut plant = IdlePlant::new(session, scene.time.tick_ns, options)?;
     let prefix = format!("jamgrip_bench_{}", std::process::id());
-    let mesh = &plant.session().coupled().model.membrane.mesh;
+    let mesh = &plant.session().coupled().system.model.membrane.mesh;
     let encoder = Arc::new(Encoder::new(&scene, &mesh.triangles, &mesh.positions));
     let mut context = context(&scene, &encoder, &prefix, &plant, seconds).map_err(latency)?;
     let child = spawn(&prefix, seconds).map_err(latency)?;
@@ -125,7 +127,7 @@ fn measure(case: &Case, options: &Options) -> Result<BenchResult, BenchError> {
     let samples = listener.join().expect("a panic is a bug in this program").map_err(latency)?;
     context.outputs.close();
     let latencies = plant.latencies(&samples).map_err(latency)?;
-    let state = &plant.session().coupled().state;
+    let state = &plant.session().coupled().system.state;
     Ok(BenchResult {
         case: case.name.to_owned(),
         n_grains: state.grains.len(),
@@ -153,7 +155,7 @@ fn context(
     let mut outputs = OutputSinks::default();
     let delivery = Delivery::Latest { depth: 500 };
     outputs.fanout.add(Box::new(sink), delivery).map_err(|it| closed(&it))?;
-    let state = &plant.session().coupled().state;
+    let state = &plant.session().coupled().system.state;
     let (n_grains, n_vertices) = (state.grains.len(), state.membrane.positions.len());
     let stream = Stream::open(prefix, n_grains, n_vertices).map_err(|it| closed(&it))?;
     outputs.stream = Some(stream);

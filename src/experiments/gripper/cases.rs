@@ -6,7 +6,7 @@
 //! comparisons.
 
 use super::scene::GripperScene;
-use crate::{base::Real, physics::measure::real};
+use crate::base::{Real, real::real};
 
 /// One filling and its grips.
 #[derive(Clone, Debug)]

@@ -4,12 +4,10 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use super::{build::PreparedGrip, phase::Phase, scene::GripperScene};
 use crate::{
-    base::{Real, Vec3},
+    base::{Real, Vec3, real::real},
     experiments::record::{Column, Record},
-    physics::{
-        System,
-        measure::{self, real},
-    },
+    measure,
+    physics::System,
 };
 
 /// Share of the normal force on the object that acts within the contact angle; the rest may come
@@ -87,13 +85,10 @@ fn contacts(system: &System, volume: Real) -> (Real, Real) {
     let System { state, scratch, .. } = system;
     let radii = &state.grains.radii;
     let (mut virial, mut energy) = (0.0, 0.0);
-    for (pair, ids) in scratch.pair_forces.iter().zip(&state.pair_ids) {
-        if pair.overlap > 0.0 {
-            let [a, b] = ids.map(|id| radii[id as usize]);
-            let normal = pair.signed_normal.abs();
-            virial += normal * (a + b - pair.overlap);
-            energy += 0.4 * normal * pair.overlap;
-        }
+    for (pair, ids) in scratch.touching_pairs(state) {
+        let [a, b] = ids.map(|id| radii[id as usize]);
+        virial += pair.normal * (a + b - pair.overlap);
+        energy += 0.4 * pair.normal * pair.overlap;
     }
     for (patches, radius) in scratch.patch_forces.iter().zip(radii) {
         for patch in &patches.contacts[..patches.n] {
@@ -119,7 +114,7 @@ struct ObjectContact {
 impl ObjectContact {
     fn new(system: &System) -> Self {
         let center = system.controls.bodies[0].pose.translation.vector;
-        let touching = system.scratch.sample_forces.iter().filter(|it| it.overlap > 0.0);
+        let touching = system.scratch.sample_forces.iter().filter(|it| it.flags.touches());
         let mut forces: Vec<(Real, Real)> = touching
             .map(|it| (angle_from_top(&(it.point - center)), it.force.dot(&it.normal)))
             .collect();

@@ -86,7 +86,7 @@ impl Stroke {
 /// Value at `time` (s) of a set-point that goes from 0 to `goal` in `n_steps` equal steps, one
 /// every `step_time` (s), the first one at time 0.
 pub(super) fn staircase(goal: Real, n_steps: usize, step_time: Real, time: Real) -> Real {
-    let n = crate::physics::measure::real(n_steps);
+    let n = crate::base::real::real(n_steps);
     goal * ((time / step_time).floor() + 1.0).clamp(1.0, n) / n
 }
 

@@ -6,8 +6,8 @@ use super::{
 };
 use crate::{
     base::Real,
+    base::real::real,
     experiments::{findings::Mean, record::Record},
-    physics::measure::real,
 };
 
 /// Scene and records.

@@ -16,7 +16,7 @@ use crate::{
 /// Pressure of the membrane on the object: the sum of its radial forces over the surface (Pa).
 pub(super) fn object_pressure(system: &System, radius: Real) -> Real {
     let radial: Real = (system.scratch.sample_forces.iter())
-        .filter(|sample| sample.overlap > 0.0)
+        .filter(|sample| sample.flags.touches())
         .map(|sample| sample.force.dot(&sample.point.normalize()))
         .sum();
     radial / (4.0 * std::f64::consts::PI * radius.powi(2))

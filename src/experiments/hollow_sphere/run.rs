@@ -9,16 +9,19 @@ use super::{
     scene::{HollowSphereScene, Protocol},
 };
 use crate::{
-    base::{Real, real::count},
+    base::{
+        Real,
+        real::{count, real},
+    },
     experiments::{
         Progress, ResumeError, Run, StartError,
         record::{Column, Record},
         saved_run,
     },
+    measure::{self, rest::unbalanced_force},
     physics::{
         Scratch, System,
         health::Diverged,
-        measure::{self, real, rest::unbalanced_force},
         packing::{Grown, Growth, grow},
     },
 };

@@ -15,11 +15,11 @@ use crate::{
     base::{
         Real, Vec3,
         random::{Random, Stream},
+        real::real,
     },
     experiments::{findings::Expected, record::Record},
     physics::{
-        contact::law::Surface,
-        measure::real,
+        law::Surface,
         membrane::{MembraneModel, mesh::Mesh},
     },
 };
@@ -127,7 +127,7 @@ impl Path {
         let mesh = Mesh::new(positions, flipped).expect("dents do not change the connectivity");
         let sheet = MembraneModel::new(mesh, scene.membrane.sheet);
         let material = &scene.grain.material;
-        let mut bench = Bench::on_sheet(material, surface, sheet, 1e-9);
+        let mut bench = Bench::on_membrane(material, surface, sheet, 1e-9);
         bench.add_grain(Vec3::z() * radius, radius, material.density);
         let angle = random.between(0.0, 2.0 * std::f64::consts::PI);
         let along = Vec3::new(angle.cos(), angle.sin(), 0.0);
@@ -193,7 +193,7 @@ impl Path {
             let grains = self.bench.grains_mut();
             grains.positions[0] = here;
             grains.velocities[0] = (next - here) / dt;
-            grains.spins[0] = Vec3::zeros();
+            grains.angular_velocities[0] = Vec3::zeros();
             self.bench.system.scratch.neighbours.is_built = false;
             self.bench.step();
             let patches = &self.bench.system.scratch.patch_forces[0];

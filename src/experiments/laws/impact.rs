@@ -8,12 +8,12 @@ use super::{
     scene::LawsScene,
 };
 use crate::{
-    base::Real,
+    base::{Real, real::real},
     experiments::{
         findings::{Expected, Kind, Plot, Series},
         record::Record,
     },
-    physics::{contact::law::Surface, measure::real},
+    physics::law::Surface,
     scene::Material,
 };
 

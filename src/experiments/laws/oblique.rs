@@ -45,7 +45,7 @@ impl Law for Oblique {
     fn measure(&self, scene: &LawsScene, point: usize, record: &mut Record) {
         let n = n_angles(scene);
         if point < n {
-            sweep(scene, crate::physics::measure::real(point + 1), record);
+            sweep(scene, crate::base::real::real(point + 1), record);
         } else if let Some([degrees, e_t, spin]) = TABLE.get(point - n) {
             let found = impact(scene, degrees.to_radians(), 0.0, record);
             worst(record, "U4.table", found[0] / e_t - 1.0);
@@ -93,7 +93,7 @@ fn impact(scene: &LawsScene, angle: Real, damping: Real, record: &mut Record) ->
     let before = 0.5 * bench.grains().masses[0] * speed * speed;
     [
         bench.grains().velocities[0].x / flight.velocity.x,
-        bench.grains().spins[0].y * grain.radius / speed,
+        bench.grains().angular_velocities[0].y * grain.radius / speed,
         bench.kinetic_energy() / before,
     ]
 }

@@ -14,11 +14,10 @@
 
 use super::{Law, RowSpec, scene::LawsScene};
 use crate::{
-    base::{Real, Vec3},
+    base::{Real, Vec3, real::real},
     experiments::{findings::Expected, record::Record},
-    physics::{
-        measure::real,
-        membrane::{MembraneModel, MembraneScratch, MembraneState, Sheet, forces, mesh::Mesh},
+    physics::membrane::{
+        MembraneMaterial, MembraneModel, MembraneScratch, MembraneState, forces, mesh::Mesh,
     },
 };
 
@@ -73,8 +72,8 @@ fn edge_stiffness(scene: &LawsScene) -> Real {
 }
 
 /// The scene's membrane without springs: bending alone.
-fn bending_only(scene: &LawsScene) -> Sheet {
-    Sheet { youngs_modulus: 0.0, bending_damping: 0.0, ..scene.membrane.sheet }
+fn bending_only(scene: &LawsScene) -> MembraneMaterial {
+    MembraneMaterial { youngs_modulus: 0.0, bending_damping: 0.0, ..scene.membrane.sheet }
 }
 
 /// Energy of a patch bent to a given curvature.
@@ -153,7 +152,7 @@ impl Strip {
         if largest == 0.0 {
             return vec![0.0; z.len()];
         }
-        let scale = SMALL * self.model.sheet.thickness / largest;
+        let scale = SMALL * self.model.material.thickness / largest;
         let mut state = MembraneState::at_rest(&self.model.mesh);
         for (position, z) in state.positions.iter_mut().zip(z) {
             position.z = scale * z;

@@ -2,7 +2,7 @@
 
 use crate::{
     base::{Real, Vec3},
-    physics::{contact::law, membrane::Sheet},
+    physics::{law, membrane::MembraneMaterial},
     scene::{
         Material,
         keys::{Inline, Map, MapOf, Section, scene_keys},
@@ -115,7 +115,7 @@ scene_keys! {
     /// The membrane.
     pub(super) struct Membrane {
         /// Springs and hinges.
-        sheet: Sheet = Inline,
+        sheet: MembraneMaterial = Inline,
         /// Edge of a flat patch (m).
         edge: Real = SOME_LENGTH,
         /// Radius of a sphere (m).
@@ -162,7 +162,7 @@ impl Unset for law::Surface {
     }
 }
 
-impl Section for Sheet {
+impl Section for MembraneMaterial {
     fn walk(&mut self, walk: &mut impl Visitor) {
         walk.quantity("thickness", SOME_LENGTH, &mut self.thickness);
         walk.quantity("youngs_modulus", SOME_PRESSURE, &mut self.youngs_modulus);
@@ -175,7 +175,7 @@ impl Section for Sheet {
     }
 }
 
-impl Unset for Sheet {
+impl Unset for MembraneMaterial {
     fn unset() -> Self {
         let [thickness, youngs_modulus, density] = Unset::unset();
         let [spring_damping, bending_stiffness, bending_damping] = Unset::unset();

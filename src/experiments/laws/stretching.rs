@@ -3,16 +3,13 @@
 
 use super::{Law, RowSpec, measure::worst, scene::LawsScene};
 use crate::{
-    base::{Mat3, Real, Vec3},
+    base::{Mat3, Real, Vec3, real::real},
     experiments::{findings::Expected, record::Record},
-    physics::{
-        measure::real,
-        membrane::{
-            MembraneModel, MembraneScratch, MembraneState, Sheet, forces,
-            mesh::Mesh,
-            pressure,
-            stretch::{self, Spring, tension},
-        },
+    physics::membrane::{
+        MembraneMaterial, MembraneModel, MembraneScratch, MembraneState, forces,
+        mesh::Mesh,
+        pressure,
+        stretch::{self, Spring, tension},
     },
 };
 
@@ -47,7 +44,8 @@ impl Law for Stretching {
 
 /// A flat hexagon of the scene's membrane without bending.
 fn patch(scene: &LawsScene, rings: usize, record: &mut Record) {
-    let sheet = Sheet { bending_stiffness: 0.0, bending_damping: 0.0, ..scene.membrane.sheet };
+    let sheet =
+        MembraneMaterial { bending_stiffness: 0.0, bending_damping: 0.0, ..scene.membrane.sheet };
     let mesh = Mesh::hexagonal_patch(scene.membrane.edge, rings).expect("there are rings");
     let model = MembraneModel::new(mesh, sheet);
     let in_plane = sheet.youngs_modulus * sheet.thickness;
@@ -86,7 +84,7 @@ fn stress(model: &MembraneModel, shape: &Mat3) -> Mat3 {
 
 /// Two vertices of the membrane released from a stretched state: the decay of amplitude in a period.
 fn ring_down(scene: &LawsScene, record: &mut Record) {
-    let Sheet { youngs_modulus, thickness, density, .. } = scene.membrane.sheet;
+    let MembraneMaterial { youngs_modulus, thickness, density, .. } = scene.membrane.sheet;
     let (edge, gamma) = (scene.membrane.edge, 0.15);
     let mass = density * thickness * edge * edge * 0.75_f64.sqrt();
     let k = stretch::stiffness(youngs_modulus, thickness);

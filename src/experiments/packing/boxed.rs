@@ -28,17 +28,21 @@ use crate::{
     base::{
         Real, Vec3,
         random::{Random, Stream},
+        real::real,
+    },
+    measure::{
+        coordination::{NEEDED_ROUGH, NEEDED_SMOOTH, coordination},
+        grain_volume, packing, rest, stress,
+        structure::{self, Bins, Region},
     },
     physics::{
-        Model, System,
+        Model, System, SystemBuilder,
         contact::grains::closest_image,
         health::Diverged,
-        measure::{
-            coordination::{NEEDED_ROUGH, NEEDED_SMOOTH, coordination},
-            grain_volume, packing, real, rest, stress,
-            structure::{self, Bins, Region},
+        packing::{
+            Grown, Growth, Laws, Recipe, Room, first_scale, grow, pressure::normal_pressure,
+            scatter, sphere_volume,
         },
-        packing::{Grown, Growth, Laws, Recipe, Room, first_scale, grow, scatter, sphere_volume},
     },
 };
 
@@ -96,7 +100,7 @@ pub(super) enum Change {
 /// A state at rest.
 pub(super) struct RestState {
     pub(super) pressure: Real,
-    /// σ_xx − σ_yy [Pa].
+    /// σ_xx − σ_yy (Pa).
     pub(super) difference: Real,
     /// Mean overlap over diameter.
     pub(super) overlap: Real,
@@ -150,11 +154,12 @@ impl BoxRun {
         let friction = friction(scene, case);
         let law = build::grain_law(&scene.grains, friction);
         let (mean, largest) = (scene.grains.radius_mean(), scene.grains.radius_max);
-        let mut model = Model::of_grains(law, scene.compression.substep, largest, mean);
-        model.period = Some(period);
-        // Dense grains hardly move: short lists are soon built anew, and soon gone through.
-        model.skin = 0.1 * mean;
-        let recipe = recipe(scene, &model, volume, friction);
+        let mut builder = SystemBuilder::new(law);
+        builder.substep(scene.compression.substep).radii_up_to(largest, mean).period(period);
+        // Dense grains hardly move: short lists are rebuilt soon, but quick to go through.
+        builder.skin(0.1 * mean).grains(grains);
+        let system = builder.build()?;
+        let recipe = recipe(scene, &system.model, volume, friction);
         let growth = Growth::new(recipe, final_radii.clone(), scale);
         let mut record = Record { case: case.name(), seed: scene.seed, ..Record::default() };
         record.columns = COLUMNS.iter().map(|(name, unit)| Column::new(name, unit)).collect();
@@ -168,7 +173,6 @@ impl BoxRun {
             n_probed: 0,
             record,
         };
-        let system = System::at_rest(model, Vec::new(), grains);
         let (scene, case) = (scene.clone(), case);
         Ok(Self { scene, case, final_radii, volume, growth, system, progress })
     }
@@ -234,7 +238,7 @@ impl BoxRun {
         let compression = self.scene.compression.clone();
         let is_smooth = friction(&self.scene, self.case) == 0.0;
         let System { model, state, scratch, .. } = &self.system;
-        let pressure = stress::normal_pressure(state, scratch, self.volume);
+        let pressure = normal_pressure(state, scratch, self.volume);
         if !is_smooth && pressure < LOOSE * compression.pressure_first {
             // Growth ended in motion; at rest the grains do not hold each other yet.
             let more = compression.share * self.first_overlap();
@@ -274,8 +278,8 @@ impl BoxRun {
         let System { model, state, scratch, .. } = &mut self.system;
         let before = period(self.volume, self.progress.stretch);
         let springs = state.springs.pairs.iter_mut().zip(&state.pair_ids);
-        for ((spring, [i, j]), force) in springs.zip(&scratch.pair_forces) {
-            if force.overlap > 0.0 {
+        for ((spring, [i, j]), flags) in springs.zip(&scratch.pair_flags) {
+            if flags.touches() {
                 let [first, second] = [i, j].map(|&it| state.grains.positions[it as usize]);
                 let branch = closest_image(first - second, &before);
                 let moved = Vec3::new(branch.x * (by - 1.0), branch.y * (by.recip() - 1.0), 0.0);
@@ -297,7 +301,7 @@ impl BoxRun {
         (self.scene.compression.pressure_first / stiffness).powf(2.0 / 3.0)
     }
 
-    /// Makes all grains, which are now under `pressure` [Pa], or the box larger by the share
+    /// Makes all grains, which are now under `pressure` (Pa), or the box larger by the share
     /// `growth`, steadily.
     pub(super) fn ramp(&mut self, what: Change, growth: Real, pressure: Real) {
         let (compression, grains) = (&self.scene.compression, &self.scene.grains);
@@ -363,8 +367,13 @@ impl BoxRun {
         let mean = radii.iter().sum::<Real>() / real(radii.len());
         let bins = Bins { width: BIN * 2.0 * mean, n_bins: N_BINS };
         let region = Region::Periodic(period);
-        let g = structure::pair_distribution(&state.grains.positions, &region, &bins);
-        let cut = structure::cut_distribution(&state.grains, &region, &bins);
+        let g = structure::radial_distribution(&state.grains.positions, &region, &bins);
+        let cut = structure::cut_distribution(
+            &state.grains.positions,
+            &state.grains.radii,
+            &region,
+            &bins,
+        );
         let middles = (0..N_BINS).map(|k| bins.middle(k) / (2.0 * mean)).collect();
         let column =
             |name: &str, values| Column { name: name.to_owned(), unit: "1".to_owned(), values };
@@ -381,7 +390,7 @@ impl BoxRun {
         self.progress.phase = Phase::Done;
     }
 
-    /// Share of the work that is done, as far as it can be told.
+    /// Share of the work that is done, as far as it is known.
     fn share(&self) -> Real {
         let compression = &self.scene.compression;
         let (from, to) = if friction(&self.scene, self.case) == 0.0 {
@@ -421,7 +430,7 @@ fn next_pressure(scene: &PackingScene, case: Case, n_probed: usize) -> Option<Re
     }
 }
 
-/// A cube of `volume` [m³] that is longer along x by the factor `stretch`, and shorter along y.
+/// A cube of `volume` (m³) that is longer along x by the factor `stretch`, and shorter along y.
 fn period(volume: Real, stretch: Real) -> Vec3 {
     volume.cbrt() * Vec3::new(stretch, stretch.recip(), 1.0)
 }

@@ -7,14 +7,10 @@ use crate::{
     base::{
         Real, Vec3,
         random::{Random, Stream},
+        real::real,
     },
-    physics::{
-        System,
-        contact::law::PairLaw,
-        measure::{kinetic_energy, real, rest},
-        packing::sphere_volume,
-        state,
-    },
+    measure::{kinetic_energy, rest},
+    physics::{System, law::PairLaw, packing::sphere_volume, state},
 };
 
 /// Largest unbalanced force over mean contact force of grains at rest.
@@ -33,7 +29,7 @@ pub(super) fn grain_law(grains: &Grains, friction: Real) -> PairLaw {
     PairLaw::between(&grains.material, &grains.material, grains.surface(friction))
 }
 
-/// Final radii [m]: uniform between the limits, or all the mean.
+/// Final radii (m): uniform between the limits, or all the mean.
 pub(super) fn final_radii(scene: &PackingScene, count: usize, is_mono: bool) -> Vec<Real> {
     let grains = &scene.grains;
     let mut random = Random::new(scene.seed, Stream::Radius);
@@ -54,12 +50,12 @@ pub(super) fn grains(
     state::Grains::at_rest(positions, radii, masses)
 }
 
-/// Lets the velocities of the grains decay by one substep of `drag_time` [s].
+/// Lets the velocities of the grains decay by one substep of `drag_time` (s).
 pub(super) fn drag(system: &mut System, drag_time: Real) {
     let left = (-system.model.substep / drag_time).exp();
     let grains = &mut system.state.grains;
     grains.velocities.iter_mut().for_each(|it| *it *= left);
-    grains.spins.iter_mut().for_each(|it| *it *= left);
+    grains.angular_velocities.iter_mut().for_each(|it| *it *= left);
 }
 
 /// Kinetic damping (Cundall 1976): grains and membrane move freely until their kinetic energy has
@@ -69,9 +65,9 @@ pub(super) fn drag(system: &mut System, drag_time: Real) {
 pub(super) struct Settling {
     /// Substeps so far.
     pub(super) n_done: u64,
-    /// Kinetic energy when it was last looked at [J].
+    /// Kinetic energy when it was last looked at (J).
     last: Real,
-    /// Largest kinetic energy since rest was last looked for [J].
+    /// Largest kinetic energy since rest was last looked for (J).
     highest: Real,
 }
 
@@ -103,7 +99,7 @@ impl Settling {
 fn stop(system: &mut System) -> Real {
     let grains = &mut system.state.grains;
     grains.velocities.fill(Vec3::zeros());
-    grains.spins.fill(Vec3::zeros());
+    grains.angular_velocities.fill(Vec3::zeros());
     system.state.membrane.velocities.fill(Vec3::zeros());
     0.0
 }

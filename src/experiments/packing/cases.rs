@@ -1,7 +1,7 @@
 //! The cases: packings of one and of many sizes, of several frictions, and in a membrane.
 
 use super::scene::PackingScene;
-use crate::{base::Real, physics::measure::real};
+use crate::{base::Real, base::real::real};
 
 /// One packing.
 #[derive(Clone, Copy, Debug, PartialEq)]

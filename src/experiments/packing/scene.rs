@@ -2,7 +2,7 @@
 
 use crate::{
     base::Real,
-    physics::contact::law,
+    physics::law,
     scene::{
         Material,
         keys::{Inline, Map, scene_keys},

@@ -6,20 +6,15 @@ use super::{
     scene::SlideScene,
 };
 use crate::{
-    base::{Pose, Real, Vec3, real::Twist},
+    base::{Real, Vec3},
     physics::{
-        Controls, Model, State, System,
-        boundary::{
-            body::BodyMotion,
-            wall::{WallModel, WallShape},
-        },
-        contact,
+        System, SystemBuilder,
+        builder::{BuildError, Membrane, Vertices, Wall},
         membrane::{
-            CARRIER_ID, FREE, MembraneModel, MembraneState, SheetContact, critical_step,
+            MembraneContact, MembraneModel, critical_step,
             mesh::{Mesh, MeshFault},
         },
-        model::ChamberModel,
-        state::{Grains, Springs},
+        state::Grains,
     },
 };
 
@@ -116,57 +111,36 @@ pub(super) fn start(scene: &SlideScene, case: &Case, patch: &Patch) -> Vec3 {
 }
 
 /// The ball at `start` (m) over the membrane, which a frame holds.
-pub(super) fn system(scene: &SlideScene, case: &Case, patch: Patch, start: Vec3) -> System {
-    let model = model(scene, case, patch);
-    let state = State {
-        grains: Grains::at_rest(vec![start], vec![scene.ball.radius], vec![mass(scene)]),
-        membrane: MembraneState::at_rest(&model.membrane.mesh),
-        springs: Springs::none(1, model.walls.len(), 0),
-        pair_ids: Vec::new(),
-        gauge: 0.0,
-        walls: vec![BodyMotion { pose: Pose::identity(), twist: Twist::zero() }],
-    };
-    let controls = Controls { gauge_setpoint: 0.0, walls: state.walls.clone(), bodies: Vec::new() };
-    System::new(model, controls, state)
-}
-
-fn model(scene: &SlideScene, case: &Case, patch: Patch) -> Model {
+///
+/// # Errors
+/// If the parts do not fit each other.
+pub(super) fn system(
+    scene: &SlideScene,
+    case: &Case,
+    patch: Patch,
+    start: Vec3,
+) -> Result<System, BuildError> {
     let radius = scene.ball.radius;
     let law = case.law(scene);
-    let held_positions = patch.mesh.positions.clone();
     let mut membrane = MembraneModel::new(patch.mesh, scene.membrane.sheet());
     let mut contact_radius = radius;
     if case.has_spheres {
         let sphere = scene.membrane.sphere_radius;
-        membrane.contact = SheetContact::Spheres { radius: sphere };
+        membrane.contact = MembraneContact::Spheres { radius: sphere };
         contact_radius = radius * sphere / (radius + sphere);
     }
-    let mut substep = case.pull.substep;
+    let (mut substep, mut held) = (case.pull.substep, Vertices::All);
     if case.is_framed {
-        let holder = |&is_on_rim: &bool| if is_on_rim { CARRIER_ID } else { FREE };
-        membrane.holders = membrane.mesh.is_on_rim.iter().map(holder).collect();
+        held = Vertices::Rims;
         membrane.scale_rest_lengths(1.0 / (1.0 + scene.frame.stretch));
-        let stiffness = contact::stiffness(&law, contact_radius, case.weight(scene));
+        let stiffness = law.stiffness(contact_radius, case.weight(scene));
         let longest = SAFETY * critical_step::critical_step(&membrane, stiffness);
         substep = substep.min(longest);
-    } else {
-        membrane.holders.fill(CARRIER_ID);
     }
-    Model {
-        gravity: Vec3::z() * -GRAVITY,
-        substep,
-        radius_max: radius,
-        radius_mean: radius,
-        skin: SKIN_SHARE * radius,
-        period: None,
-        density_scaling: 1.0,
-        grain_law: law,
-        membrane_law: law,
-        membrane,
-        held_positions,
-        walls: vec![WallModel { shape: WallShape::Frame, law }],
-        chamber: ChamberModel { lag_factor: 0.0, change_max: Real::INFINITY },
-        table: Pose::identity(),
-        bodies: Vec::new(),
-    }
+    let mut builder = SystemBuilder::new(law);
+    builder.gravity(Vec3::z() * -GRAVITY).substep(substep).skin(SKIN_SHARE * radius);
+    builder.grains(Grains::at_rest(vec![start], vec![radius], vec![mass(scene)]));
+    let frame = builder.wall(Wall::frame());
+    builder.membrane(Membrane::of(membrane).hold(held, frame));
+    builder.build()
 }

@@ -3,7 +3,7 @@
 use super::scene::{Pull, SlideScene};
 use crate::{
     base::{Real, Vec3},
-    physics::contact::law::PairLaw,
+    physics::law::PairLaw,
 };
 
 /// Gravity (m/s²).

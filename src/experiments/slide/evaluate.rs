@@ -8,12 +8,11 @@ use super::{
     scene::SlideScene,
 };
 use crate::{
-    base::Real,
+    base::{Real, real::real},
     experiments::{
         findings::{Curve, Expected, Findings, Quantity, Row, RowText},
         record::Record,
     },
-    physics::measure::real,
 };
 
 /// All findings.

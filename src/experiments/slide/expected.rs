@@ -25,8 +25,8 @@
 
 use super::{cases::Case, scene::SlideScene};
 use crate::{
-    base::{Real, Vec3},
-    physics::{contact::law::PairLaw, measure::real},
+    base::{Real, Vec3, real::real},
+    physics::law::PairLaw,
 };
 
 /// Overlap (m) of a Hertz contact with effective radius `radius` (m) under `load` (N).
@@ -142,7 +142,7 @@ pub(super) fn friction_on_one(friction: Real, reach: Real, behind: Real) -> Real
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{physics::contact::law::Surface, scene::Material};
+    use crate::{physics::law::Surface, scene::Material};
 
     /// Oracle: the closed forms of one sphere. Tolerance: a difference quotient over 1/4000 of a
     /// period.

@@ -6,7 +6,7 @@ use super::{
     expected::{Bed, Rest},
     scene::SlideScene,
 };
-use crate::{base::Real, experiments::record::Record, physics::measure::real};
+use crate::{base::Real, base::real::real, experiments::record::Record};
 
 /// Points over one period at which the expected curve is computed.
 const N_POINTS: usize = 400;

@@ -10,19 +10,17 @@ use super::{
     scene::SlideScene,
 };
 use crate::{
-    base::{Real, Vec3},
+    base::{
+        Real, Vec3,
+        real::{real, real_of},
+    },
     experiments::{
         Progress, ResumeError, Run, StartError,
         record::{Column, Record},
         saved_run,
     },
-    physics::{
-        Scratch, State, System,
-        contact::sums,
-        health::Diverged,
-        measure::{packing, real, real_of},
-        membrane::SheetContact,
-    },
+    measure::packing,
+    physics::{Scratch, State, System, contact::sums, health::Diverged, membrane::MembraneContact},
 };
 
 /// Substeps of a slice.
@@ -65,7 +63,7 @@ impl SlideRun {
             if case.is_framed { Vec::new() } else { patch.one_period_behind(case.direction) };
         let period = case.period();
         let start = build::start(scene, &case, &patch);
-        let system = build::system(scene, &case, patch, start);
+        let system = build::system(scene, &case, patch, start)?;
         let dt = system.model.substep;
         let settle = if case.is_framed { scene.frame.settle } else { 0.0 };
         let n_settling = count(settle / dt);
@@ -105,7 +103,7 @@ impl SlideRun {
         *v = self.along * speed;
         *x = before + *v * dt;
         (x.z, v.z) = (height, fall);
-        grains.spins[0] = Vec3::zeros();
+        grains.angular_velocities[0] = Vec3::zeros();
         self.n_done += 1;
         if !self.behind.is_empty() && (*x - self.start).dot(&self.along) >= self.period {
             self.set_back();
@@ -146,8 +144,8 @@ impl SlideRun {
             real(packing.n_membrane_contacts),
         ]);
         let diameter = match model.membrane.contact {
-            SheetContact::Triangles => 2.0 * model.radius_max,
-            SheetContact::Spheres { radius } => model.radius_max + radius,
+            MembraneContact::Triangles => 2.0 * model.radius_max,
+            MembraneContact::Spheres { radius } => model.radius_max + radius,
         };
         let largest = &mut self.record.validity.overlap_over_diameter_max;
         *largest = largest.max(packing.membrane_overlap_max / diameter);

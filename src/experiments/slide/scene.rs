@@ -2,7 +2,7 @@
 
 use crate::{
     base::Real,
-    physics::{contact::law, membrane::Sheet},
+    physics::{law, membrane::MembraneMaterial},
     scene::{
         Material,
         keys::{Flag, Inline, Map, scene_keys},
@@ -110,8 +110,8 @@ impl Membrane {
     }
 
     /// Springs and hinges.
-    pub(super) fn sheet(&self) -> Sheet {
-        Sheet {
+    pub(super) fn sheet(&self) -> MembraneMaterial {
+        MembraneMaterial {
             thickness: self.thickness,
             youngs_modulus: self.material.youngs_modulus,
             density: self.material.density,

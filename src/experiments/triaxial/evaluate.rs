@@ -7,11 +7,11 @@ use super::{
     scene::TriaxialScene,
 };
 use crate::{
+    base::real::{real, real_of},
     experiments::{
         findings::{Expected, Findings, Quantity, Row, RowText},
         record::Record,
     },
-    physics::measure::{real, real_of},
 };
 
 const KINDS: [Kind; 2] = [Kind::Triangles, Kind::Spheres];

@@ -13,23 +13,21 @@
 
 use super::build::{BOTTOM, TOP};
 use crate::{
-    base::{Real, Vec3},
+    base::{Real, Vec3, real::real},
+    measure,
     physics::{
         System,
         contact::sums,
-        measure::{self, real},
         membrane::{pressure, stretch},
     },
 };
 
 /// Forces of the grains on the lower and the upper plate, outward along the axis (N).
 pub(super) fn plate_forces(system: &System) -> [Real; 2] {
-    let n_grains = system.state.grains.len();
     let on = |wall: u32, sign: Real| {
-        let first = wall as usize * n_grains;
-        let forces = &system.scratch.wall_forces;
-        let sum: Real = forces[first..first + n_grains].iter().map(|it| it.force.z).sum();
-        sign * sum
+        let contacts = system.scratch.touching_walls(&system.state);
+        let of_wall = contacts.filter(|(_, [w, _])| *w == wall as usize);
+        sign * of_wall.map(|(contact, _)| contact.force.z).sum::<Real>()
     };
     [on(BOTTOM, 1.0), on(TOP, -1.0)]
 }
@@ -69,8 +67,8 @@ pub(super) fn radii(system: &System) -> [Real; 2] {
 /// edges, of which there are twice as many.
 pub(super) fn hoop_pressure(system: &System) -> Real {
     let membrane = &system.model.membrane;
-    let (mesh, sheet) = (&membrane.mesh, &membrane.sheet);
-    let stiffness = stretch::stiffness(sheet.youngs_modulus, sheet.thickness);
+    let (mesh, material) = (&membrane.mesh, &membrane.material);
+    let stiffness = stretch::stiffness(material.youngs_modulus, material.thickness);
     let top = mesh.positions.iter().map(|p| p.z).fold(0.0, Real::max);
     let (mut sums, mut n) = ([0.0; 2], [0; 2]);
     for ends in &mesh.edges {
@@ -97,7 +95,8 @@ pub(super) fn grain_energy(system: &System) -> Real {
     let grains = &system.state.grains;
     let twice = |i: usize| {
         let gyration = 0.4 * grains.radii[i] * grains.radii[i];
-        let (v, w) = (grains.velocities[i].norm_squared(), grains.spins[i].norm_squared());
+        let (v, w) =
+            (grains.velocities[i].norm_squared(), grains.angular_velocities[i].norm_squared());
         grains.masses[i] * (v + gyration * w)
     };
     0.5 * (0..grains.len()).map(twice).sum::<Real>()
@@ -128,7 +127,7 @@ pub(super) fn contacts(system: &System) -> ContactSums {
     };
     of_grains(system, &mut sum);
     of_membrane(system, &mut sum);
-    for contact in system.scratch.wall_forces.iter().filter(|it| it.normal > 0.0) {
+    for (contact, _) in system.scratch.touching_walls(&system.state) {
         sum.n += 1;
         sum.force += contact.force.norm();
         sum.normal_overlap += contact.normal * contact.overlap;
@@ -204,19 +203,12 @@ impl Sum {
 
 fn of_grains(system: &System, sum: &mut Sum) {
     let grains = &system.state.grains;
-    for (pair, ids) in system.scratch.pair_forces.iter().zip(&system.state.pair_ids) {
-        if pair.overlap > 0.0 {
-            let [i, j] = ids.map(|id| id as usize);
-            let branch = grains.positions[i] - grains.positions[j];
-            sum.add(
-                &pair.force,
-                &grains.positions[i],
-                &branch,
-                pair.signed_normal.abs() * pair.overlap,
-            );
-            let diameter = grains.radii[i] + grains.radii[j];
-            sum.overlap_over_diameter = sum.overlap_over_diameter.max(pair.overlap / diameter);
-        }
+    for (pair, ids) in system.scratch.touching_pairs(&system.state) {
+        let [i, j] = ids.map(|id| id as usize);
+        let branch = grains.positions[i] - grains.positions[j];
+        sum.add(&pair.force, &grains.positions[i], &branch, pair.normal * pair.overlap);
+        let diameter = grains.radii[i] + grains.radii[j];
+        sum.overlap_over_diameter = sum.overlap_over_diameter.max(pair.overlap / diameter);
     }
 }
 
@@ -233,7 +225,7 @@ fn of_membrane(system: &System, sum: &mut Sum) {
     }
     let ids = &system.state.springs.spheres.ids;
     for (contact, [grain, vertex]) in system.scratch.sphere_forces.iter().zip(ids) {
-        if contact.overlap > 0.0 {
+        if contact.flags.touches() {
             let grain = *grain as usize;
             let center = &grains.positions[grain];
             let arm = center - membrane.positions[*vertex as usize];

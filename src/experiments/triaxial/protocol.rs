@@ -18,11 +18,15 @@ use super::{
     time_series::TimeSeries,
 };
 use crate::{
-    base::Real,
+    base::{
+        Real, Vec3,
+        real::{Twist, real},
+    },
+    measure as packing_measure,
     physics::{
         System,
+        boundary::motion::{Load, Servo, WallMotion},
         health::Diverged,
-        measure::{self as packing_measure, real},
         packing::{
             Grown, Growth, Laws,
             grow::{self, Progress as Grow},
@@ -124,6 +128,8 @@ impl TriaxialTest {
     /// Resumes from `progress`; the system already holds the state that belongs to it.
     pub(super) fn resume(&mut self, progress: TestProgress) {
         self.system.controls.walls.clone_from(&self.system.state.walls);
+        let walls = &self.system.state.walls;
+        self.drive([BOTTOM, TOP].map(|wall| walls[wall as usize].twist.linear.z));
         self.system.controls.gauge_setpoint = self.system.state.gauge;
         self.system.scratch = crate::physics::Scratch::new(&self.system.model);
         if progress.phase == Phase::Growing {
@@ -254,7 +260,7 @@ impl TriaxialTest {
             && stress_error.abs() < confining.rest_stress;
         let time = self.progress.time_in_phase;
         if is_at_rest || time >= confining.rest_time_max {
-            self.drive([0.0; 2]);
+            self.drive([0.0, -0.0]);
             let series = &mut self.progress.series;
             series.set("rest_time", time, "s");
             series.set("rest_energy", kinetic / contacts.elastic_energy, "1");
@@ -268,7 +274,7 @@ impl TriaxialTest {
     fn shear(&mut self) {
         let start = self.recipe.setup.shear.start_time;
         let speed = 0.5 * self.speed * (self.progress.time_in_phase / start).min(1.0);
-        self.drive([speed; 2]);
+        self.drive([speed, -speed]);
         self.advance();
         let forces = measure::plate_forces(&self.system);
         let density = self.recipe.setup.grains.material.density;
@@ -285,12 +291,16 @@ impl TriaxialTest {
         let (damping, pressure) = (confining.damping, confining.pressure * share);
         let (gain, fastest) = (confining.servo_speed, confining.servo_speed_max);
         self.system.controls.gauge_setpoint = -pressure;
-        let speed = |force: Real| {
-            let missing = (pressure - force / self.progress.area) / confining.pressure;
-            (gain * missing).clamp(-fastest, fastest)
+        let servo = Servo {
+            axis: Vec3::z(),
+            load: Load::Pressure { area: self.progress.area },
+            target: pressure,
+            full_scale: confining.pressure,
+            gain,
+            speed_max: fastest,
         };
-        let speeds = self.progress.plate_forces.map(speed);
-        self.drive(speeds);
+        let [bottom, top] = self.progress.plate_forces.map(|force| servo.speed(force));
+        self.drive([bottom, -top]);
         self.advance();
         self.damp(damping);
         self.progress.plate_forces = measure::plate_forces(&self.system);
@@ -311,18 +321,21 @@ impl TriaxialTest {
         0.5 * (bottom + top) / self.progress.area
     }
 
-    /// Sets the speeds of the lower and the upper plate toward the grains (m/s).
+    /// Sets the velocities of the lower and the upper plate along z (m/s).
     fn drive(&mut self, [bottom, top]: [Real; 2]) {
-        let walls = &mut self.system.controls.walls;
-        walls[BOTTOM as usize].twist.linear.z = bottom;
-        walls[TOP as usize].twist.linear.z = -top;
+        for (wall, speed) in [(BOTTOM, bottom), (TOP, top)] {
+            let linear = Vec3::new(0.0, 0.0, speed);
+            let twist = Twist { linear, angular: Vec3::zeros() };
+            self.system.model.walls[wall as usize].motion = WallMotion::Velocity(twist);
+        }
     }
 
     /// Lets all velocities decay at `rate` (1/s) for a substep.
     fn damp(&mut self, rate: Real) {
         let left = 1.0 - rate * self.progress.substep;
         let state = &mut self.system.state;
-        let of_grains = state.grains.velocities.iter_mut().chain(&mut state.grains.spins);
+        let of_grains =
+            state.grains.velocities.iter_mut().chain(&mut state.grains.angular_velocities);
         of_grains.chain(&mut state.membrane.velocities).for_each(|it| *it *= left);
     }
 

@@ -7,9 +7,9 @@ use super::{
     scene::TriaxialScene,
 };
 use crate::{
-    base::Real,
-    experiments::{Progress, ResumeError, Run, Stepped, record::Record, saved_run},
-    physics::{health::Diverged, measure::real, membrane::mesh::MeshFault, state::State},
+    base::{Real, real::real},
+    experiments::{Progress, ResumeError, Run, StartError, Stepped, record::Record, saved_run},
+    physics::{health::Diverged, state::State},
 };
 
 /// Contacts and vertices computed in a slice: about a tenth of a second.
@@ -28,7 +28,7 @@ impl TriaxialRun {
         name: &str,
         choice: Choice,
         variant: Variant,
-    ) -> Result<Self, MeshFault> {
+    ) -> Result<Self, StartError> {
         let mut setup = setup.clone();
         let (shear, runs) = (&mut setup.shear, &setup.runs);
         let mut speed = shear.speed * shear.speed_factor;

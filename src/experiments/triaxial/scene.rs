@@ -2,7 +2,7 @@
 
 use crate::{
     base::Real,
-    physics::membrane::Sheet,
+    physics::membrane::MembraneMaterial,
     scene::{
         Material,
         keys::{Each, Flag, Inline, Map, MapOf, Text, scene_keys},
@@ -190,8 +190,8 @@ scene_keys! {
 
 impl Membrane {
     /// Springs and hinges, with this damping of the hinges (N s).
-    pub(super) fn sheet(&self, bending_damping: Real) -> Sheet {
-        Sheet {
+    pub(super) fn sheet(&self, bending_damping: Real) -> MembraneMaterial {
+        MembraneMaterial {
             thickness: self.thickness,
             youngs_modulus: self.material.youngs_modulus,
             density: self.material.density,
