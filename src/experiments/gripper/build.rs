@@ -14,7 +14,7 @@ use crate::{
     physics::{Controls, Model, State, System, boundary::body::BodyMotion},
 };
 
-/// How far the object goes down beyond its starting point if the bag does not let go of it (m).
+/// Distance below its start to which the object is withdrawn if it is not released before (m).
 const BEYOND_START: Real = 0.02;
 
 /// A prepared grip.
@@ -25,7 +25,7 @@ pub(super) struct PreparedGrip {
     pub(super) is_inserted: bool,
     /// True if it may end before the object is free.
     pub(super) is_cut: bool,
-    /// Substeps in a tick.
+    /// Number of substeps in a tick.
     pub(super) n_substeps: usize,
     /// Length of a tick (s).
     pub(super) tick: Real,
@@ -48,7 +48,7 @@ impl PreparedGrip {
 
     /// The system of this grip, starting from `state`.
     pub(super) fn system(&self, mut state: State) -> System {
-        // The bag was filled without any body.
+        // The membrane was filled without any body.
         state.springs.bodies.resize(self.model.n_samples(), Vec3::zeros());
         let object = BodyMotion { pose: Pose::identity(), twist: Twist::zero() };
         let controls =
@@ -70,7 +70,7 @@ impl PreparedGrip {
         Stroke { length, speed, ramp: protocol.ramp_time }
     }
 
-    /// How long a phase takes at most (s).
+    /// Maximum duration of a phase (s).
     pub(super) fn duration(&self, phase: Phase) -> Real {
         let protocol = &self.scene.protocol;
         match phase {
@@ -99,8 +99,8 @@ impl PreparedGrip {
         phases.map(|&phase| n_ticks(phase) * self.n_substeps).sum()
     }
 
-    /// Where the object and the pump's set-point are at `time` (s) of `phase`; `low` is the height
-    /// of the settled bag's lowest point (m).
+    /// Sets the motion of the object and the pump's set-point at `time` (s) of `phase`; `low` is
+    /// the height of the settled membrane's lowest point (m).
     pub(super) fn control(&self, controls: &mut Controls, phase: Phase, time: Real, low: Real) {
         let protocol = &self.scene.protocol;
         let (start, inside) = (-protocol.clearance, protocol.penetration);
@@ -134,7 +134,7 @@ impl PreparedGrip {
     }
 }
 
-/// The model of a scene, without the table, the substeps in a tick, and the tick (s).
+/// The model of a scene without the table, the number of substeps in a tick, and the tick (s).
 pub(super) fn compile(scene: &GripperScene) -> Result<(Model, usize, Real), CompileError> {
     let Gripper { mut model, plan, .. } = compile::gripper(&scene.gripper.scene())?;
     model.bodies.truncate(1);

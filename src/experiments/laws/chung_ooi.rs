@@ -84,10 +84,10 @@ fn test_1(scene: &LawsScene, record: &mut Record) {
         [("glass", 274.1e-6, 10.697e3, 40.34e-6), ("limestone", 368.3e-6, 7.108e3, 54.20e-6)]
     {
         let encounter = Encounter::equal(0.01, scene.material(name), elastic(0.35), 20.0);
-        let (_, met) = encounter.meet(scene.steps_per_contact, record);
-        worst(record, "U3.test_1", met.overlap_max / overlap - 1.0);
-        worst(record, "U3.test_1", met.force_max / force - 1.0);
-        worst(record, "U3.test_1", met.duration / duration - 1.0);
+        let (_, extremes) = encounter.meet(scene.steps_per_contact, record);
+        worst(record, "U3.test_1", extremes.overlap_max / overlap - 1.0);
+        worst(record, "U3.test_1", extremes.force_max / force - 1.0);
+        worst(record, "U3.test_1", extremes.duration / duration - 1.0);
     }
 }
 
@@ -104,10 +104,10 @@ fn test_2(scene: &LawsScene, record: &mut Record) {
             velocity: Vec3::z() * -0.2,
             spin: Vec3::zeros(),
         };
-        let (_, met) = flight.land(scene.steps_per_contact, record);
-        worst(record, "U3.test_2", met.overlap_max / overlap - 1.0);
-        worst(record, "U3.test_2", met.force_max / force - 1.0);
-        worst(record, "U3.test_2", met.duration / duration - 1.0);
+        let (_, extremes) = flight.land(scene.steps_per_contact, record);
+        worst(record, "U3.test_2", extremes.overlap_max / overlap - 1.0);
+        worst(record, "U3.test_2", extremes.force_max / force - 1.0);
+        worst(record, "U3.test_2", extremes.duration / duration - 1.0);
     }
 }
 
@@ -123,8 +123,8 @@ fn test_3(scene: &LawsScene, record: &mut Record) {
                 spin: Vec3::zeros(),
             };
             flight.surface.dissipation_time = dissipation_time(&flight.collision(), prescribed);
-            let (bench, _) = flight.land(scene.steps_per_contact, record);
-            worst(record, "U3.test_3", bench.grains().velocities[0].z / 3.9 - prescribed);
+            let (test, _) = flight.land(scene.steps_per_contact, record);
+            worst(record, "U3.test_3", test.grains().velocities[0].z / 3.9 - prescribed);
         }
     }
 }
@@ -159,8 +159,8 @@ fn test_4_at(scene: &LawsScene, name: &str, angle: Real, record: &mut Record) ->
         spin: Vec3::zeros(),
     };
     flight.surface.dissipation_time = dissipation_time(&flight.collision(), 0.98);
-    let (bench, _) = flight.land(scene.steps_per_contact, record);
-    bench.grains().velocities[0].x / flight.velocity.x
+    let (test, _) = flight.land(scene.steps_per_contact, record);
+    test.grains().velocities[0].x / flight.velocity.x
 }
 
 /// Oblique, elastic, 10 µm at a normal speed of 5 m/s, μ = 0.3.
@@ -174,9 +174,9 @@ fn test_5(scene: &LawsScene, record: &mut Record) {
                 velocity: Vec3::new(ratio * 0.3 * 5.0, 0.0, -5.0),
                 spin: Vec3::zeros(),
             };
-            let (bench, _) = flight.land(scene.steps_per_contact, record);
+            let (test, _) = flight.land(scene.steps_per_contact, record);
             // Sign convention of the source: the spin of a sphere that rolls forward is negative.
-            let spin = -bench.grains().angular_velocities[0].y * flight.radius / (0.3 * 5.0);
+            let spin = -test.grains().angular_velocities[0].y * flight.radius / (0.3 * 5.0);
             if ratio >= 7.0 {
                 worst(record, id, spin / -5.0 - 1.0);
             }
@@ -200,9 +200,9 @@ fn test_6(scene: &LawsScene, record: &mut Record) {
                 spin: Vec3::y() * spin,
             };
             flight.surface.dissipation_time = dissipation_time(&flight.collision(), 0.5);
-            let (bench, _) = flight.land(scene.steps_per_contact, record);
-            let gained = bench.grains().velocities[0].x;
-            let lost = spin - bench.grains().angular_velocities[0].y;
+            let (test, _) = flight.land(scene.steps_per_contact, record);
+            let gained = test.grains().velocities[0].x;
+            let lost = spin - test.grains().angular_velocities[0].y;
             if spin > SLIDES {
                 worst(record, "U3.test_6", gained / 0.12 - 1.0);
                 worst(record, "U3.test_6", lost / 3.0 - 1.0);
@@ -218,22 +218,22 @@ fn test_7(scene: &LawsScene, record: &mut Record) {
             let mut encounter = Encounter::equal(0.1, scene.material(name), elastic(0.4), 0.4);
             encounter.surface.dissipation_time = dissipation_time(&encounter.collision(), 0.5);
             encounter.spins = [Vec3::z() * spin, Vec3::z() * -spin];
-            let (bench, _) = encounter.meet(scene.steps_per_contact, record);
+            let (test, _) = encounter.meet(scene.steps_per_contact, record);
             for i in 0..2 {
-                let changed = bench.grains().angular_velocities[i] - encounter.spins[i];
+                let changed = test.grains().angular_velocities[i] - encounter.spins[i];
                 worst(record, "U3.test_7_no_slip", changed.norm() / spin);
-                worst(record, "U3.test_7_no_slip", bench.grains().velocities[i].yz().norm() / 0.2);
+                worst(record, "U3.test_7_no_slip", test.grains().velocities[i].yz().norm() / 0.2);
             }
             if spin > SLIDES {
                 encounter.spins = [Vec3::z() * spin; 2];
-                let (bench, _) = encounter.meet(scene.steps_per_contact, record);
+                let (test, _) = encounter.meet(scene.steps_per_contact, record);
                 for i in 0..2 {
                     worst(
                         record,
                         "U3.test_7_slip",
-                        (spin - bench.grains().angular_velocities[i].z) / 3.0 - 1.0,
+                        (spin - test.grains().angular_velocities[i].z) / 3.0 - 1.0,
                     );
-                    let sideways = bench.grains().velocities[i].y.abs();
+                    let sideways = test.grains().velocities[i].y.abs();
                     worst(record, "U3.test_7_slip", sideways / 0.12 - 1.0);
                 }
             }
@@ -252,8 +252,8 @@ fn test_8(scene: &LawsScene, record: &mut Record) {
             encounter.speeds = [0.2, 0.0];
             encounter.spins = [Vec3::z() * spin, Vec3::zeros()];
             encounter.surface.dissipation_time = dissipation_time(&encounter.collision(), 0.5);
-            let (bench, _) = encounter.meet(scene.steps_per_contact, record);
-            let grains = bench.grains();
+            let (test, _) = encounter.meet(scene.steps_per_contact, record);
+            let grains = test.grains();
             worst(record, "U3.test_8", (spin - grains.angular_velocities[0].z) / 3.0 - 1.0);
             worst(record, "U3.test_8", grains.velocities[0].y.abs() / 0.12 - 1.0);
         }

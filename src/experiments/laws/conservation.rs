@@ -1,9 +1,9 @@
-//! Invariants of every contact law: momentum, angular momentum, energy, and invariance under rotation
-//! of the whole scene.
+//! Invariants of every contact law: momentum, angular momentum, energy, and invariance under
+//! rotation of the whole scene.
 
 use super::{
     Law, RowSpec,
-    build::{Bench, Encounter, G, elastic},
+    build::{Encounter, G, TestSystem, elastic},
     scene::LawsScene,
 };
 use crate::{
@@ -35,40 +35,40 @@ impl Law for Conservation {
 }
 
 /// Off-center collision of two unequal grains, one of which spins; everything rotated by `turn`.
-fn off_center(scene: &LawsScene, rotation: &nalgebra::Rotation3<Real>) -> (Bench, Real) {
+fn off_center(scene: &LawsScene, rotation: &nalgebra::Rotation3<Real>) -> (TestSystem, Real) {
     let grain = &scene.grain;
     let encounter = Encounter::equal(grain.radius, grain.material, grain.surface, 0.5);
     let dt = encounter.collision().duration() / real(scene.steps_per_contact);
-    let mut bench = Bench::on_plane(&grain.material, grain.surface, dt);
+    let mut test = TestSystem::on_plane(&grain.material, grain.surface, dt);
     // Just clear of the plane: rounding grows with the distance from the origin.
     let high = Vec3::z() * (4.0 * grain.radius);
     for (offset, radius) in [(Vec3::zeros(), 1.0), (Vec3::new(1.46, 0.25, 0.3), 0.5)] {
         let position = high + rotation * offset * grain.radius;
-        bench.add_grain(position, radius * grain.radius, grain.material.density);
+        test.add_grain(position, radius * grain.radius, grain.material.density);
     }
-    bench.grains_mut().velocities[0] = rotation * Vec3::new(0.5, 0.1, 0.0);
-    bench.grains_mut().angular_velocities[0] = rotation * Vec3::new(30.0, -60.0, 100.0);
-    (bench, 3.0 * real(scene.steps_per_contact))
+    test.grains_mut().velocities[0] = rotation * Vec3::new(0.5, 0.1, 0.0);
+    test.grains_mut().angular_velocities[0] = rotation * Vec3::new(30.0, -60.0, 100.0);
+    (test, 3.0 * real(scene.steps_per_contact))
 }
 
 fn momenta(scene: &LawsScene, record: &mut Record) {
-    let (mut bench, n_steps) = off_center(scene, &nalgebra::Rotation3::identity());
-    let about_center = |bench: &Bench| {
-        let (linear, angular) = bench.momenta();
-        let grains = bench.grains();
+    let (mut test, n_steps) = off_center(scene, &nalgebra::Rotation3::identity());
+    let about_center = |test: &TestSystem| {
+        let (linear, angular) = test.momenta();
+        let grains = test.grains();
         let mass: Real = grains.masses.iter().sum();
         let moment =
             grains.positions[0] * grains.masses[0] + grains.positions[1] * grains.masses[1];
         (linear, angular - (moment / mass).cross(&linear))
     };
-    let before = about_center(&bench);
+    let before = about_center(&test);
     let mut step = 0;
     while real(step) < n_steps {
-        bench.step();
+        test.step();
         step += 1;
     }
-    let after = about_center(&bench);
-    let has_collided = bench.grains().velocities[1].norm() > 0.1;
+    let after = about_center(&test);
+    let has_collided = test.grains().velocities[1].norm() > 0.1;
     let change =
         |a: Vec3, b: Vec3| if has_collided { (a - b).norm() / b.norm() } else { Real::NAN };
     record.set("U6.momentum", change(after.0, before.0), "1");
@@ -79,25 +79,25 @@ fn momenta(scene: &LawsScene, record: &mut Record) {
 fn stack(scene: &LawsScene, record: &mut Record) {
     let grain = &scene.grain;
     let radius = grain.radius;
-    let mut bench = Bench::on_plane(&grain.material, elastic(0.0), 1e-6);
-    bench.system.model.gravity = Vec3::z() * -G;
-    bench.add_grain(Vec3::z() * (1.25 * radius), radius, grain.material.density);
-    bench.add_grain(Vec3::z() * (3.5 * radius), radius, grain.material.density);
-    let energy = |bench: &Bench| {
-        let grains = bench.grains();
+    let mut test = TestSystem::on_plane(&grain.material, elastic(0.0), 1e-6);
+    test.system.model.gravity = Vec3::z() * -G;
+    test.add_grain(Vec3::z() * (1.25 * radius), radius, grain.material.density);
+    test.add_grain(Vec3::z() * (3.5 * radius), radius, grain.material.density);
+    let energy = |test: &TestSystem| {
+        let grains = test.grains();
         let height = |i: usize| grains.masses[i] * G * (grains.positions[i].z - radius);
-        height(0) + height(1) + bench.kinetic_energy()
+        height(0) + height(1) + test.kinetic_energy()
     };
-    let start = energy(&bench);
+    let start = energy(&test);
     let (mut n_contacts, mut touched, mut worst) = (0, false, 0.0_f64);
     while n_contacts < 100 {
-        bench.step();
-        let scratch = &bench.system.scratch;
+        test.step();
+        let scratch = &test.system.scratch;
         let touching = scratch.wall_forces.iter().any(|it| it.flags.touches())
             || scratch.pair_flags.iter().any(|it| it.touches());
         n_contacts += usize::from(touching && !touched);
         if !touching && !touched {
-            worst = worst.max((energy(&bench) / start - 1.0).abs());
+            worst = worst.max((energy(&test) / start - 1.0).abs());
         }
         touched = touching;
     }
@@ -107,17 +107,17 @@ fn stack(scene: &LawsScene, record: &mut Record) {
 /// The same collision in a rotated scene, rotated back.
 fn rotated(scene: &LawsScene, record: &mut Record) {
     let rotation = nalgebra::Rotation3::from_euler_angles(0.3, -1.1, 2.0);
-    let (mut bench, n_steps) = off_center(scene, &nalgebra::Rotation3::identity());
+    let (mut test, n_steps) = off_center(scene, &nalgebra::Rotation3::identity());
     let (mut other, _) = off_center(scene, &rotation);
     let mut step = 0;
     while real(step) < n_steps {
-        bench.step();
+        test.step();
         other.step();
         step += 1;
     }
     let mut worst = 0.0_f64;
     for i in 0..2 {
-        let (a, b) = (bench.grains(), other.grains());
+        let (a, b) = (test.grains(), other.grains());
         let speed = (rotation * a.velocities[i] - b.velocities[i]).norm() / a.velocities[i].norm();
         let spin = (rotation * a.angular_velocities[i] - b.angular_velocities[i]).norm()
             / a.angular_velocities[i].norm();
@@ -126,8 +126,8 @@ fn rotated(scene: &LawsScene, record: &mut Record) {
     record.set("U7.turned_scene", worst, "1");
 }
 
-/// A pair that rotates as one body about an axis perpendicular to its normal, once without and once with
-/// a stretched friction spring.
+/// A pair that rotates as one body about an axis perpendicular to its normal, once without and once
+/// with a stretched friction spring.
 fn rigid_rotation(scene: &LawsScene, record: &mut Record) {
     let (force, normal) = rotate_pair(scene, 0.0);
     record.set("U7.unsheared_pair", force[1].norm() / normal, "1");
@@ -141,11 +141,11 @@ fn rotate_pair(scene: &LawsScene, shear_over_overlap: Real) -> ([Vec3; 2], Real)
     let grain = &scene.grain;
     let (radius, n_steps) = (grain.radius, 20_000);
     let overlap = 0.01 * radius;
-    let mut bench = Bench::on_plane(&grain.material, elastic(grain.surface.friction), 1e-6);
+    let mut test = TestSystem::on_plane(&grain.material, elastic(grain.surface.friction), 1e-6);
     let high = Vec3::z() * (20.0 * radius);
     let half = radius - 0.5 * overlap;
     for side in [-1.0, 1.0] {
-        bench.add_grain(high + Vec3::x() * (side * half), radius, grain.material.density);
+        test.add_grain(high + Vec3::x() * (side * half), radius, grain.material.density);
     }
     let mut tangential = [Vec3::zeros(); 2];
     let mut normal = 0.0;
@@ -153,7 +153,7 @@ fn rotate_pair(scene: &LawsScene, shear_over_overlap: Real) -> ([Vec3; 2], Real)
     for step in 0..=n_steps {
         let angle = spin * real(step) * 1e-6;
         let along = Vec3::new(angle.cos(), angle.sin(), 0.0);
-        let grains = bench.grains_mut();
+        let grains = test.grains_mut();
         for (i, side) in [-1.0, 1.0].into_iter().enumerate() {
             let arm = along * (side * half);
             grains.positions[i] = high + arm;
@@ -165,8 +165,8 @@ fn rotate_pair(scene: &LawsScene, shear_over_overlap: Real) -> ([Vec3; 2], Real)
             let shear = Vec3::new(0.0, 1.0, 0.5) * (shear_over_overlap * overlap / 1e-6);
             grains.velocities[0] += shear;
         }
-        bench.step();
-        let pair = &bench.system.scratch.pair_forces[0];
+        test.step();
+        let pair = &test.system.scratch.pair_forces[0];
         let found = pair.force - along * pair.force.dot(&along);
         normal = pair.normal;
         if step == 0 {

@@ -1,13 +1,13 @@
-//! A grain that is moved over the membrane: force, direction and contact point over edges and vertices
-//! (Götz 2024, eqs. 26–29).
+//! A grain that is moved over the membrane: force, direction and contact point over edges and
+//! vertices (Götz 2024, eqs. 26–29).
 //!
-//! The vertices are held, friction is off, and nothing moves by itself, so the force is a function of
-//! the grain's position alone. Where it changes much within a step, the step is halved repeatedly; what
-//! remains in the end is a jump.
+//! The vertices are held, friction is off, and nothing moves by itself, so the force is a function
+//! of the grain's position alone. Where it changes much within a step, the step is halved
+//! repeatedly; what remains in the end is a jump.
 
 use super::{
     Law, RowSpec,
-    build::{Bench, elastic},
+    build::{TestSystem, elastic},
     measure::{push, worst},
     scene::LawsScene,
 };
@@ -103,7 +103,7 @@ struct Extremes {
 
 /// A straight path over a patch, at heights that keep the grain in contact.
 struct Path {
-    bench: Bench,
+    test: TestSystem,
     from: Vec3,
     along: Vec3,
     /// Height of the grain's center at equal distances along the path (m).
@@ -127,14 +127,14 @@ impl Path {
         let mesh = Mesh::new(positions, flipped).expect("dents do not change the connectivity");
         let sheet = MembraneModel::new(mesh, scene.membrane.sheet);
         let material = &scene.grain.material;
-        let mut bench = Bench::on_membrane(material, surface, sheet, 1e-9);
-        bench.add_grain(Vec3::z() * radius, radius, material.density);
+        let mut test = TestSystem::on_membrane(material, surface, sheet, 1e-9);
+        test.add_grain(Vec3::z() * radius, radius, material.density);
         let angle = random.between(0.0, 2.0 * std::f64::consts::PI);
         let along = Vec3::new(angle.cos(), angle.sin(), 0.0);
         let across = Vec3::new(-along.y, along.x, 0.0) * random.between(-edge, edge);
         let length = 5.0 * edge;
         let from = across - along * (0.5 * length);
-        let mut path = Self { bench, from, along, heights: Vec::new(), length, edge };
+        let mut path = Self { test, from, along, heights: Vec::new(), length, edge };
         let overlap = scene.crossing.overlap_over_radius * radius;
         path.heights = (0..=50).map(|k| path.height(real(k) / 50.0, overlap)).collect();
         path
@@ -142,13 +142,13 @@ impl Path {
 
     /// Height at which the deepest overlap is `overlap` (m).
     fn height(&mut self, share: Real, overlap: Real) -> Real {
-        let radius = self.bench.grains().radii[0];
+        let radius = self.test.grains().radii[0];
         let (mut low, mut high) = (0.0, 2.0 * radius);
         for _ in 0..40 {
             let middle = 0.5 * (low + high);
             let position = self.from + self.along * (share * self.length) + Vec3::z() * middle;
             self.put_at(position);
-            let patches = &self.bench.system.scratch.patch_forces[0];
+            let patches = &self.test.system.scratch.patch_forces[0];
             let deepest = patches.contacts[..patches.n].iter().map(|it| it.overlap);
             if deepest.fold(0.0, Real::max) > overlap {
                 low = middle;
@@ -170,33 +170,33 @@ impl Path {
 
     /// Puts the grain at rest at `position` (m) and returns the force on it (N).
     fn put_at(&mut self, position: Vec3) -> Vec3 {
-        let grains = self.bench.grains_mut();
+        let grains = self.test.grains_mut();
         grains.positions[0] = position;
         grains.velocities[0] = Vec3::zeros();
         // Only the integrator updates the lists for motion.
-        self.bench.system.scratch.neighbours.is_built = false;
-        self.bench.step();
-        let patches = &self.bench.system.scratch.patch_forces[0];
+        self.test.system.scratch.neighbours.is_built = false;
+        self.test.step();
+        let patches = &self.test.system.scratch.patch_forces[0];
         patches.contacts[..patches.n].iter().map(|it| it.force).sum()
     }
 
-    /// Slides along the whole path in substeps of `dt` (s). Returns the largest change of force divided by
-    /// the mean force.
+    /// Slides along the whole path in substeps of `dt` (s). Returns the largest change of force
+    /// divided by the mean force.
     fn slide(&mut self, speed: Real, dt: Real) -> Real {
         self.put_at(self.position(0.0));
-        self.bench.system.model.substep = dt;
+        self.test.system.model.substep = dt;
         let n_steps = n_steps(self.length / (speed * dt));
         let (mut largest, mut sum, mut last) = (0.0, 0.0, None::<Vec3>);
         for k in 0..n_steps {
             let [here, next] =
                 [k, k + 1].map(|k| self.position((real(k) / real(n_steps)).min(1.0)));
-            let grains = self.bench.grains_mut();
+            let grains = self.test.grains_mut();
             grains.positions[0] = here;
             grains.velocities[0] = (next - here) / dt;
             grains.angular_velocities[0] = Vec3::zeros();
-            self.bench.system.scratch.neighbours.is_built = false;
-            self.bench.step();
-            let patches = &self.bench.system.scratch.patch_forces[0];
+            self.test.system.scratch.neighbours.is_built = false;
+            self.test.step();
+            let patches = &self.test.system.scratch.patch_forces[0];
             let force: Vec3 = patches.contacts[..patches.n].iter().map(|it| it.force).sum();
             sum += force.norm();
             if let Some(last) = last {
@@ -240,8 +240,8 @@ impl Path {
 
     /// Compares the force at the current position with Hertz and with Newton's third law.
     fn compare(&self, force: &Vec3, extremes: &mut Extremes) {
-        let system = &self.bench.system;
-        let (position, radius) = (self.bench.grains().positions[0], self.bench.grains().radii[0]);
+        let system = &self.test.system;
+        let (position, radius) = (self.test.grains().positions[0], self.test.grains().radii[0]);
         let k = 4.0 / 3.0 * system.model.membrane_law.modulus * radius.sqrt();
         let expected = k * (radius - position.z).max(0.0).powf(1.5);
         let update = |value: Real, largest: &mut Real| *largest = largest.max(value);

@@ -84,9 +84,9 @@ fn restitution(scene: &LawsScene, set: [Real; 4], record: &mut Record) -> Real {
     let [modulus, radius, time, speed] = set;
     let material = Material { youngs_modulus: modulus, ..scene.grain.material };
     let encounter = Encounter::equal(radius, material, surface(scene, time), speed);
-    let (bench, met) = encounter.meet(scene.steps_per_contact, record);
-    worst(record, "C1.repulsive", met.force_min.min(0.0));
-    encounter.restitution(&bench)
+    let (test, extremes) = encounter.meet(scene.steps_per_contact, record);
+    worst(record, "C1.repulsive", extremes.force_min.min(0.0));
+    encounter.restitution(&test)
 }
 
 /// One modulus and one speed.
@@ -108,11 +108,11 @@ fn sweep(scene: &LawsScene, point: usize, record: &mut Record) {
 fn elastic_impact(scene: &LawsScene, record: &mut Record) {
     let encounter = Encounter::equal(scene.grain.radius, scene.grain.material, elastic(0.0), 1.0);
     let oracle = encounter.collision();
-    let (bench, met) = encounter.meet(scene.steps_per_contact, record);
-    record.set("U1.overlap", met.overlap_max / oracle.overlap_max(), "1");
-    record.set("U1.force", met.force_max / oracle.force_max(), "1");
-    record.set("U1.duration", met.duration / oracle.duration(), "1");
-    record.set("U1.restitution", encounter.restitution(&bench), "1");
+    let (test, extremes) = encounter.meet(scene.steps_per_contact, record);
+    record.set("U1.overlap", extremes.overlap_max / oracle.overlap_max(), "1");
+    record.set("U1.force", extremes.force_max / oracle.force_max(), "1");
+    record.set("U1.duration", extremes.duration / oracle.duration(), "1");
+    record.set("U1.restitution", encounter.restitution(&test), "1");
 }
 
 /// Compares the swept restitutions with theory, and checks that they fall with speed and modulus.

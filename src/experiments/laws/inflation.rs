@@ -1,5 +1,5 @@
-//! The membrane under pressure: Laplace's law for sphere, cylinder and taut disk, zero resultant on a
-//! closed surface, and the work of the pressure (Götz 2024, eqs. 30, 31).
+//! The membrane under pressure: Laplace's law for sphere, cylinder and taut disk, zero resultant on
+//! a closed surface, and the work of the pressure (Götz 2024, eqs. 30, 31).
 //!
 //! ```text
 //! sphere    ΔR/R = ε,  ε = s (1 + ε)²,   s = p R (1 − ν)/(2 E d)
@@ -85,8 +85,8 @@ fn stretch_only(scene: &LawsScene) -> MembraneMaterial {
 
 /// Lets the free vertices come to rest under `pressure` (Pa) and the `pull` on each vertex (N).
 ///
-/// Kinetic damping (Cundall 1976): all vertices are stopped after each peak of the kinetic energy, until
-/// the remaining forces are negligible compared with the air's.
+/// Kinetic damping (Cundall 1976): all vertices are stopped after each peak of the kinetic energy,
+/// until the remaining forces are negligible compared with the air's.
 fn settle(
     model: &MembraneModel,
     state: &mut MembraneState,

@@ -1,5 +1,5 @@
-//! A grain that hits a rigid plane at an angle: the tangential law (Götz 2024, eqs. 7–11) compared with
-//! the exact solution with micro-slip and with rigid-body impact.
+//! A grain that hits a rigid plane at an angle: the tangential law (Götz 2024, eqs. 7–11) compared
+//! with the exact solution with micro-slip and with rigid-body impact.
 
 use super::{
     Law, RowSpec,
@@ -89,12 +89,12 @@ fn impact(scene: &LawsScene, angle: Real, damping: Real, record: &mut Record) ->
         velocity: Vec3::new(angle.sin(), 0.0, -angle.cos()) * speed,
         spin: Vec3::zeros(),
     };
-    let (bench, _) = flight.land(scene.steps_per_contact, record);
-    let before = 0.5 * bench.grains().masses[0] * speed * speed;
+    let (test, _) = flight.land(scene.steps_per_contact, record);
+    let before = 0.5 * test.grains().masses[0] * speed * speed;
     [
-        bench.grains().velocities[0].x / flight.velocity.x,
-        bench.grains().angular_velocities[0].y * grain.radius / speed,
-        bench.kinetic_energy() / before,
+        test.grains().velocities[0].x / flight.velocity.x,
+        test.grains().angular_velocities[0].y * grain.radius / speed,
+        test.kinetic_energy() / before,
     ]
 }
 

@@ -106,8 +106,8 @@ struct Strip {
     is_tip: Vec<bool>,
 }
 
-/// Heights at which forces are evaluated, relative to the thickness: small compared with the edge, large
-/// compared with rounding.
+/// Heights at which forces are evaluated, relative to the thickness: small compared with the edge,
+/// large compared with rounding.
 const SMALL: Real = 1e-6;
 
 impl Strip {
@@ -198,8 +198,8 @@ impl Strip {
     }
 }
 
-/// E I (N m²) of a strip from the deflection of its tip at two lengths: the cube root of F L³/(3 E I)
-/// grows by (F/(3 E I))^(1/3) per length, independent of the clamped position.
+/// E I (N m²) of a strip from the deflection of its tip at two lengths: the cube root of F L³/(3 E
+/// I) grows by (F/(3 E I))^(1/3) per length, independent of the clamped position.
 fn bending_stiffness(scene: &LawsScene, lengths: [usize; 2], n_wide: usize) -> Real {
     let [short, long] = lengths.map(|n| Strip::new(scene, n, n_wide).tip_under_unit_force().cbrt());
     let grown = real(lengths[1] - lengths[0]) * scene.membrane.edge;

@@ -1,9 +1,9 @@
-//! A grain on a plane: it slides until it rolls, rolls or slips down an incline, overlaps by its weight,
-//! and does not creep while it sticks (Götz 2024, eqs. 8–11).
+//! A grain on a plane: it slides until it rolls, rolls or slips down an incline, overlaps by its
+//! weight, and does not creep while it sticks (Götz 2024, eqs. 8–11).
 
 use super::{
     Law, RowSpec,
-    build::{Bench, G, mass},
+    build::{G, TestSystem, mass},
     measure::push,
     scene::LawsScene,
 };
@@ -50,13 +50,13 @@ impl Law for Rolling {
 }
 
 /// A grain at rest on the plane, which is tilted by `tilt` (rad) about y.
-fn resting(scene: &LawsScene, surface: Surface, tilt: Real) -> Bench {
+fn resting(scene: &LawsScene, surface: Surface, tilt: Real) -> TestSystem {
     let grain = &scene.grain;
-    let mut bench = Bench::on_plane(&grain.material, surface, scene.rolling.substep);
-    bench.system.model.gravity = Vec3::new(tilt.sin(), 0.0, -tilt.cos()) * G;
+    let mut test = TestSystem::on_plane(&grain.material, surface, scene.rolling.substep);
+    test.system.model.gravity = Vec3::new(tilt.sin(), 0.0, -tilt.cos()) * G;
     let height = grain.radius - resting_overlap(scene, tilt);
-    bench.add_grain(Vec3::z() * height, grain.radius, grain.material.density);
-    bench
+    test.add_grain(Vec3::z() * height, grain.radius, grain.material.density);
+    test
 }
 
 /// ξ = (m g cos θ / k)^(2/3).
@@ -71,8 +71,8 @@ fn resting_overlap(scene: &LawsScene, tilt: Real) -> Real {
 /// A grain that starts to slide with v_0 rolls after 2 v_0/(7 μ g).
 fn slide(scene: &LawsScene, record: &mut Record) {
     let (grain, v0) = (&scene.grain, scene.rolling.speed);
-    let mut bench = resting(scene, grain.surface, 0.0);
-    bench.grains_mut().velocities[0].x = v0;
+    let mut test = resting(scene, grain.surface, 0.0);
+    test.grains_mut().velocities[0].x = v0;
     let rolls_at = 2.0 * v0 / (7.0 * grain.surface.friction * G);
     let n_steps = (2.0 * rolls_at / scene.rolling.substep).ceil();
     let mut rolled_at = None;
@@ -80,26 +80,26 @@ fn slide(scene: &LawsScene, record: &mut Record) {
     while real(step) < n_steps {
         if step % EVERY == 0 {
             push(record, "time", "s", real(step) * scene.rolling.substep);
-            push(record, "speed", "m/s", bench.grains().velocities[0].x);
-            push(record, "rim_speed", "m/s", bench.grains().angular_velocities[0].y * grain.radius);
+            push(record, "speed", "m/s", test.grains().velocities[0].x);
+            push(record, "rim_speed", "m/s", test.grains().angular_velocities[0].y * grain.radius);
         }
-        bench.step();
+        test.step();
         step += 1;
         let slip =
-            bench.grains().velocities[0].x - bench.grains().angular_velocities[0].y * grain.radius;
+            test.grains().velocities[0].x - test.grains().angular_velocities[0].y * grain.radius;
         if rolled_at.is_none() && slip < 0.01 * v0 {
             // Extrapolated: the last percent of the slip takes a percent of the time.
             let time = real(step) * scene.rolling.substep / 0.99;
-            rolled_at = Some((time, bench.grains().positions[0].x));
+            rolled_at = Some((time, test.grains().positions[0].x));
         }
     }
-    let (v, spin) = (bench.grains().velocities[0].x, bench.grains().angular_velocities[0].y);
+    let (v, spin) = (test.grains().velocities[0].x, test.grains().angular_velocities[0].y);
     record.set("U5.rolling_speed", v / (5.0 / 7.0 * v0), "1");
     record.set("U5.rolls", spin * grain.radius / v, "1");
     let (time, distance) = rolled_at.unwrap_or((Real::NAN, Real::NAN));
     record.set("U5.time", time / rolls_at, "1");
     record.set("U5.place", distance / (6.0 / 7.0 * v0 * rolls_at), "1");
-    let energy = bench.kinetic_energy() / (0.5 * bench.grains().masses[0] * v0 * v0);
+    let energy = test.kinetic_energy() / (0.5 * test.grains().masses[0] * v0 * v0);
     record.set("U5.energy", energy / (5.0 / 7.0), "1");
 }
 
@@ -108,10 +108,10 @@ fn inclines(scene: &LawsScene, record: &mut Record) {
     let friction = scene.grain.surface.friction;
     for (id, tan) in [("U5.rolls_down", 1.6 * friction), ("U5.slips_down", 6.0 * friction)] {
         let tilt = tan.atan();
-        let mut bench = resting(scene, scene.grain.surface, tilt);
+        let mut test = resting(scene, scene.grain.surface, tilt);
         let n_steps = 4000;
         for _ in 0..n_steps {
-            bench.step();
+            test.step();
         }
         let expected = if tan < 3.5 * friction {
             5.0 / 7.0 * G * tilt.sin()
@@ -119,31 +119,31 @@ fn inclines(scene: &LawsScene, record: &mut Record) {
             G * (tilt.sin() - friction * tilt.cos())
         };
         let time = real(n_steps) * scene.rolling.substep;
-        record.set(id, bench.grains().velocities[0].x / time / expected, "1");
+        record.set(id, test.grains().velocities[0].x / time / expected, "1");
     }
 }
 
 /// A grain placed without overlap settles until the plane carries its weight.
 fn weight(scene: &LawsScene, record: &mut Record) {
     let surface = Surface { dissipation_time: 1e-4, ..scene.grain.surface };
-    let mut bench = resting(scene, surface, 0.0);
-    bench.grains_mut().positions[0].z = scene.grain.radius;
+    let mut test = resting(scene, surface, 0.0);
+    test.grains_mut().positions[0].z = scene.grain.radius;
     for _ in 0..40_000 {
-        bench.step();
+        test.step();
     }
-    record.set("U8.weight", bench.overlap() / resting_overlap(scene, 0.0), "1");
+    record.set("U8.weight", test.overlap() / resting_overlap(scene, 0.0), "1");
 }
 
 /// A grain that cannot roll, at 0.9 of the friction angle.
 fn creep(scene: &LawsScene, record: &mut Record) {
     let surface = Surface { dissipation_time: 1e-4, ..scene.grain.surface };
-    let mut bench = resting(scene, surface, (0.9 * surface.friction).atan());
+    let mut test = resting(scene, surface, (0.9 * surface.friction).atan());
     let mut go = |n_steps: usize| {
         for _ in 0..n_steps {
-            bench.step();
-            bench.grains_mut().angular_velocities[0] = Vec3::zeros();
+            test.step();
+            test.grains_mut().angular_velocities[0] = Vec3::zeros();
         }
-        bench.grains().positions[0].x
+        test.grains().positions[0].x
     };
     let settled = go(scene.rolling.n_creep_steps / 10 + 20_000);
     let end = go(scene.rolling.n_creep_steps);
@@ -155,21 +155,21 @@ fn shear(scene: &LawsScene, record: &mut Record) {
     let grain = &scene.grain;
     let surface = Surface { tangential_damping: 0.0, dissipation_time: 0.0, ..grain.surface };
     let (overlap, n_steps) = (0.01 * grain.radius, 1000);
-    let mut bench = Bench::on_plane(&grain.material, surface, 1e-6);
-    bench.add_grain(Vec3::zeros(), grain.radius, grain.material.density);
+    let mut test = TestSystem::on_plane(&grain.material, surface, 1e-6);
+    test.add_grain(Vec3::zeros(), grain.radius, grain.material.density);
     let law = PairLaw::against_rigid(&grain.material, surface);
     let mindlin = 8.0 * law.shear_modulus * (grain.radius * overlap).sqrt();
     let normal = 4.0 / 3.0 * law.modulus * grain.radius.sqrt() * overlap.powf(1.5);
     let sliding = surface.friction * normal / (2.0 / 3.0 * mindlin);
     let mut sheared = |distance: Real| {
         for _ in 0..n_steps {
-            let grains = bench.grains_mut();
+            let grains = test.grains_mut();
             grains.positions[0].z = grain.radius - overlap;
             grains.velocities[0] = Vec3::x() * (distance / (real(n_steps) * 1e-6));
             grains.angular_velocities[0] = Vec3::zeros();
-            bench.step();
+            test.step();
         }
-        -bench.system.scratch.wall_forces.first().map_or(0.0, |wall| wall.force.x)
+        -test.system.scratch.wall_forces.first().map_or(0.0, |wall| wall.force.x)
     };
     record.set("C1.shear_stiffness", sheared(0.5 * sliding) / (mindlin * 0.5 * sliding), "1");
     record.set("C1.coulomb", sheared(5.0 * sliding) / (surface.friction * normal), "1");

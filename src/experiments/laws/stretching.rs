@@ -1,5 +1,5 @@
-//! The membrane in its plane: the lattice of springs as an elastic sheet, and the decay of an oscillation
-//! (Götz 2024, eqs. 12–16).
+//! The membrane in its plane: the lattice of springs as an elastic sheet, and the decay of an
+//! oscillation (Götz 2024, eqs. 12–16).
 
 use super::{Law, RowSpec, measure::worst, scene::LawsScene};
 use crate::{
@@ -82,7 +82,8 @@ fn stress(model: &MembraneModel, shape: &Mat3) -> Mat3 {
     -virial / pressure::area(&model.mesh, &model.mesh.positions)
 }
 
-/// Two vertices of the membrane released from a stretched state: the decay of amplitude in a period.
+/// Two vertices of the membrane released from a stretched state: the decay of amplitude in a
+/// period.
 fn ring_down(scene: &LawsScene, record: &mut Record) {
     let MembraneMaterial { youngs_modulus, thickness, density, .. } = scene.membrane.sheet;
     let (edge, gamma) = (scene.membrane.edge, 0.15);

@@ -1,5 +1,5 @@
-//! Collision of two bodies: Hertz's elastic impact, restitution of the viscoelastic law, and oblique
-//! impacts that slide throughout.
+//! Collision of two bodies: Hertz's elastic impact, restitution of the viscoelastic law, and
+//! oblique impacts that slide throughout.
 //!
 //! ```text
 //! F = k ξ^(3/2),  k = 4/3 E* √R*

@@ -93,7 +93,8 @@ mod tests {
 
     #[test]
     fn impacts_that_slide_throughout_are_those_of_a_rigid_body() {
-        // Oracle: rigid-body impact, e = 1. Tolerance: 10⁻³, from springs, steps, and the end of contact.
+        // Oracle: rigid-body impact, e = 1. Tolerance: 10⁻³, from springs, steps, and the end of
+        // contact.
         for degrees in [65.0, 75.0, 85.0] {
             let angle = Real::to_radians(degrees);
             let found = rebound(stiffness_ratio(0.245), 0.25, angle);

@@ -123,7 +123,7 @@ pub(super) struct RunState {
     pub(super) record: Record,
 }
 
-/// A case in the periodic box.
+/// A running case in the periodic box.
 pub(super) struct BoxRun {
     pub(super) scene: PackingScene,
     case: Case,
@@ -135,7 +135,7 @@ pub(super) struct BoxRun {
 }
 
 impl BoxRun {
-    /// Scattered grains.
+    /// The case with scattered grains.
     pub(super) fn new(scene: &PackingScene, case: Case) -> Result<Self, StartError> {
         let is_mono = !matches!(case, Case::Poly);
         let is_smooth = friction(scene, case) == 0.0;
@@ -301,8 +301,8 @@ impl BoxRun {
         (self.scene.compression.pressure_first / stiffness).powf(2.0 / 3.0)
     }
 
-    /// Makes all grains, which are now under `pressure` (Pa), or the box larger by the share
-    /// `growth`, steadily.
+    /// Starts a ramp: all grains, which are under `pressure` (Pa), or the box grow by the share
+    /// `growth`.
     pub(super) fn ramp(&mut self, what: Change, growth: Real, pressure: Real) {
         let (compression, grains) = (&self.scene.compression, &self.scene.grains);
         let rate = growth / compression.ramp_time;
@@ -390,7 +390,7 @@ impl BoxRun {
         self.progress.phase = Phase::Done;
     }
 
-    /// Share of the work that is done, as far as it is known.
+    /// Estimated share of the work that is done.
     fn share(&self) -> Real {
         let compression = &self.scene.compression;
         let (from, to) = if friction(&self.scene, self.case) == 0.0 {

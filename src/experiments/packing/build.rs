@@ -21,10 +21,10 @@ pub(super) const KINETIC_MAX: Real = 1e-6;
 const STOP_EVERY: u64 = 10;
 /// Substeps between two checks of rest.
 const CHECK_EVERY: u64 = 50;
-/// Substeps in a slice of work.
+/// Substeps of a slice.
 pub(super) const SLICE: u64 = 400;
 
-/// Law between grains at this friction.
+/// Contact law between grains with this friction.
 pub(super) fn grain_law(grains: &Grains, friction: Real) -> PairLaw {
     PairLaw::between(&grains.material, &grains.material, grains.surface(friction))
 }
@@ -63,11 +63,11 @@ pub(super) fn drag(system: &mut System, drag_time: Real) {
 /// drag.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Settling {
-    /// Substeps so far.
+    /// Number of substeps so far.
     pub(super) n_done: u64,
-    /// Kinetic energy when it was last looked at (J).
+    /// Kinetic energy at its last measurement (J).
     last: Real,
-    /// Largest kinetic energy since rest was last looked for (J).
+    /// Largest kinetic energy since the last check of rest (J).
     highest: Real,
 }
 

@@ -1,9 +1,9 @@
 //! Grains in a closed membrane under vacuum: their stress equals the applied pressure.
 //!
 //! Grains grow inside a membrane that is held as a sphere; then it is released and evacuated, and
-//! everything comes to rest. σ_ij = 1/V Σ f_i l_j over all contacts, those with the membrane
-//! included, and V inside the membrane, must be the vacuum's pressure in every direction, but for what
-//! the tension of the membrane takes.
+//! everything comes to rest. σ_ij = 1/V Σ f_i l_j over all contacts, including those with the
+//! membrane, with V inside the membrane, must equal the vacuum in every direction, except for the
+//! share that the tension of the membrane carries.
 
 use serde::{Deserialize, Serialize};
 
@@ -68,7 +68,7 @@ pub(super) struct ConfinedRun {
 }
 
 impl ConfinedRun {
-    /// Scattered grains in the held membrane.
+    /// The case with scattered grains in the held membrane.
     pub(super) fn new(scene: &PackingScene) -> Result<Self, StartError> {
         let keys = &scene.confined;
         let final_radii = build::final_radii(scene, keys.count, false);

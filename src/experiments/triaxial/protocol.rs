@@ -186,7 +186,7 @@ impl TriaxialTest {
 
     /// Estimated share of the work that is done.
     pub(super) fn share(&self) -> Real {
-        let confining = &self.recipe.setup.confining;
+        let confining = &self.recipe.scene.confining;
         let times =
             [self.growth_time(), confining.ramp, 0.5 * confining.rest_time_max, self.shear_time()];
         let before = match self.progress.phase {
@@ -213,7 +213,7 @@ impl TriaxialTest {
     /// Time of shearing (s).
     fn shear_time(&self) -> Real {
         let distance = self.recipe.size().height * (1.0 - (-self.strain).exp());
-        distance / self.speed + self.recipe.setup.shear.start_time
+        distance / self.speed + self.recipe.scene.shear.start_time
     }
 
     fn grow(&mut self) {
@@ -239,7 +239,7 @@ impl TriaxialTest {
     }
 
     fn confine(&mut self) {
-        let share = (self.progress.time_in_phase / self.recipe.setup.confining.ramp).min(1.0);
+        let share = (self.progress.time_in_phase / self.recipe.scene.confining.ramp).min(1.0);
         self.recipe.soften(&mut self.system.model, 1.0 - share);
         self.press(share);
         if share >= 1.0 {
@@ -252,7 +252,7 @@ impl TriaxialTest {
         if !self.progress.n_in_phase.is_multiple_of(CHECK_EVERY) {
             return;
         }
-        let confining = self.recipe.setup.confining;
+        let confining = self.recipe.scene.confining;
         let contacts = measure::contacts(&self.system);
         let stress_error = self.plate_pressure() / confining.pressure - 1.0;
         let kinetic = measure::grain_energy(&self.system);
@@ -272,12 +272,12 @@ impl TriaxialTest {
     }
 
     fn shear(&mut self) {
-        let start = self.recipe.setup.shear.start_time;
+        let start = self.recipe.scene.shear.start_time;
         let speed = 0.5 * self.speed * (self.progress.time_in_phase / start).min(1.0);
         self.drive([speed, -speed]);
         self.advance();
         let forces = measure::plate_forces(&self.system);
-        let density = self.recipe.setup.grains.material.density;
+        let density = self.recipe.scene.grains.material.density;
         let is_over =
             self.progress.series.record(&self.system, forces, (2.0 * speed, self.strain, density));
         if is_over {
@@ -287,7 +287,7 @@ impl TriaxialTest {
 
     /// One substep under `share` of the confining pressure, with both plates servo-controlled.
     fn press(&mut self, share: Real) {
-        let confining = self.recipe.setup.confining;
+        let confining = self.recipe.scene.confining;
         let (damping, pressure) = (confining.damping, confining.pressure * share);
         let (gain, fastest) = (confining.servo_speed, confining.servo_speed_max);
         self.system.controls.gauge_setpoint = -pressure;
@@ -371,16 +371,16 @@ fn growth(recipe: &Recipe, system: &System) -> Growth {
 
 /// Growth under the model's laws, with the friction that the scene sets for it.
 fn growth_recipe(recipe: &Recipe, system: &System) -> grow::Recipe {
-    let setup = &recipe.setup;
+    let scene = &recipe.scene;
     let radius = system.model.radius_mean;
-    let mass = crate::physics::packing::sphere_volume(radius) * setup.grains.material.density;
+    let mass = crate::physics::packing::sphere_volume(radius) * scene.grains.material.density;
     let volume = std::f64::consts::PI * recipe.size().radius.powi(2) * recipe.size().height;
-    let stop = setup.growth.pressure_stop;
+    let stop = scene.growth.pressure_stop;
     let mut growth = grow::Recipe::new(&system.model, volume, stop, mass, radius);
     growth.laws = Laws::of(&system.model);
     // `Laws` has one law for all walls, and the frame touches no grain.
     for law in [&mut growth.laws.grains, &mut growth.laws.walls, &mut growth.laws.membrane] {
-        law.friction = setup.growth.friction;
+        law.friction = scene.growth.friction;
     }
     growth
 }

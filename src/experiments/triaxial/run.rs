@@ -24,23 +24,23 @@ pub(super) struct TriaxialRun {
 impl TriaxialRun {
     /// The chosen specimen, with the changes of `variant`.
     pub(super) fn new(
-        setup: &TriaxialScene,
+        scene: &TriaxialScene,
         name: &str,
         choice: Choice,
         variant: Variant,
     ) -> Result<Self, StartError> {
-        let mut setup = setup.clone();
-        let (shear, runs) = (&mut setup.shear, &setup.runs);
+        let mut scene = scene.clone();
+        let (shear, runs) = (&mut scene.shear, &scene.runs);
         let mut speed = shear.speed * shear.speed_factor;
         let strain = match variant {
             Variant::Plain => shear.strain,
             Variant::Check => {
                 speed *= 0.5;
-                setup.time.rayleigh_share = runs.check_rayleigh_share;
+                scene.time.rayleigh_share = runs.check_rayleigh_share;
                 runs.check_strain
             }
             Variant::Loose => {
-                setup.cases[choice.size].spheres.n_grains = [runs.loose_grains; 2];
+                scene.cases[choice.size].spheres.n_grains = [runs.loose_grains; 2];
                 runs.loose_strain
             }
         };
@@ -48,8 +48,8 @@ impl TriaxialRun {
         let step = shear.strain / real(shear.n_points);
         shear.n_points = rounded(strain / step);
         shear.strain = step * real(shear.n_points);
-        let end = (setup.shear.strain, setup.shear.n_points);
-        let (recipe, system) = Recipe::new(&setup, choice)?;
+        let end = (scene.shear.strain, scene.shear.n_points);
+        let (recipe, system) = Recipe::new(&scene, choice)?;
         Ok(Self { name: name.to_owned(), test: TriaxialTest::new(recipe, system, speed, end) })
     }
 }
@@ -79,7 +79,7 @@ impl Run for TriaxialRun {
 
     fn record(&self) -> Record {
         let initial = self.test.recipe.choice.initial;
-        let seed = self.test.recipe.setup.seeds[initial];
+        let seed = self.test.recipe.scene.seeds[initial];
         let mut record = self.test.progress.series.to_record(&self.name, seed);
         record.digest = saved_run::digest(&self.test.system.state);
         record
@@ -142,9 +142,9 @@ mod tests {
         .map(str::to_owned);
         let (source, text) = Triaxial.scene();
         let scene = SceneText { text, source, overrides: &overrides, size: Size::Quick };
-        let setup: TriaxialScene = read(&scene.layers(false)).unwrap();
+        let scene: TriaxialScene = read(&scene.layers(false)).unwrap();
         let choice = Choice { size: 0, kind: Kind::Triangles, initial: 0 };
-        TriaxialRun::new(&setup, "small", choice, Variant::Plain).unwrap()
+        TriaxialRun::new(&scene, "small", choice, Variant::Plain).unwrap()
     }
 
     /// Advances until a phase has lasted for three slices.

@@ -47,13 +47,13 @@ const KINDS: [Kind; 2] = [Kind::Triangles, Kind::Spheres];
 impl TimingRun {
     /// Both models of the same size, in the initial state A, with the source's hinge damping and a
     /// substep that is safe without further arguments.
-    pub(super) fn new(setup: &TriaxialScene, name: &str, size: usize) -> Result<Self, StartError> {
-        let mut setup = setup.clone();
-        setup.membrane.bending_damping_spheres = setup.membrane.bending_damping;
-        setup.time.rayleigh_share = setup.runs.check_rayleigh_share;
-        let shear = &setup.shear;
+    pub(super) fn new(scene: &TriaxialScene, name: &str, size: usize) -> Result<Self, StartError> {
+        let mut scene = scene.clone();
+        scene.membrane.bending_damping_spheres = scene.membrane.bending_damping;
+        scene.time.rayleigh_share = scene.runs.check_rayleigh_share;
+        let shear = &scene.shear;
         let test = |kind: Kind| -> Result<TriaxialTest, StartError> {
-            let (recipe, system) = Recipe::new(&setup, Choice { size, kind, initial: 0 })?;
+            let (recipe, system) = Recipe::new(&scene, Choice { size, kind, initial: 0 })?;
             let speed = shear.speed * shear.speed_factor;
             Ok(TriaxialTest::new(recipe, system, speed, (shear.strain, shear.n_points)))
         };
@@ -62,7 +62,7 @@ impl TimingRun {
             tests: [test(KINDS[0])?, test(KINDS[1])?],
             times: [0.0; 2],
             n_substeps: [0; 2],
-            last: setup.runs.timing,
+            last: scene.runs.timing,
         })
     }
 
@@ -126,7 +126,7 @@ impl Run for TimingRun {
     }
 
     fn record(&self) -> Record {
-        let seed = self.tests[0].recipe.setup.seeds[0];
+        let seed = self.tests[0].recipe.scene.seeds[0];
         let mut digest = Digest::new();
         let mut record = Record { case: self.name.clone(), seed, ..Record::default() };
         for (which, test) in self.tests.iter().enumerate() {
