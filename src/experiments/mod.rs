@@ -5,12 +5,12 @@
 //! | file | holds |
 //! |---|---|
 //! | `scene.rs` | the keys of its scene, one line each (`scene_keys!`), and the rules that join them |
-//! | `cases.rs` | the list of cases, independent runs that may go side by side, and their names |
+//! | `cases.rs` | the list of cases: independent runs, which may go side by side, and their names |
 //! | `build.rs` | the physical system of a case at its start |
+//! | `measure.rs` | what is read from a system while it runs, and from records afterwards |
 //! | `run.rs` | a `Run`: the phases of a case, slice by slice, how it is saved and resumed |
-//! | `measure.rs` | what is read from a system while it runs, and from a record afterwards |
-//! | `evaluate.rs` | rows that compare measured values with their oracles, and notes |
 //! | `plots.rs` | plots and tables of the report |
+//! | `evaluate.rs` | rows that compare measured values with their oracles, and notes |
 //! | `mod.rs` | the `Experiment` and its `Plan`, which tie these together |
 //!
 //! A file may use those above it. To add an experiment, write

@@ -5,7 +5,10 @@
 //! the plates and the rest is free. Grains touch the plates and the membrane. They are softer while
 //! they grow; stiffness and dissipation rise to their true values by equal factors.
 
-use super::scene::{Size, TriaxialScene};
+use super::{
+    cases::{Choice, Kind},
+    scene::{MeshSize, Size, TriaxialScene},
+};
 use crate::{
     base::{
         Real, Vec3,
@@ -37,36 +40,6 @@ pub(super) const BOTTOM: u32 = 1;
 pub(super) const TOP: u32 = 2;
 /// Skin of the neighbor lists, as a share of the largest radius.
 const SKIN_SHARE: Real = 0.2;
-
-/// The membrane model: what grains touch.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
-    /// Triangles, the wall model.
-    Triangles,
-    /// Spheres around the vertices, the particle model.
-    Spheres,
-}
-
-impl Kind {
-    /// Name in cases and phases.
-    pub(super) fn name(self) -> &'static str {
-        match self {
-            Self::Triangles => "triangles",
-            Self::Spheres => "spheres",
-        }
-    }
-}
-
-/// Selects a specimen.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Choice {
-    /// Index of the size: 0 or 1 for the source's case 1 or 2.
-    pub(super) size: usize,
-    /// The membrane model.
-    pub(super) kind: Kind,
-    /// Index of the initial state: 0 or 1 for A or B.
-    pub(super) initial: usize,
-}
 
 /// How the specimen is made, independent of its state.
 #[derive(Clone)]
@@ -190,7 +163,7 @@ impl Recipe {
 }
 
 /// Mesh and numbers of grains of a specimen.
-fn net(scene: &TriaxialScene, choice: Choice) -> super::scene::MeshSize {
+fn net(scene: &TriaxialScene, choice: Choice) -> MeshSize {
     let size = &scene.cases[choice.size];
     match choice.kind {
         Kind::Triangles => size.triangles,

@@ -1,14 +1,41 @@
 //! The cases: specimens that are sheared, and comparisons of run times.
 
-use super::{
-    build::{Choice, Kind},
-    scene::TriaxialScene,
-};
+use super::scene::TriaxialScene;
 
 /// Suffix of the name of the case that checks what the accelerations change.
 pub(super) const CHECK: &str = "_check";
 /// Suffix of the name of the specimen with spheres that is filled less densely.
 pub(super) const LOOSE: &str = "_loose";
+
+/// The membrane model: what grains touch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// Triangles, the wall model.
+    Triangles,
+    /// Spheres around the vertices, the particle model.
+    Spheres,
+}
+
+impl Kind {
+    /// Name in cases and phases.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Triangles => "triangles",
+            Self::Spheres => "spheres",
+        }
+    }
+}
+
+/// Selects a specimen.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Choice {
+    /// Index of the size: 0 or 1 for the source's case 1 or 2.
+    pub(super) size: usize,
+    /// The membrane model.
+    pub(super) kind: Kind,
+    /// Index of the initial state: 0 or 1 for A or B.
+    pub(super) initial: usize,
+}
 
 /// A case.
 #[derive(Clone, Copy)]

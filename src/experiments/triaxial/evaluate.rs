@@ -1,8 +1,7 @@
 //! Evaluation of the triaxial tests: rows of both sizes, curves, plots, run times.
 
 use super::{
-    build::{Choice, Kind},
-    cases::{CHECK, LOOSE, name, timing_name},
+    cases::{CHECK, Choice, Kind, LOOSE, name, timing_name},
     plots::{curve, plots},
     scene::TriaxialScene,
 };

@@ -1,8 +1,8 @@
 //! A case: one specimen from growth to the last strain, slice by slice.
 
 use super::{
-    build::{Choice, Kind, Recipe},
-    cases::Variant,
+    build::Recipe,
+    cases::{Choice, Kind, Variant},
     protocol::{Phase, TestProgress, TriaxialTest, keep_between_plates},
     scene::TriaxialScene,
 };

@@ -4,7 +4,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::{
-    build::{Choice, Kind, Recipe},
+    build::Recipe,
+    cases::{Choice, Kind},
     protocol::{Phase, TestProgress, TriaxialTest},
     run::{restore, slice},
     scene::TriaxialScene,
