@@ -113,7 +113,7 @@ impl<'a> Case<'a> {
     fn run(&mut self, shutdown: &Shutdown, line: &Line<'_>) -> Result<CaseEnd, String> {
         loop {
             let progress = self.run.advance().map_err(|fault| fault.to_string())?;
-            *self.wall_s.entry(progress.stage.to_owned()).or_default() += self.watch.lap_s();
+            *self.wall_s.entry(progress.phase.to_owned()).or_default() += self.watch.lap_s();
             self.share = progress.share;
             line.show(&progress, self.share_at_start, self.watch.total_s());
             if progress.is_done {

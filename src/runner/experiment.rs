@@ -12,7 +12,7 @@ use crate::{
     base::digest::Digest,
     experiments::{
         EXPERIMENTS, Experiment, Plan, SceneText, Size,
-        findings::{Expected, Findings, Report, Row},
+        findings::{Expected, Findings, Row, RowText},
         record::{Record, Validity},
     },
     scene::SceneError,
@@ -180,7 +180,7 @@ impl<'a> LoadedExperiment<'a> {
 
     /// A case that did not come to its end, as a row.
     fn failure(&self, case: &str, fault: &str) -> Row {
-        let told = Report {
+        let told = RowText {
             id: &format!("{}.{case}.ran_to_its_end", self.identity.experiment),
             quantity: &format!("case {case} ran to its end"),
             unit: "1",
@@ -201,7 +201,7 @@ impl<'a> LoadedExperiment<'a> {
         let mut digest = Digest::new();
         for case in &cases {
             validity.join(&case.validity);
-            let faults = case.validity.faults();
+            let faults = case.validity.violations();
             left_validity.extend(faults.iter().map(|fault| format!("{}: {fault}", case.case)));
             digest.bytes(case.case.as_bytes());
             digest.bytes(case.digest.as_bytes());

@@ -136,7 +136,7 @@ impl Line<'_> {
         let title = &self.progress.titles[self.i];
         let left = left.map_or_else(String::new, |it| format!(", {} left", format::duration(it)));
         let percent = progress.share * 1e2;
-        self.bar.set_message(format!("{title}: {}, {percent:.0} %{left}", progress.stage));
+        self.bar.set_message(format!("{title}: {}, {percent:.0} %{left}", progress.phase));
         self.progress.show_overall();
     }
 

@@ -197,12 +197,12 @@ fn broken(name: &str, width: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::experiments::findings::{Expected, Report};
+    use crate::experiments::findings::{Expected, RowText};
 
     /// Oracle: written by hand.
     #[test]
     fn distances_are_told_in_percent_or_units() {
-        let told = Report { id: "", quantity: "", unit: "N", oracle: "", reason: "" };
+        let told = RowText { id: "", quantity: "", unit: "N", oracle: "", reason: "" };
         let apart = |oracle, measured| {
             super::apart(&Row::new(&told, Expected::within(oracle, 1.0), measured))
         };

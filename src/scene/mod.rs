@@ -15,6 +15,7 @@ pub mod text; // text to scene
 
 mod check;
 mod extent;
+pub(crate) mod keys;
 mod mesh_file;
 mod read;
 pub(crate) mod schema;
