@@ -102,13 +102,13 @@ impl Client {
             self.clients.insert(name.to_owned(), client);
         }
         let client = self.clients.get_mut(name).ok_or("no client")?;
-        client.ask(question);
+        client.send(question);
         Ok(())
     }
 
     /// The answer to the last question, if it is there.
     pub(crate) fn poll(&mut self, name: &str) -> Option<Cdr> {
-        self.clients.get_mut(name)?.answer()
+        self.clients.get_mut(name)?.take_response()
     }
 
     /// Waits for the answer to the last question.

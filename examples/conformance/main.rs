@@ -24,7 +24,7 @@ use std::{
 use checks::{Outcome, Verdict};
 use client::Client;
 use jamgrip::{
-    ros::{discovery::DiscoveryRange, node::RosNode, service::Way},
+    ros::{discovery::DiscoveryRange, node::RosNode, service::ServiceMapping},
     scene::Ros,
 };
 
@@ -32,7 +32,7 @@ use jamgrip::{
 #[derive(Clone, Debug)]
 struct Options {
     prefix: String,
-    way: Way,
+    way: ServiceMapping,
     version: u8,
     patience: Duration,
 }
@@ -57,7 +57,7 @@ fn main() -> ExitCode {
 fn options(mut arguments: impl Iterator<Item = String>) -> Result<Options, String> {
     let mut options = Options {
         prefix: "/jamgrip".to_owned(),
-        way: Way::Enhanced,
+        way: ServiceMapping::Enhanced,
         version: 2,
         patience: Duration::from_secs(10),
     };
@@ -65,8 +65,8 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Options, Strin
         let value = arguments.next().ok_or(format!("{name} needs a value"))?;
         match (name.as_str(), value.as_str()) {
             ("--prefix", _) => options.prefix = value,
-            ("--way", "enhanced") => options.way = Way::Enhanced,
-            ("--way", "cyclone") => options.way = Way::Cyclone,
+            ("--way", "enhanced") => options.way = ServiceMapping::Enhanced,
+            ("--way", "cyclone") => options.way = ServiceMapping::Cyclone,
             ("--version", "1") => options.version = 1,
             ("--version", "2") => options.version = 2,
             ("--patience", _) => {

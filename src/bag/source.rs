@@ -115,7 +115,7 @@ impl Source for Script {
         self.of(seen.run_tick.0 + 1)
     }
 
-    fn has_heard(&self) -> bool {
+    fn has_received(&self) -> bool {
         true
     }
 

@@ -192,7 +192,7 @@ impl RunContext {
             front.first_command();
         }
         let changed = {
-            let mut world = World { subject: plant, seen: &seen.snapshot };
+            let mut world = World { access: plant, snapshot: &seen.snapshot };
             front.handle_requests(&mut world, self.n_packets)
         };
         if let Some(outputs) = &changed.outputs {

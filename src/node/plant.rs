@@ -10,13 +10,13 @@ use crate::{
     },
     physics::health::Diverged,
     session::Session,
-    simulator::Subject,
+    simulator::WorldAccess,
     snapshot::{Snapshot, checkpoint::Checkpoint, take, view::View},
     wire::to_ros::Encoder,
 };
 
 /// Something that ticks and can be looked at.
-pub trait Plant: Subject {
+pub trait Plant: WorldAccess {
     /// Why it cannot go on.
     type Fault: Error + Send + Sync + 'static;
 
@@ -78,8 +78,8 @@ impl Plant for Session {
     }
 }
 
-impl Subject for Session {
-    fn look(&self) -> Snapshot {
+impl WorldAccess for Session {
+    fn full_snapshot(&self) -> Snapshot {
         take::snapshot(self, Parts::ALL)
     }
 

@@ -15,7 +15,7 @@ use jamgrip::{
     io::sink::Sink,
     replay::{
         play::{Options, Played, PlayerOutput, play},
-        player_command::{Asked, PlayerCommand},
+        player_command::{CommandRequest, PlayerCommand},
     },
 };
 
@@ -42,7 +42,7 @@ struct Memory {
     published: Vec<(String, u64, Instant)>,
     clock: Vec<u64>,
     cues: Vec<(usize, PlayerCommand)>,
-    teller: Option<Sender<Asked>>,
+    teller: Option<Sender<CommandRequest>>,
 }
 
 #[expect(clippy::disallowed_methods, reason = "when a message is published is what is tested")]
@@ -63,7 +63,7 @@ impl PlayerOutput for Memory {
         }
     }
 
-    fn clock(&mut self, time_ns: u64) {
+    fn publish_clock(&mut self, time_ns: u64) {
         self.clock.push(time_ns);
     }
 }
@@ -104,7 +104,7 @@ fn every_message_comes_once_in_its_time() {
     assert_eq!(files.len(), 3, "400 ms in files of 150 ms");
     let (played, stage) = run(&files, &options(), Vec::new());
     assert_eq!(played.n_published, stage.published.len() as u64);
-    assert_eq!(played.refused, ["/jamgrip/grains"]);
+    assert_eq!(played.unplayable, ["/jamgrip/grains"]);
     // Oracle: the clock of the run, one message a tick.
     let expected: Vec<u64> = (1..=400).map(|tick| tick * synthetic::TICK_NS).collect();
     assert_eq!(of(&stage, "/clock"), expected);
@@ -209,10 +209,10 @@ fn who_asks_is_told_when_it_is_done() {
     let (teller, listener) = mpsc::channel();
     let ask = |cue| {
         let (reply, answer) = mpsc::channel();
-        teller.send(Asked { command: cue, reply: Some(reply) }).unwrap();
+        teller.send(CommandRequest { command: cue, reply: Some(reply) }).unwrap();
         answer
     };
-    let (look, five) = (ask(PlayerCommand::Look), ask(PlayerCommand::Burst(5)));
+    let (look, five) = (ask(PlayerCommand::Status), ask(PlayerCommand::Burst(5)));
     let nowhere = ask(PlayerCommand::SeekTo(401_000_000));
     let (rate, there) = (ask(PlayerCommand::Rate(3.0)), ask(PlayerCommand::SeekTo(399_000_000)));
     let (rest, end) = (ask(PlayerCommand::Burst(0)), ask(PlayerCommand::Resume));
@@ -275,7 +275,7 @@ fn a_played_recording_reaches_a_subscriber() {
         };
         let (_teller, listener) = mpsc::channel();
         let played = play(&files, &options, &mut stage, &listener, &Shutdown::default()).unwrap();
-        assert!(played.refused.is_empty() && stage.faults.0 == 0, "{:?}", stage.faults);
+        assert!(played.unplayable.is_empty() && stage.errors.0 == 0, "{:?}", stage.errors);
         let (mut forces, mut times, mut late) = (Vec::new(), Vec::new(), None);
         let frames = there.subscription::<TFMessage>(&topic("/tf_static")).unwrap();
         let begin = now();
@@ -314,14 +314,18 @@ impl Someone {
             replay::{player_node, player_services},
             ros::{
                 node::RosNode,
-                service::{RosClient, Way},
+                service::{RosClient, ServiceMapping},
             },
         };
 
         let node = RosNode::join_as("someone", &crate::private_network::reach()).unwrap();
-        let offers = player_services::offers(player_node::NODE_NAME);
+        let offers = player_services::services(player_node::NODE_NAME);
         let clients = offers.iter().enumerate().map(|(i, offer)| {
-            let way = if i.is_multiple_of(2) { Way::Enhanced } else { Way::Cyclone };
+            let way = if i.is_multiple_of(2) {
+                ServiceMapping::Enhanced
+            } else {
+                ServiceMapping::Cyclone
+            };
             RosClient::open(&node, offer, way).unwrap()
         });
         let clients = clients.collect();
@@ -345,9 +349,9 @@ impl Someone {
         while !client.is_matched() {
             nap();
         }
-        client.ask(&Cdr::of(question));
+        client.send(&Cdr::of(question));
         loop {
-            if let Some(answer) = client.answer() {
+            if let Some(answer) = client.take_response() {
                 return answer.read().unwrap();
             }
             nap();
@@ -388,7 +392,7 @@ fn services_pause_wind_and_step_it() {
         let player = std::thread::spawn(move || {
             let stage = RosPlayerNode::join(&reach(), false).unwrap();
             let (teller, listener) = mpsc::channel();
-            let _prompter = stage.prompted(teller).unwrap();
+            let _prompter = stage.open_services(teller).unwrap();
             let only_clock =
                 Options { topics: vec!["/clock".to_owned()], is_paused: true, ..options() };
             let mut memory = Memory::default();

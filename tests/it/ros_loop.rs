@@ -126,7 +126,7 @@ fn commands_wait_in_order_for_the_next_tick() {
                 .iter()
                 .all(|it| there.n_readers(&format!("/jamgrip/{it}")) == 1)
         });
-        assert!(!source.has_heard());
+        assert!(!source.has_received());
 
         let mut pose = PoseStamped::default();
         pose.header.frame_id = "world".to_owned();
@@ -134,7 +134,7 @@ fn commands_wait_in_order_for_the_next_tick() {
         pose.pose.position.z = f64::NAN; // senseless values arrive too: they are refused later
         pose.pose.orientation.w = 1.0;
         flange.publish(Body::new(pose.to_cdr())).unwrap();
-        wait_until("a first command", || source.has_heard());
+        wait_until("a first command", || source.has_received());
         let Some(Command::FlangePose(heard)) = source.drain(&seen).pop() else {
             panic!("no flange pose")
         };
@@ -185,7 +185,7 @@ fn a_flood_of_commands_holds_up_nothing() {
                 && there.n_readers("/jamgrip/flange/pose_cmd") == 1
         });
         flange.publish(Body::new(PoseStamped::default().to_cdr())).unwrap();
-        wait_until("the lone command", || source.has_heard());
+        wait_until("the lone command", || source.has_received());
         let is_enough = Arc::new(AtomicBool::new(false));
         let stop = Arc::clone(&is_enough);
         let flood = std::thread::spawn(move || {

@@ -10,7 +10,7 @@ use jamgrip::{
     io::server::ServiceSpec,
     ros::{
         node::RosNode,
-        service::{RosClient, Way},
+        service::{RosClient, ServiceMapping},
     },
     wire::{
         cdr::Cdr,
@@ -85,7 +85,7 @@ impl Client {
     /// The same by its full name.
     pub(crate) fn at(node: &RosNode, name: &str, service_type: ServiceType) -> Self {
         let offer = ServiceSpec { name: name.to_owned(), service_type };
-        let mut client = RosClient::open(node, &offer, Way::Enhanced).unwrap();
+        let mut client = RosClient::open(node, &offer, ServiceMapping::Enhanced).unwrap();
         wait_until(name, || client.is_matched());
         Self(client)
     }
@@ -98,14 +98,14 @@ impl Client {
 
     /// Asks.
     pub(crate) fn say<Q: Serialize>(&mut self, question: &Q) {
-        self.0.ask(&Cdr::of(question));
+        self.0.send(&Cdr::of(question));
     }
 
     /// Waits for the answer.
     pub(crate) fn hear<A: DeserializeOwned>(&mut self) -> A {
         let mut answer = None;
         wait_until("an answer", || {
-            answer = self.0.answer();
+            answer = self.0.take_response();
             answer.is_some()
         });
         answer.unwrap().read().unwrap()

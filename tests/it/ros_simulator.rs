@@ -7,11 +7,11 @@ use jamgrip::{
     io::server::{RequestId, ServiceRequest, ServiceSpec},
     ros::{
         node::RosNode,
-        service::{RosClient, Way},
+        service::{RosClient, ServiceMapping},
     },
     simulator::{
-        Simulator, Subject, World,
-        services::{self, asked},
+        Simulator, World, WorldAccess,
+        services::{self, endpoints},
     },
     snapshot::Snapshot,
     wire::{
@@ -130,12 +130,12 @@ fn garbage_and_floods_do_not_reach_the_physics() {
         let mut look = Client::of::<srv::GetEntityState>(&node, "get_entity_state");
         let quiet = episode(&mut reset, &mut step, &mut look);
 
-        let (offers, _) = asked("/jamgrip", None);
+        let (offers, _) = endpoints("/jamgrip", None);
         // A request to unload the world has no field: whatever its bytes, it is one.
         let mut floods: Vec<RosClient> = offers
             .iter()
             .filter(|offer| !offer.name.ends_with("/unload_world"))
-            .map(|offer| RosClient::open(&node, offer, Way::Enhanced).unwrap())
+            .map(|offer| RosClient::open(&node, offer, ServiceMapping::Enhanced).unwrap())
             .collect();
         for flood in &mut floods {
             wait_until("a server", || flood.is_matched());
@@ -147,7 +147,7 @@ fn garbage_and_floods_do_not_reach_the_physics() {
                 for flood in &mut floods {
                     // Too short for anything that has a field, too long to be a count.
                     let bytes = (0..n % 3).map(|it| it.to_le_bytes()[0] | 0xf0).collect();
-                    flood.ask(&Cdr { bytes, is_big_endian: n.is_multiple_of(2) });
+                    flood.send(&Cdr { bytes, is_big_endian: n.is_multiple_of(2) });
                     n += 1;
                 }
                 std::thread::sleep(Duration::from_millis(1));
@@ -165,8 +165,8 @@ fn garbage_and_floods_do_not_reach_the_physics() {
 /// A world that does nothing.
 struct Dummy(Synthetic);
 
-impl Subject for Dummy {
-    fn look(&self) -> Snapshot {
+impl WorldAccess for Dummy {
+    fn full_snapshot(&self) -> Snapshot {
         self.0.snapshot.clone()
     }
 
@@ -185,16 +185,16 @@ proptest! {
         bytes in prop::collection::vec(any::<u8>(), 0..300),
         is_big_endian in any::<bool>(),
     ) {
-        let (offers, what) = asked("/jamgrip", None);
-        let n_channels = services::channels("/jamgrip", None).len();
+        let (offers, what) = endpoints("/jamgrip", None);
+        let n_channels = services::action_topics("/jamgrip", None).len();
         let scene = crate::by_tick::scene();
-        let mut simulator = Simulator::new(&scene, what, false).with_channels(n_channels);
+        let mut simulator = Simulator::new(&scene, what, false).with_n_topics(n_channels);
         let system = Synthetic::new("cylinder");
         let seen = system.snapshot.clone();
-        let mut world = World { subject: &mut Dummy(system), seen: &seen };
-        let asker = RequestId { offer: offer % offers.len(), writer: [0; 16], number: 1, header: None };
-        let call = ServiceRequest { asker, body: Cdr { bytes, is_big_endian } };
-        if let Err(reason) = simulator.handle_requests(&call, &mut world) {
+        let mut world = World { access: &mut Dummy(system), snapshot: &seen };
+        let id = RequestId { service: offer % offers.len(), writer: [0; 16], number: 1, header: None };
+        let call = ServiceRequest { id, body: Cdr { bytes, is_big_endian } };
+        if let Err(reason) = simulator.handle_request(&call, &mut world) {
             prop_assert!(reason.contains(": "), "names the service: {}", reason);
         }
     }
@@ -218,8 +218,8 @@ fn an_independent_dds_calls_services_and_an_action() {
         // The ports of topics, /rosout, /parameter_events and ros_discovery_info, and of services.
         let topics = jamgrip::wire::topics::topics(&coarse::scene(&[]));
         let n_inputs = topics.iter().filter(|it| it.is_input).count();
-        let n_offers = asked("/jamgrip", None).0.len();
-        let n_channels = services::channels("/jamgrip", None).len();
+        let n_offers = endpoints("/jamgrip", None).0.len();
+        let n_channels = services::action_topics("/jamgrip", None).len();
         let n_outputs = topics.len() - n_inputs + 3;
         let listed = [n_inputs + n_offers, n_outputs + n_offers + n_channels];
         let expected = serde_json::json!({
@@ -360,7 +360,7 @@ fn names_on_the_command_line_are_those_in_the_graph() {
         for name in ["/left/grip/things", "/left/grip/step_simulation", "/sim/step_simulation"] {
             let service_type = srv::StepSimulation::TYPE;
             let offer = ServiceSpec { name: name.to_owned(), service_type };
-            let mut client = RosClient::open(&node, &offer, Way::Enhanced).unwrap();
+            let mut client = RosClient::open(&node, &offer, ServiceMapping::Enhanced).unwrap();
             wait_until(name, || client.is_matched());
         }
         let set = srv::SetSimulationState::TYPE;
