@@ -133,7 +133,7 @@ impl Connections<'_> {
 
     /// What the recording says about the run, so that it can be run again.
     #[cfg(feature = "bag")]
-    fn subject(&self) -> crate::bag::Subject {
+    fn subject(&self) -> crate::bag::RunDescription {
         let bag = &self.scene.outputs.bag;
         let whole_ns = |time: f64| Duration::from_secs_f64(time).as_nanos();
         let format = crate::bag::Format {
@@ -155,7 +155,7 @@ impl Connections<'_> {
         facts.push((INPUTS, serde_json::json!(inputs).to_string()));
         facts.extend_from_slice(self.facts);
         let scene_text = crate::scene::to_yaml(self.scene);
-        crate::bag::Subject { scene_text, scene_files: self.scene_files(), facts, format }
+        crate::bag::RunDescription { scene_text, scene_files: self.scene_files(), facts, format }
     }
 
     /// The mesh files of the scene. One that has gone since it was read is said and left out.

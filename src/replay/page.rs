@@ -4,14 +4,14 @@ use std::path::Path;
 
 use maud::{Markup, html};
 
-use crate::bag::{NotABag, recording::Recording};
+use crate::bag::{OpenBagError, recording::Recording};
 use crate::{replay::page_data::Course, report::page};
 
 /// The page as HTML, complete in itself.
 ///
 /// # Errors
 /// If the path is no recording.
-pub fn html(path: &Path) -> Result<String, NotABag> {
+pub fn html(path: &Path) -> Result<String, OpenBagError> {
     let recording = Recording::open(path)?;
     let course = Course::read(path)?;
     let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();

@@ -4,8 +4,8 @@ use std::{collections::BTreeMap, path::Path};
 
 use crate::{
     bag::{
-        NotABag,
-        reader::{Channel, Item, Reader, Recorded},
+        OpenBagError,
+        reader::{Channel, Item, Reader, RecordedMessage},
         writer::CDR_HEADER,
     },
     experiments::findings::{Kind, Plot, Series},
@@ -78,11 +78,11 @@ impl Course {
     ///
     /// # Errors
     /// If there is none.
-    pub(super) fn read(path: &Path) -> Result<Self, NotABag> {
+    pub(super) fn read(path: &Path) -> Result<Self, OpenBagError> {
         let mut course = Self::default();
         for file in crate::bag::files(path)? {
             let reader = Reader::open(&file)
-                .map_err(|fault| NotABag::Unreadable { path: file.clone(), fault })?;
+                .map_err(|error| OpenBagError::Unreadable { path: file.clone(), error })?;
             for item in reader {
                 match item {
                     Item::Channel(channel) => course.meet(&channel),
@@ -126,7 +126,7 @@ impl Course {
         }
     }
 
-    fn take(&mut self, message: &Recorded) {
+    fn take(&mut self, message: &RecordedMessage) {
         self.n_messages += 1;
         let Some(cdr) = message.data.strip_prefix(&CDR_HEADER) else { return };
         if message.channel.type_name() == WorldChange::TYPE.name {
@@ -266,14 +266,14 @@ mod tests {
     use super::*;
     use crate::bag::reader::Schema;
 
-    fn message(topic: &str, type_name: &str, cdr: &[u8]) -> Recorded {
+    fn message(topic: &str, type_name: &str, cdr: &[u8]) -> RecordedMessage {
         let (name, encoding) = (type_name.to_owned(), "ros2msg".to_owned());
         let schema = Some(Arc::new(Schema { id: 1, name, encoding, data: Vec::new() }));
         let (topic, encoding) = (topic.to_owned(), "cdr".to_owned());
         let channel = Channel { id: 1, topic, encoding, metadata: BTreeMap::new(), schema };
         let data = [&CDR_HEADER[..], cdr].concat();
         let channel = Arc::new(channel);
-        Recorded { channel, sequence: 0, log_time: 5_000_000, publish_time: 5_000_000, data }
+        RecordedMessage { channel, sequence: 0, log_time: 5_000_000, publish_time: 5_000_000, data }
     }
 
     /// Oracle: the same messages of a node that has its usual name.

@@ -21,7 +21,7 @@ use super::player_command::{CommandRequest, PlayerCommand, PlayerStatus};
 use crate::{
     bag::{
         index::Index,
-        reader::{Channel, Item, Reader, Recorded, items},
+        reader::{Channel, Item, Reader, RecordedMessage, items},
     },
     host::{clock::Playhead, shutdown::Shutdown},
 };
@@ -35,7 +35,7 @@ pub trait PlayerOutput {
     fn open(&mut self, channel: &Channel) -> bool;
 
     /// Publishes a message on an open topic.
-    fn publish(&mut self, message: &Recorded);
+    fn publish(&mut self, message: &RecordedMessage);
 
     /// Publishes recorded time, at another rate than it was recorded.
     fn publish_clock(&mut self, time_ns: u64);
@@ -171,7 +171,7 @@ impl Player<'_> {
 
     /// Plays once through the files, from `start_ns` on.
     fn play_from(&mut self, start_ns: u64) -> io::Result<Ending> {
-        let mut latched: BTreeMap<String, Recorded> = BTreeMap::new();
+        let mut latched: BTreeMap<String, RecordedMessage> = BTreeMap::new();
         let mut has_begun = false;
         for item in self.readers(start_ns)?.into_iter().flatten() {
             let message = match item {
@@ -226,7 +226,7 @@ impl Player<'_> {
                 match index.get_or_insert_with(|| Index::read(file)) {
                     Some(index) => {
                         let gaps = index.before(self.first_ns.saturating_add(start_ns), &is_kept);
-                        Reader::open_in_part(file, index, gaps)
+                        Reader::open_with_gaps(file, index, gaps)
                     }
                     None => Reader::open(file),
                 }
@@ -235,7 +235,7 @@ impl Player<'_> {
     }
 
     /// Starts a part: moves the playhead and publishes the latched messages.
-    fn begin(&mut self, start_ns: u64, latched: &BTreeMap<String, Recorded>) {
+    fn begin(&mut self, start_ns: u64, latched: &BTreeMap<String, RecordedMessage>) {
         match &mut self.head {
             Some(head) => head.jump(start_ns),
             None => {
@@ -393,6 +393,6 @@ fn is_selected(topic: &str, options: &Options) -> bool {
 /// True for latched topics, whose last message late joiners receive.
 pub fn is_latched(channel: &Channel) -> bool {
     channel.metadata.get("offered_qos_profiles").is_some_and(|qos| {
-        crate::bag::metadata::qos_in_words(qos).contains("durability: transient_local")
+        crate::bag::metadata::qos_with_names(qos).contains("durability: transient_local")
     })
 }

@@ -13,8 +13,8 @@ use super::{
 };
 use crate::{
     bag::{
-        metadata::qos_in_words,
-        reader::{Channel, Recorded},
+        metadata::qos_with_names,
+        reader::{Channel, RecordedMessage},
         writer::CDR_HEADER,
     },
     ros::{
@@ -91,7 +91,7 @@ impl PlayerOutput for RosPlayerNode {
         }
     }
 
-    fn publish(&mut self, message: &Recorded) {
+    fn publish(&mut self, message: &RecordedMessage) {
         let topic = &message.channel.topic;
         let Some(publisher) = self.publishers.get(topic) else { return };
         let result = match message.data.strip_prefix(&CDR_HEADER) {
@@ -114,7 +114,7 @@ impl PlayerOutput for RosPlayerNode {
 fn topic(channel: &Channel) -> Topic {
     // Type names live as long as the program. There are few, and each is leaked once.
     let type_name: &'static str = channel.type_name().to_owned().leak();
-    let qos = qos_in_words(channel.metadata.get("offered_qos_profiles").map_or("", |it| it));
+    let qos = qos_with_names(channel.metadata.get("offered_qos_profiles").map_or("", |it| it));
     let depth = |line: &str| line.trim_start().strip_prefix("depth: ")?.trim().parse().ok();
     let depth = qos.lines().find_map(depth).filter(|depth| *depth != 0).unwrap_or(DEFAULT_DEPTH);
     let message_type = MessageType { name: type_name, dds_name: "", type_hash: "", definition: "" };

@@ -6,7 +6,7 @@ use std::{
 };
 
 use jamgrip::{
-    bag::sink::{Bag, BagError, BagReport, Format, Subject},
+    bag::sink::{Bag, BagError, BagReport, Format, RunDescription},
     base::{
         Vec3,
         random::{Random, Stream},
@@ -27,8 +27,8 @@ const SCENE_TEXT: &str = "name: synthetic\n";
 /// Digest of the state after 1000 ticks, in `synthetic::snapshot`.
 const DIGEST: u64 = 1000_u64.wrapping_mul(0x9e37_79b9_7f4a_7c15);
 
-fn subject() -> Subject {
-    Subject {
+fn subject() -> RunDescription {
+    RunDescription {
         scene_text: SCENE_TEXT.to_owned(),
         scene_files: vec![("parameter.obj".to_owned(), b"v 0 0 0\n".to_vec())],
         facts: vec![("seed", "7".to_owned())],
@@ -317,7 +317,8 @@ fn a_long_recording_is_split_and_every_file_stands_alone() {
     ] {
         let place = folder.path().join(name);
         let mut bag =
-            Bag::create(&place, synthetic::encoder(), Subject { format, ..subject() }).unwrap();
+            Bag::create(&place, synthetic::encoder(), RunDescription { format, ..subject() })
+                .unwrap();
         for tick in 1..=1000 {
             bag.write(&synthetic::packet(tick)).unwrap();
             if tick == 100 {

@@ -15,7 +15,7 @@ use jamgrip::{
         reader::{Channel, Damage, Item, Reader},
         recording::Recording,
         recover,
-        sink::{Bag, Format, Subject},
+        sink::{Bag, Format, RunDescription},
     },
     base::{
         Tick,
@@ -28,8 +28,8 @@ use serde_json::Value;
 
 use crate::{peers, synthetic};
 
-fn subject(format: Format) -> Subject {
-    Subject {
+fn subject(format: Format) -> RunDescription {
+    RunDescription {
         scene_text: "name: synthetic\n".to_owned(),
         scene_files: Vec::new(),
         facts: vec![("tick_ns", synthetic::TICK_NS.to_string())],
@@ -64,8 +64,8 @@ fn recording(folder: &Path) -> PathBuf {
     folder.join(format!("{name}_0.mcap"))
 }
 
-fn course(path: &Path) -> jamgrip::bag::recording::Course {
-    Recording::open(path).unwrap().course_of_all(synthetic::TICK_NS).unwrap()
+fn history(path: &Path) -> jamgrip::bag::recording::RunHistory {
+    Recording::open(path).unwrap().history_without_scene(synthetic::TICK_NS).unwrap()
 }
 
 /// Messages, attachments and damages in the first bytes of a file.
@@ -187,7 +187,7 @@ fn what_was_saved_is_whole_in_other_libraries() {
     let qos = read["mcap"]["qos"]["/tf_static"].as_str().unwrap();
     assert!(qos.contains("durability: transient_local"), "{qos}");
     assert_eq!(read["mcap"]["attachments"]["scene.yaml"], "name: synthetic\n");
-    let (before, after) = (course(&damaged), course(&output));
+    let (before, after) = (history(&damaged), history(&output));
     assert_eq!(before.digests, after.digests);
     assert_eq!(before.commands, after.commands);
     assert!(after.broken_at.is_none() && after.gap_after.is_none());
@@ -296,10 +296,10 @@ fn killed_a_hundred_times_nothing_that_was_flushed_is_lost() {
         let output = folder.path().join("saved");
         let saved = recover::recover(&bag, &output).unwrap();
         n_cut += u64::from(saved.damages.iter().any(|(_, it)| matches!(it, Damage::Cut { .. })));
-        let course = course(&output);
-        assert!(flushed <= course.last_tick(), "{flushed} flushed, {} saved", course.last_tick());
-        assert!(course.broken_at.is_none() && course.gap_after.is_none(), "kill {i}");
-        assert_eq!(course.digests[0].0, 1, "kill {i}");
+        let history = history(&output);
+        assert!(flushed <= history.last_tick(), "{flushed} flushed, {} saved", history.last_tick());
+        assert!(history.broken_at.is_none() && history.gap_after.is_none(), "kill {i}");
+        assert_eq!(history.digests[0].0, 1, "kill {i}");
         assert!(Info::read(&output).unwrap().is_whole());
         fs::remove_dir_all(&output).unwrap();
         fs::remove_dir_all(&bag).unwrap();

@@ -8,8 +8,8 @@ use std::{
 
 use jamgrip::{
     bag::{
-        reader::{Channel, Recorded},
-        sink::{Bag, Format, Subject},
+        reader::{Channel, RecordedMessage},
+        sink::{Bag, Format, RunDescription},
     },
     host::shutdown::Shutdown,
     io::sink::Sink,
@@ -23,7 +23,7 @@ use crate::synthetic;
 
 /// Records 400 ms of simulated time in files of 150 ms.
 fn record(folder: &Path) -> Vec<PathBuf> {
-    let subject = Subject {
+    let subject = RunDescription {
         scene_text: String::new(),
         scene_files: Vec::new(),
         facts: Vec::new(),
@@ -55,7 +55,7 @@ impl PlayerOutput for Memory {
         channel.topic != "/jamgrip/grains"
     }
 
-    fn publish(&mut self, message: &Recorded) {
+    fn publish(&mut self, message: &RecordedMessage) {
         self.published.push((message.channel.topic.clone(), message.log_time, now()));
         let n = self.published.len();
         for (_, cue) in self.cues.iter().filter(|(after, _)| *after == n) {

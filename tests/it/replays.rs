@@ -10,7 +10,7 @@ use std::{
 use jamgrip::{
     bag::{
         recording::Recording,
-        sink::{Bag, Format, Subject},
+        sink::{Bag, Format, RunDescription},
     },
     base::{Pose, real::Twist},
     command::{
@@ -334,10 +334,10 @@ fn recordings_of_others_command_a_run() {
     // Oracle: `write_bag.py`: a command every 50 ms from the first message on, the third at 100 ms.
     assert_eq!((code, &summary["commands"]["applied"]), (0, &3.into()), "{summary}");
     let recording = jamgrip::bag::recording::Recording::open(&folder).unwrap();
-    let course = recording.course_of_all(1_000_000).unwrap();
-    let ticks: Vec<u64> = course.commands.iter().map(|it| it.tick).collect();
+    let history = recording.history_without_scene(1_000_000).unwrap();
+    let ticks: Vec<u64> = history.commands.iter().map(|it| it.tick).collect();
     assert_eq!(ticks, [1, 51, 101]);
-    assert_eq!(course.commands[2].cdr, (-2000.0_f64).to_le_bytes());
+    assert_eq!(history.commands[2].cdr, (-2000.0_f64).to_le_bytes());
 }
 
 /// What was done to the world after a tick of the run.
@@ -377,7 +377,8 @@ fn record_changes(folder: &Path, forgets: Option<u64>) {
     let encoder = Arc::new(Encoder::new(&scene, &mesh.triangles, &mesh.positions));
     let facts = vec![("tick_ns", "1000000".to_owned())];
     let scene_text = jamgrip::scene::to_yaml(&scene);
-    let subject = Subject { scene_text, scene_files: vec![], facts, format: Format::default() };
+    let subject =
+        RunDescription { scene_text, scene_files: vec![], facts, format: Format::default() };
     let mut bag = Bag::create(folder, encoder, subject).unwrap();
     let packet = |session: &Session| Packet::new(take::snapshot(session, Parts::default()), None);
     for tick in 0..=130 {
@@ -420,14 +421,14 @@ fn what_is_done_to_the_world_between_ticks_is_recorded_and_done_again() {
     }
     let checked = jamgrip::bag::check::check(&folder).unwrap();
     assert!(!checked.iter().any(|it| it.is_error), "{checked:?}");
-    let course = Recording::open(&folder).unwrap().course_of_all(1_000_000).unwrap();
-    let what: Vec<_> = course.changes.iter().map(|it| (it.tick, it.what.as_str())).collect();
+    let history = Recording::open(&folder).unwrap().history_without_scene(1_000_000).unwrap();
+    let what: Vec<_> = history.changes.iter().map(|it| (it.tick, it.what.as_str())).collect();
     assert_eq!(what[1], (30, "object `ball` added"));
     assert_eq!(what[10], (100, "reset of time, state, added objects"));
     // No checkpoints while there are other objects than the scene's: after 100 it was not yet reset.
-    let ticks: Vec<u64> = course.checkpoints.iter().map(|it| it.tick).collect();
+    let ticks: Vec<u64> = history.checkpoints.iter().map(|it| it.tick).collect();
     assert_eq!(ticks, [0, 20, 60, 80, 120]);
-    let commands: Vec<u64> = course.commands.iter().map(|it| it.tick).collect();
+    let commands: Vec<u64> = history.commands.iter().map(|it| it.tick).collect();
     assert_eq!(commands, [1, 11, 71, 81, 101, 111], "ticks of the run, whatever became of time");
 }
 

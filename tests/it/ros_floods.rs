@@ -111,7 +111,7 @@ fn ten_thousand_commands_a_second_change_no_bit() {
         let (n_sent, flood_s) = flooder.join().unwrap();
         program.end();
 
-        let course = Recording::open(&bag).unwrap().course_of_all(1_000_000).unwrap();
+        let course = Recording::open(&bag).unwrap().history_without_scene(1_000_000).unwrap();
         let digests: Vec<u64> = course.digests.iter().map(|it| it.1).collect();
         let last = usize::try_from(TICKS).unwrap();
         assert_eq!((digests.len(), course.gap_after), (2 * last + 1, None));

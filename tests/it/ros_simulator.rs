@@ -80,7 +80,7 @@ fn is_verified(bag: &str) {
     assert!(verdict["ticks"].as_u64().is_some_and(|it| 50 < it), "{verdict}");
     assert_eq!(verdict["remarks"], serde_json::json!([]));
     let recording = jamgrip::bag::recording::Recording::open(Path::new(bag)).unwrap();
-    let course = recording.course_of_all(1_000_000).unwrap();
+    let course = recording.history_without_scene(1_000_000).unwrap();
     assert!(5 < course.changes.len(), "the tool resets, places, spawns and deletes");
     assert_eq!(course.broken_at, None);
 }
@@ -372,7 +372,7 @@ fn names_on_the_command_line_are_those_in_the_graph() {
         program.end();
         // The recording's own topics are below the node as well, and are found there.
         let recording = jamgrip::bag::recording::Recording::open(&bag).unwrap();
-        let course = recording.course_of_all(1_000_000).unwrap();
+        let course = recording.history_without_scene(1_000_000).unwrap();
         assert_eq!((course.last_tick(), course.broken_at), (3, None));
         let metadata = std::fs::read_to_string(bag.join("metadata.yaml")).unwrap();
         assert!(metadata.contains("/left/grip/world_change") && !metadata.contains("/jamgrip/"));

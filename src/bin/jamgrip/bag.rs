@@ -19,7 +19,7 @@ use jamgrip::{
         play::{self, Played},
         player_command::{CommandRequest, PlayerCommand},
         recorded_run::RecordedRun,
-        segment::{Difference, Kind},
+        segment::{Difference, DifferenceKind},
         verify::{self, VerifyReport},
     },
     scene::Scene,
@@ -76,7 +76,7 @@ fn verify(args: &Replay) -> Result<ExitCode, Box<dyn Error>> {
     let verdict = verify::verify(
         &again,
         &verify::Options {
-            hands: args.hands(),
+            cpu_budget: args.cpu_budget(),
             settles: args.settle,
             from_ns: nanoseconds(args.start.unwrap_or(0.0)),
             to_ns: args.end.map(nanoseconds),
@@ -103,7 +103,7 @@ fn tell(out: &mut impl Write, verdict: &VerifyReport) -> io::Result<()> {
         writeln!(out, "{remark}")?;
     }
     let VerifyReport { n_ticks, n_compared, start_tick, real_time_factor, .. } = verdict;
-    let ((n_jobs, n_threads), n_checkpoints) = (verdict.shared_out, verdict.n_checkpoints);
+    let ((n_jobs, n_threads), n_checkpoints) = (verdict.jobs_and_threads, verdict.n_checkpoints);
     writeln!(
         out,
         "{n_ticks} ticks simulated from tick {start_tick} on at {real_time_factor:.3} x real time \
@@ -111,11 +111,13 @@ fn tell(out: &mut impl Write, verdict: &VerifyReport) -> io::Result<()> {
          {n_compared} digests and {n_checkpoints} checkpoints compared"
     )?;
     match &verdict.first_difference {
-        Some(Difference { tick, kind: Kind::Digest { recorded, simulated } }) => writeln!(
-            out,
-            "tick {tick} differs: {recorded:016x} is recorded, {simulated:016x} was simulated"
-        ),
-        Some(Difference { tick, kind: Kind::Checkpoint(part) }) => {
+        Some(Difference { tick, kind: DifferenceKind::Digest { recorded, simulated } }) => {
+            writeln!(
+                out,
+                "tick {tick} differs: {recorded:016x} is recorded, {simulated:016x} was simulated"
+            )
+        }
+        Some(Difference { tick, kind: DifferenceKind::Checkpoint(part) }) => {
             writeln!(out, "checkpoint at tick {tick} differs, although the digests do not: {part}")
         }
         None if verdict.is_interrupted => writeln!(out, "interrupted; all equal so far"),
