@@ -33,7 +33,7 @@ use jamgrip::{
             jamgrip_msgs::VacuumState,
             rosgraph_msgs::Clock,
         },
-        topics::{Common, OfObject, Topic, common, of_object, topics},
+        topics::{CommonTopic, ObjectTopic, Topic, common, object_topic, topics},
     },
 };
 
@@ -112,11 +112,11 @@ struct Eyes {
 impl Eyes {
     fn open(node: &Arc<RosNode>, topics: &[Topic]) -> Result<Self, RosError> {
         Ok(Self {
-            clock: node.subscription(&topics[common(Common::Clock)])?,
-            wrench: node.subscription(&topics[common(Common::Wrench)])?,
-            flange: node.subscription(&topics[common(Common::FlangePose)])?,
-            object: node.subscription(&topics[of_object(0, OfObject::Pose)])?,
-            vacuum: node.subscription(&topics[common(Common::VacuumState)])?,
+            clock: node.subscription(&topics[common(CommonTopic::Clock)])?,
+            wrench: node.subscription(&topics[common(CommonTopic::Wrench)])?,
+            flange: node.subscription(&topics[common(CommonTopic::FlangePose)])?,
+            object: node.subscription(&topics[object_topic(0, ObjectTopic::Pose)])?,
+            vacuum: node.subscription(&topics[common(CommonTopic::VacuumState)])?,
             contact_force: None,
             flange_pose: None,
             object_pose: None,
@@ -189,7 +189,7 @@ struct Hands {
 
 impl Hands {
     fn open(node: &Arc<RosNode>, scene: &Scene, topics: &[Topic]) -> Result<Self, RosError> {
-        let needed = [common(Common::VacuumCommand), common(Common::FlangePoseCommand)];
+        let needed = [common(CommonTopic::VacuumCommand), common(CommonTopic::FlangePoseCommand)];
         let open = |(index, topic): (usize, &Topic)| {
             if needed.contains(&index) {
                 node.publisher(topic).map(|it| Some((topic.name.clone(), it)))

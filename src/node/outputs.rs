@@ -74,7 +74,7 @@ impl OutputSinks {
 
     #[cfg(feature = "shm")]
     fn take_stream_fault(&mut self) -> Option<String> {
-        self.stream.as_mut()?.take_fault()
+        self.stream.as_mut()?.take_error()
     }
 
     #[cfg(not(feature = "shm"))]

@@ -66,7 +66,7 @@ impl Plant for Session {
 
     fn encoder(&self, before: &Encoder) -> Option<Encoder> {
         let mesh = &self.coupled().model.membrane.mesh;
-        Some(before.of_scene(self.scene(), &mesh.triangles, &mesh.positions))
+        Some(before.with_scene(self.scene(), &mesh.triangles, &mesh.positions))
     }
 
     fn substep_s(&self) -> f64 {

@@ -1,7 +1,7 @@
 //! A session at its first tick: with a settled bag from the cache, or settled now and kept.
 
 use crate::host::{
-    cache::{Cache, Found},
+    cache::{Cache, Lookup},
     progress_bar::Progress,
 };
 use crate::{
@@ -42,13 +42,13 @@ pub fn start(
     let key = compiled.start_digest();
     let scene = compiled.scene.clone();
     let compiled = match cache.load(key) {
-        Found::Nothing => compiled,
-        Found::Damaged(path) => {
+        Lookup::Missing => compiled,
+        Lookup::Damaged(path) => {
             let path = path.display();
             progress.say(&format!("start state {path}: the file is damaged; it is settled anew"));
             compiled
         }
-        Found::State(bytes) => match Session::from_start_state(compiled, &bytes) {
+        Lookup::State(bytes) => match Session::from_start_state(compiled, &bytes) {
             Ok(session) => return Ok(Started { session, origin: "cached" }),
             Err(error) => {
                 progress.say(&error);

@@ -22,7 +22,7 @@ use crate::{
     scene::{self, Scene, SceneError},
     session::Session,
     wire::{
-        from_ros::{CommandCodec, NotACommand},
+        from_ros::{CommandCodec, CommandDecodeError},
         topics::topics,
     },
 };
@@ -93,7 +93,7 @@ pub enum ReplayError {
         /// Its tick.
         tick: u64,
         /// The error in the command.
-        error: NotACommand,
+        error: CommandDecodeError,
     },
     /// A recorded change cannot be applied.
     #[error("after tick {tick} (recorded by jamgrip {version}): {what}: {reason}")]

@@ -25,7 +25,7 @@ use serde::{Serialize, Serializer, ser::SerializeTuple};
 
 use crate::wire::{
     to_ros::Encoder,
-    topics::{Common, Message, Qos, Topic, common},
+    topics::{CommonTopic, Message, Qos, Topic, common},
 };
 use crate::{
     io::{
@@ -254,7 +254,7 @@ impl RosSink {
     /// If a topic cannot be opened.
     pub fn new(node: &Arc<RosNode>, encoder: &Arc<Encoder>) -> Result<Self, RosError> {
         let open = |(index, topic): (usize, &Topic)| {
-            let is_external = index == common(Common::Clock) && encoder.follows_clock();
+            let is_external = index == common(CommonTopic::Clock) && encoder.follows_clock();
             if topic.is_input || is_external {
                 return Ok(None);
             }
@@ -314,7 +314,7 @@ impl Sink for RosSink {
             self.send(&self.encoder.ready(packet.snapshot.time_ns))?;
         }
         self.published.report(packet.number);
-        self.clock = messages.iter().find(|it| it.topic == common(Common::Clock)).cloned();
+        self.clock = messages.iter().find(|it| it.topic == common(CommonTopic::Clock)).cloned();
         sent.map_err(Into::into)
     }
 

@@ -1,5 +1,5 @@
-//! Cases on threads: as many at a time as asked for, each on a single thread of its own pool, so
-//! that what comes out does not depend on how many run side by side.
+//! Runs cases in parallel. Each case runs on a single thread with its own pool, so that the results
+//! do not depend on how many run at the same time.
 
 use std::sync::{
     Mutex,
@@ -13,30 +13,30 @@ use super::{
 use crate::runner::{experiment::LoadedExperiment, progress::ProgressBoard};
 use crate::{base::parallel, host::shutdown::Shutdown};
 
-/// One case to be carried out.
+/// A case to run.
 pub(super) struct Job<'a> {
-    /// What it belongs to.
+    /// Its experiment.
     pub(super) loaded: &'a LoadedExperiment<'a>,
-    /// Where it is kept, if anywhere.
+    /// Its folder, if any.
     pub(super) folder: Option<&'a Folder>,
     /// Its name.
     pub(super) case: &'a str,
 }
 
 impl Job<'_> {
-    /// Experiment and case.
+    /// Names of experiment and case.
     pub(super) fn title(&self) -> String {
         format!("{} {}", self.loaded.identity.experiment, self.case)
     }
 
-    /// Seconds that it is expected to take, if that is known.
+    /// Expected run time (s), if known.
     pub(super) fn expected_s(&self) -> Option<f64> {
         self.loaded.plan.expected_s(self.case)
     }
 }
 
-/// Carries out all jobs; returns how each ended, in their order.
-pub(super) fn work(
+/// Runs all jobs. Returns how each of them ended, in their order.
+pub(super) fn run_all(
     jobs: &[Job<'_>],
     n_threads: usize,
     shutdown: &Shutdown,
@@ -51,7 +51,7 @@ pub(super) fn work(
             scope.spawn(|| {
                 while let Some(&i) = queue.get(next.fetch_add(1, Ordering::Relaxed)) {
                     let line = progress.begin(i);
-                    let end = parallel::lead(pool, || case::carry_out(&jobs[i], shutdown, &line));
+                    let end = parallel::lead(pool, || case::run_case(&jobs[i], shutdown, &line));
                     line.end(&end);
                     *ends[i].lock().expect("nothing panics under this lock") = Some(end);
                 }
@@ -65,7 +65,7 @@ pub(super) fn work(
     Ok(ends.into_iter().map(end).collect())
 }
 
-/// The order in which jobs are begun: the longest first, those of unknown length as they come.
+/// The order in which jobs are started: the longest first; jobs of unknown length come before.
 pub(super) fn queue(jobs: &[Job<'_>]) -> Vec<usize> {
     let mut queue: Vec<usize> = (0..jobs.len()).collect();
     let length = |i: usize| jobs[i].expected_s().unwrap_or(f64::INFINITY);

@@ -17,7 +17,7 @@ use jamgrip::{
         folder::Policy,
         outcome::Outcome,
         report,
-        table::{self, Look},
+        table::{self, TableLayout},
         validation_doc,
     },
 };
@@ -42,8 +42,8 @@ fn run_changed(
 ) -> Result<Ending, RunnerError> {
     let shutdown = experiment.stop.as_ref().map_or_else(Shutdown::default, |it| it.0.clone());
     let overrides = overrides.iter().map(|it| (*it).to_owned()).collect();
-    let order = RunRequest { experiment, size: Size::Quick, overrides, scene: None };
-    let tasks = [Task { order, out: out.map(Path::to_owned) }];
+    let request = RunRequest { experiment, size: Size::Quick, overrides, scene: None };
+    let tasks = [Task { request, out: out.map(Path::to_owned) }];
     runner::run(&tasks, &Options { n_threads, is_quiet: true, policy, shutdown: &shutdown })
 }
 
@@ -69,7 +69,7 @@ fn with(also: &[&str]) -> Oscillator {
 #[test]
 fn cases_side_by_side_give_what_one_after_the_other_gives() {
     let one = outcome(run(&with(&[]), None, 1, Policy::default()));
-    assert!(one.rows.len() == 3 && one.n_red() == 0, "{:?}", one.rows);
+    assert!(one.rows.len() == 3 && one.n_failed() == 0, "{:?}", one.rows);
     assert!(one.cases.iter().all(|case| case.wall_s.contains_key("swinging")));
     for n_threads in [2, 7] {
         let many = outcome(run(&with(&[]), None, n_threads, Policy::default()));
@@ -82,8 +82,9 @@ fn cases_side_by_side_give_what_one_after_the_other_gives() {
 fn experiments_share_one_queue_and_keep_their_order() {
     let experiments = [with(&["growing"]), with(&[])];
     let task = |experiment| {
-        let order = RunRequest { experiment, size: Size::Full, overrides: Vec::new(), scene: None };
-        Task { order, out: None }
+        let request =
+            RunRequest { experiment, size: Size::Full, overrides: Vec::new(), scene: None };
+        Task { request, out: None }
     };
     let tasks = [task(&experiments[0]), task(&experiments[1])];
     let shutdown = Shutdown::default();
@@ -106,7 +107,7 @@ fn a_scene_file_takes_the_place_of_the_scene_that_comes_along() {
         let scene = Some(file.clone());
         let (size, overrides) = (Size::Quick, Vec::new());
         let tasks = [Task {
-            order: RunRequest { experiment: &experiment, size, overrides, scene },
+            request: RunRequest { experiment: &experiment, size, overrides, scene },
             out: None,
         }];
         let shutdown = Shutdown::default();
@@ -131,14 +132,15 @@ fn a_case_that_fails_stops_no_other_and_is_a_red_row() {
     assert!(!found.is_complete());
     assert_eq!(timeless(alone.clone()).cases, timeless(found.clone()).cases[..3]);
     assert_eq!(found.rows[..3], alone.rows);
-    let fault = |i: usize| found.cases[i].fault.clone().unwrap();
+    let fault = |i: usize| found.cases[i].error.clone().unwrap();
     assert!(fault(3).contains("height [m] of oscillator") && fault(3).contains("damp it"));
     assert_eq!(fault(4), "the program failed: on purpose");
     let red: Vec<&str> =
         found.rows.iter().filter(|row| !row.pass).map(|row| row.id.as_str()).collect();
     assert_eq!(red, ["oscillator.growing.ran_to_its_end", "oscillator.panicking.ran_to_its_end"]);
     assert!(
-        table::of_one(&found, Look::new(None)).contains("RED oscillator.growing.ran_to_its_end")
+        table::of_one(&found, TableLayout::new(None))
+            .contains("FAIL oscillator.growing.ran_to_its_end")
     );
 }
 
@@ -243,10 +245,10 @@ fn files_tell_what_was_found() {
 #[test]
 fn documents_and_tables_name_every_row() {
     let found = outcome(run(&with(&["growing"]), None, 2, Policy::default()));
-    let told = validation_doc::tell(std::slice::from_ref(&found));
+    let told = validation_doc::files(std::slice::from_ref(&found));
     let document = &told[0].1;
     assert_eq!((told.len(), told[1].0.as_str()), (2, "figures/oscillator_quick_1.svg"));
-    let screen = table::of_all(std::slice::from_ref(&found), Look::new(Some(110)));
+    let screen = table::of_all(std::slice::from_ref(&found), TableLayout::new(Some(110)));
     let first_column: String = screen.lines().filter_map(|it| it.split('┆').next()).collect();
     let first_column = first_column.replace(['│', ' '], "");
     for row in &found.rows {
@@ -257,7 +259,7 @@ fn documents_and_tables_name_every_row() {
     let in_table = |line: &&str| line.starts_with(['│', '┌', '├', '└']);
     assert!(screen.lines().filter(in_table).all(|line| line.chars().count() <= 110));
     assert!(screen.contains("3 of 4 rows pass") && screen.contains("left validity"), "{screen}");
-    let rows: Vec<_> = found.rows_for_machines().collect();
+    let rows: Vec<_> = found.rows_as_json().collect();
     assert_eq!(rows.len(), 4);
     for key in ["id", "quantity", "unit", "oracle", "tolerance", "measured", "pass", "reason"] {
         assert!(rows.iter().all(|row| !row[key].is_null()), "{key}");
@@ -270,7 +272,7 @@ fn documents_and_tables_name_every_row() {
 #[test]
 fn the_validation_document_is_made_of_the_kept_results() {
     let kept = validation_doc::read(Path::new("tests/golden/validation")).unwrap();
-    let told = validation_doc::tell(&kept);
+    let told = validation_doc::files(&kept);
     let is_ours = |name: &String| name == "validation.md" || name.starts_with("figures/");
     assert!(told.iter().all(|(name, _)| is_ours(name)), "only these may be replaced");
     if std::env::var_os("JAMGRIP_UPDATE").is_some() {

@@ -21,7 +21,7 @@ use jamgrip::{
             },
             std_msgs::Float64,
         },
-        topics::{Common, common, topics},
+        topics::{CommonTopic, common, topics},
     },
 };
 
@@ -49,9 +49,9 @@ fn flood(node: &RosNode, stopped: &mpsc::Receiver<()>) -> (u32, f64) {
     pose.pose.position.x = f64::NAN;
     let unknown = ObjectCommand { object: "nobody".to_owned(), ..Default::default() };
     let commands = [
-        (Common::VacuumCommand, Float64 { data: f64::NAN }.to_cdr()),
-        (Common::FlangePoseCommand, pose.to_cdr()),
-        (Common::ObjectCommand, unknown.to_cdr()),
+        (CommonTopic::VacuumCommand, Float64 { data: f64::NAN }.to_cdr()),
+        (CommonTopic::FlangePoseCommand, pose.to_cdr()),
+        (CommonTopic::ObjectCommand, unknown.to_cdr()),
     ];
     let mouths = commands.map(|(topic, cdr)| {
         let topic = &all[common(topic)];

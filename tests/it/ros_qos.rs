@@ -6,7 +6,7 @@ use jamgrip::{
         node::{RosNode, RosSink, policies},
         service::{Raw, RawCdr},
     },
-    wire::topics::{Common, Qos, common},
+    wire::topics::{CommonTopic, Qos, common},
 };
 use rustdds::{
     DataReaderStatus, DomainParticipant, StatusEvented, TopicKind, no_key::SimpleDataReader,
@@ -80,7 +80,7 @@ fn each_topic_reaches_each_kind_of_subscriber_that_may_hear_it() {
         let encoder = synthetic::encoder();
         let mut sink = RosSink::new(&here, &encoder).unwrap();
         // Sent before anyone is there, and never again.
-        let once = [Common::TfStatic, Common::MembraneMesh].map(common);
+        let once = [CommonTopic::TfStatic, CommonTopic::MembraneMesh].map(common);
         let mut ears = Vec::new();
         for (i, topic) in encoder.topics().iter().enumerate().filter(|(_, it)| !it.is_input) {
             for &(ref node, is_reliable, is_latched) in &there {

@@ -128,7 +128,7 @@ fn another_process_reads_and_may_die() {
     let output = reader.wait_with_output().unwrap();
     let said = String::from_utf8(output.stdout).unwrap();
     assert!(output.status.success() && said.contains("3000 grains down to 498.0 mm"), "{said}");
-    let fault = stream.take_fault();
+    let fault = stream.take_error();
     assert_eq!(stream.counters().n_failed, 0, "{fault:?}");
 }
 
