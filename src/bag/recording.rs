@@ -181,13 +181,13 @@ impl Recording {
 impl RunHistory {
     /// The last checkpoint at or before a tick.
     pub fn checkpoint_before(&self, tick: u64) -> Option<&CheckpointLocation> {
-        let n = self.checkpoints.partition_point(|place| place.tick <= tick);
+        let n = self.checkpoints.partition_point(|it| it.tick <= tick);
         self.checkpoints[..n].last()
     }
 
     /// The checkpoint after a tick.
     pub fn checkpoint_at(&self, tick: u64) -> Option<&CheckpointLocation> {
-        self.checkpoint_before(tick).filter(|place| place.tick == tick)
+        self.checkpoint_before(tick).filter(|it| it.tick == tick)
     }
 
     /// The digest of the state after a tick.
@@ -330,7 +330,7 @@ impl HistoryReader {
             self.history.digests = self.statistics_digests;
             self.history.digests.dedup();
         }
-        self.history.checkpoints.sort_by_key(|place| place.tick);
+        self.history.checkpoints.sort_by_key(|it| it.tick);
         self.history
     }
 }

@@ -109,13 +109,13 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let cache = Cache::new(folder.path().to_owned());
         cache.store(7, b"a settled state").unwrap();
-        let whole = fs::read(cache.path(7)).unwrap();
-        for cut in 0..whole.len() {
-            fs::write(cache.path(7), &whole[..cut]).unwrap();
+        let stored = fs::read(cache.path(7)).unwrap();
+        for cut in 0..stored.len() {
+            fs::write(cache.path(7), &stored[..cut]).unwrap();
             assert_eq!(cache.load(7), Lookup::Damaged(cache.path(7)), "cut to {cut} bytes");
         }
-        for flipped in 0..whole.len() {
-            let mut bytes = whole.clone();
+        for flipped in 0..stored.len() {
+            let mut bytes = stored.clone();
             bytes[flipped] ^= 1;
             fs::write(cache.path(7), &bytes).unwrap();
             assert_eq!(cache.load(7), Lookup::Damaged(cache.path(7)), "byte {flipped} flipped");

@@ -126,7 +126,7 @@ pub fn branch(
     let bytes = state_after(run, tick, options.n_threads)?;
     let begin = |compiled: Compiled, _: &Progress| {
         let resumed = Session::resume(compiled, &bytes);
-        let session = resumed.map_err(|fault| RunError::Replay(Box::new(fault)))?;
+        let session = resumed.map_err(|error| RunError::Replay(Box::new(error)))?;
         Ok(Started { session, origin: "branched" })
     };
     let script = run.script()?;

@@ -159,10 +159,10 @@ impl<'a> LoadedExperiment<'a> {
         let (mut facts, mut records, mut failures) = (Vec::new(), Vec::new(), Vec::new());
         for (name, end) in self.cases.iter().zip(ends) {
             match end {
-                CaseEnd::Finished(kept) => {
-                    facts.push(facts_of(&kept.record));
-                    programs.extend(kept.programs);
-                    records.push(kept.record);
+                CaseEnd::Finished(finished) => {
+                    facts.push(facts_of(&finished.record));
+                    programs.extend(finished.programs);
+                    records.push(finished.record);
                 }
                 CaseEnd::Failed(error) => {
                     failures.push(self.failure(name, &error));

@@ -148,7 +148,7 @@ fn cases(outcome: &Outcome) -> Markup {
     html! {
         section {
             h2 { "Cases and validity" }
-            p { "Each case runs on one thread. Largest values, in red beyond their limits:  "
+            p { "Each case runs on one thread. Largest values, in red beyond their limits: "
                 "overlap over diameter " (number(OVERLAP_LIMIT)) ", unbalanced force over contact "
                 "force at rest " (number(UNBALANCED_LIMIT)) ", inertial number in stages that should  "
                 "be quasi-static " (number(INERTIAL_LIMIT)) "." }

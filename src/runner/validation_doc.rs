@@ -88,7 +88,8 @@ fn markdown(outcomes: &[Outcome]) -> String {
         let name = &it.experiment;
         let anchor = it.name();
         let (size, n_rows, n_failed) = (size_name(it.size), it.rows.len(), it.n_failed());
-        let validity = if it.left_validity.is_empty() { "kept" } else { "left, see below" };
+        let validity =
+            if it.left_validity.is_empty() { "within limits" } else { "violated, see below" };
         let wall = duration(it.wall_s);
         line(
             &mut text,

@@ -92,7 +92,7 @@ impl Simulator {
         let found = resource::object(uri, resource_string, &self.folder);
         let mut object = found.map_err(|error| failed(code(&error), error))?;
         object.name = self.name(request, &object.name, world)?;
-        self.place(&mut object, request, world)?;
+        self.set_pose(&mut object, request, world)?;
         let name = object.name.clone();
         self.change(&Change::Insert(Box::new(object.clone())), world).map_err(|error| {
             let code = match error {
@@ -125,36 +125,36 @@ impl Simulator {
             return Err(failed(SpawnResult::NAMESPACE_INVALID, reason));
         }
         let default_name = if is_word(default_name) { default_name } else { "object" };
-        let wanted = if request.name.is_empty() { default_name } else { &request.name };
-        if !is_word(wanted) || NAME_MAX < wanted.len() {
+        let requested = if request.name.is_empty() { default_name } else { &request.name };
+        if !is_word(requested) || NAME_MAX < requested.len() {
             let reason = format!(
-                "`{wanted}` is not a valid name: start with a letter, use letters, digits and _, at \
+                "`{requested}` is not a valid name: start with a letter, use letters, digits and _, at \
                 most {NAME_MAX} characters"
             );
             return Err(failed(SpawnResult::NAME_INVALID, reason));
         }
-        let wanted = match namespace {
-            "" => wanted.to_owned(),
-            _ => format!("{namespace}/{wanted}"),
+        let requested = match namespace {
+            "" => requested.to_owned(),
+            _ => format!("{namespace}/{requested}"),
         };
         let is_in_use = |name: &str| {
             [FLANGE, BAG, TABLE].contains(&name)
                 || world.snapshot.objects.iter().any(|it| it.name == name)
                 || self.scene.objects.iter().any(|it| it.name == name)
         };
-        if !is_in_use(&wanted) {
-            return Ok(wanted);
+        if !is_in_use(&requested) {
+            return Ok(requested);
         }
         if !request.allow_renaming && !request.name.is_empty() {
-            let reason = format!("the name `{wanted}` is already in use");
+            let reason = format!("the name `{requested}` is already in use");
             return Err(failed(SpawnResult::NAME_NOT_UNIQUE, reason));
         }
-        let numbered = (1_u64..).map(|i| format!("{wanted}_{i}")).find(|it| !is_in_use(it));
-        Ok(numbered.unwrap_or(wanted))
+        let numbered = (1_u64..).map(|i| format!("{requested}_{i}")).find(|it| !is_in_use(it));
+        Ok(numbered.unwrap_or(requested))
     }
 
     /// Places the center of mass at the requested pose.
-    fn place(
+    fn set_pose(
         &self,
         object: &mut Object,
         request: &SpawnEntity,
