@@ -15,11 +15,8 @@ use crate::{
             body::BodyMotion,
             wall::{WallModel, WallShape},
         },
-        contact::{
-            law::{PairLaw, Surface},
-            stiffness_at_vertex,
-        },
-        critical_step::critical_step,
+        critical_step::{critical_step, stiffness_at_vertex},
+        law::{PairLaw, Surface},
         membrane::{
             CARRIER_ID, FREE, MembraneModel, Sheet,
             bar::Bar,
@@ -166,6 +163,10 @@ fn frame() -> BodyMotion {
 /// Lets everything keep a share of its velocities.
 fn drag(system: &mut System, share: Real) {
     let State { grains, membrane, .. } = &mut system.state;
-    let all = grains.velocities.iter_mut().chain(&mut grains.spins).chain(&mut membrane.velocities);
+    let all = grains
+        .velocities
+        .iter_mut()
+        .chain(&mut grains.angular_velocities)
+        .chain(&mut membrane.velocities);
     all.for_each(|it| *it *= share);
 }

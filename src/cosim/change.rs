@@ -9,7 +9,10 @@ use super::{
     rapier_world::RapierWorld,
 };
 use crate::{
-    base::{Pose, Real, Vec3, real::Twist},
+    base::{
+        Pose, Real, Vec3,
+        real::{Twist, real},
+    },
     command::change::ChangeRefused,
     physics::{
         State,
@@ -17,7 +20,6 @@ use crate::{
             body::BodyMotion,
             shape::{Bulk, Surface},
         },
-        measure::real,
         model::{BodyModel, BodySurface},
     },
     scene::{Object, Scene},
@@ -223,7 +225,7 @@ fn carry(state: &mut State, pose: &Pose) {
     let grains = &mut state.grains;
     for i in 0..grains.positions.len() {
         grains.velocities[i] = velocity(&grains.velocities[i], &grains.positions[i]);
-        grains.spins[i] = turn * (grains.spins[i] - flange.twist.angular);
+        grains.angular_velocities[i] = turn * (grains.angular_velocities[i] - flange.twist.angular);
         grains.positions[i] = place(&grains.positions[i]);
     }
     let membrane = &mut state.membrane;
@@ -232,8 +234,11 @@ fn carry(state: &mut State, pose: &Pose) {
         membrane.positions[i] = place(&membrane.positions[i]);
     }
     let springs = &mut state.springs;
-    for spring in
-        springs.pairs.iter_mut().chain(&mut springs.walls).chain(&mut springs.spheres.springs)
+    for spring in springs
+        .pairs
+        .iter_mut()
+        .chain(&mut springs.walls.springs)
+        .chain(&mut springs.spheres.springs)
     {
         *spring = turn * *spring;
     }

@@ -15,12 +15,11 @@ pub mod volume; // whether places overlap
 use crate::{
     base::{
         Pose, Real, Vec3,
-        real::{Twist, Wrench},
+        real::{Twist, Wrench, real},
     },
     physics::{
         Controls, Model, Scratch, State,
         boundary::{body::BodyMotion, wall::CARRIER},
-        measure::real,
         substep,
     },
 };

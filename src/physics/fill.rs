@@ -10,11 +10,10 @@ use serde::{Deserialize, Serialize};
 use super::{
     Controls, Model, Scratch, State,
     boundary::body::BodyMotion,
-    contact::law::PairLaw,
     health::{self, Diverged},
-    measure::real,
+    law::PairLaw,
     membrane::{CARRIER_ID, MembraneState, mesh::Mesh},
-    neighbours::weigh_pairs,
+    neighbours::update_pair_masses,
     packing::sphere_volume,
     state::{Grains, Springs},
     substep,
@@ -23,7 +22,7 @@ use crate::{
     base::{
         Real, Vec3,
         random::{Random, Stream},
-        real::{Twist, count},
+        real::{Twist, count, real},
     },
     scene::Scene,
 };
@@ -315,7 +314,7 @@ impl Filling {
             self.state.grains.radii[i] = scale * radius;
             self.state.grains.masses[i] = sphere_volume(scale * radius) * self.recipe.density;
         }
-        weigh_pairs(&self.state, &mut self.scratch.neighbours);
+        update_pair_masses(&self.state, &mut self.scratch.neighbours);
     }
 
     /// The stage after `stage`, without those that have nothing to do.
@@ -413,12 +412,12 @@ fn scatter(scene: &Scene, recipe: &Recipe) -> State {
         grains: Grains {
             positions: local.iter().map(in_world).collect(),
             velocities: vec![Vec3::zeros(); n],
-            spins: vec![Vec3::zeros(); n],
+            angular_velocities: vec![Vec3::zeros(); n],
             masses: radii.iter().map(|&r| sphere_volume(r) * recipe.density).collect(),
             radii,
         },
         membrane,
-        springs: Springs::none(n, 1, 0),
+        springs: Springs::none(n, 0),
         pair_ids: Vec::new(),
         gauge: 0.0,
         walls: vec![BodyMotion { pose, twist: Twist::zero() }],

@@ -33,7 +33,7 @@ impl System {
     /// Grains at rest in `model`, its membrane in its reference shape, walls at `walls`.
     pub fn at_rest(model: Model, walls: Vec<BodyMotion>, grains: Grains) -> Self {
         let n_samples = model.membrane.mesh.n_vertices() + model.membrane.mesh.triangles.len();
-        let springs = Springs::none(grains.len(), walls.len(), n_samples * model.bodies.len());
+        let springs = Springs::none(grains.len(), n_samples * model.bodies.len());
         let state = State {
             grains,
             membrane: MembraneState::at_rest(&model.membrane.mesh),

@@ -8,7 +8,7 @@ use super::{
 use crate::{
     base::{Real, Vec3, real::Wrench},
     cosim::{Coupled, FLANGE},
-    physics::measure,
+    measure,
     session::Session,
 };
 
@@ -57,7 +57,7 @@ pub fn view<'a>(session: &'a Session, seen: &'a Snapshot) -> View<'a> {
         snapshot: seen,
         grain_positions: &state.grains.positions,
         grain_velocities: &state.grains.velocities,
-        grain_spins: &state.grains.spins,
+        grain_spins: &state.grains.angular_velocities,
         grain_radii: &state.grains.radii,
         grain_normal_forces: session.normal_forces(),
         vertex_positions: &state.membrane.positions,
@@ -144,7 +144,7 @@ fn contacts(coupled: &Coupled) -> Vec<ContactSnapshot> {
     let Coupled { model, scratch, .. } = coupled;
     let n_samples = scratch.sample_forces.len() / model.bodies.len().max(1);
     let of_objects = scratch.sample_forces.iter().take(n_samples * coupled.n_objects()).enumerate();
-    let touching = of_objects.filter(|(_, sample)| 0.0 < sample.overlap);
+    let touching = of_objects.filter(|(_, sample)| sample.flags.touches());
     touching
         .map(|(index, sample)| ContactSnapshot {
             object: index / n_samples,

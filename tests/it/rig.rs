@@ -8,7 +8,7 @@ use jamgrip::{
             body::BodyMotion,
             wall::{WallModel, WallShape},
         },
-        contact::law::{PairLaw, Surface},
+        law::{PairLaw, Surface},
         membrane::{CARRIER_ID, MembraneModel, MembraneState, Sheet, mesh::Mesh},
         model::ChamberModel,
         state::{Grains, Springs},
@@ -64,7 +64,7 @@ impl Rig {
         let state = State {
             grains: Grains::default(),
             membrane: MembraneState::at_rest(&mesh),
-            springs: Springs::none(0, 1, 0),
+            springs: Springs::none(0, 0),
             pair_ids: Vec::new(),
             gauge: 0.0,
             walls: vec![BodyMotion { pose: flange, twist: Twist::zero() }],
@@ -111,12 +111,12 @@ impl Rig {
         let grains = &mut self.state.grains;
         grains.positions.push(position);
         grains.velocities.push(velocity);
-        grains.spins.push(Vec3::zeros());
+        grains.angular_velocities.push(Vec3::zeros());
         grains.radii.push(radius);
         grains.masses.push(4.0 / 3.0 * std::f64::consts::PI * radius.powi(3) * density);
         self.model.radius_max = self.model.radius_max.max(radius);
         self.model.radius_mean = radius;
-        self.state.springs = Springs::none(grains.positions.len(), 1, 0);
+        self.state.springs = Springs::none(grains.positions.len(), 0);
         self.scratch = Scratch::new(&self.model);
     }
 
@@ -133,7 +133,7 @@ impl Rig {
             let momentum = grains.velocities[i] * grains.masses[i];
             linear += momentum;
             angular += grains.positions[i].cross(&momentum)
-                + grains.spins[i] * (0.4 * grains.masses[i] * grains.radii[i].powi(2));
+                + grains.angular_velocities[i] * (0.4 * grains.masses[i] * grains.radii[i].powi(2));
         }
         (linear, angular)
     }
@@ -144,7 +144,7 @@ impl Rig {
         let of_grain = |i: usize| {
             let inertia = 0.4 * grains.masses[i] * grains.radii[i].powi(2);
             0.5 * grains.masses[i] * grains.velocities[i].norm_squared()
-                + 0.5 * inertia * grains.spins[i].norm_squared()
+                + 0.5 * inertia * grains.angular_velocities[i].norm_squared()
         };
         (0..grains.len()).map(of_grain).sum()
     }

@@ -5,7 +5,7 @@ use std::cell::RefCell;
 
 use super::{Heard, Latency, LatencyError, N_FIRST, latency, listener::Samples, percentiles};
 use crate::{
-    base::{Real, Tick, parallel},
+    base::{Real, Tick, parallel, real::real_of},
     benchmarks::{
         BenchError, Options,
         packing::{Boxed, Phase},
@@ -16,7 +16,7 @@ use crate::{
     },
     host::clock::{Stopwatch, wall_ns},
     node::plant::Plant,
-    physics::{System, health::Diverged, measure::real_of},
+    physics::{System, health::Diverged},
     session::Session,
     simulator::WorldAccess,
     snapshot::{Parts, Snapshot, take, view::View},

@@ -18,11 +18,8 @@ use crate::{
             shape::Surface as BodyShape,
             wall::{WallModel, WallShape},
         },
-        contact::{
-            self,
-            law::{PairLaw, Surface},
-        },
-        critical_step::critical_step,
+        critical_step::{critical_step, stiffness_at_vertex},
+        law::{PairLaw, Surface},
         membrane::{CARRIER_ID, FREE, MembraneModel, MembraneState, Sheet, mesh::Mesh},
         model::{BodyModel, BodySurface, ChamberModel},
         packing::{Growth, Recipe, Room, first_scale, scatter, sphere_volume},
@@ -129,8 +126,8 @@ fn model(scene: &Scene, case: &Case, mut membrane: MembraneModel, n_outer: usize
     let radius = scene.grains.radius_max;
     let vacuum = scene.protocol.vacuum;
     let area = membrane.mesh.vertex_areas().into_iter().fold(0.0, Real::max);
-    let pressed = contact::stiffness_at_vertex(&membrane, &sheet_law, radius, vacuum)
-        + contact::stiffness(&object_law, scene.object.radius, vacuum * area);
+    let pressed = stiffness_at_vertex(&membrane, &sheet_law, radius, vacuum)
+        + object_law.stiffness(scene.object.radius, vacuum * area);
     // Before the vertices are held: those that are do not count.
     membrane.holders.fill(FREE);
     let critical = critical_step(scene.grains.radius_min, &material, &membrane, pressed);
@@ -176,12 +173,12 @@ fn scattered(
         grains: Grains {
             positions,
             velocities: vec![Vec3::zeros(); n],
-            spins: vec![Vec3::zeros(); n],
+            angular_velocities: vec![Vec3::zeros(); n],
             masses: final_radii.iter().map(|&r| sphere_volume(r) * density).collect(),
             radii,
         },
         membrane,
-        springs: Springs::none(n, 1, n_samples),
+        springs: Springs::none(n, n_samples),
         pair_ids: Vec::new(),
         gauge: 0.0,
         walls: vec![BodyMotion { pose: Pose::identity(), twist: Twist::zero() }],

@@ -1,7 +1,10 @@
 //! One or two grains with a plane or a sheet, by hand, moved by the substeps of the simulation.
 
 use crate::{
-    base::{Pose, Real, Vec3, real::Twist},
+    base::{
+        Pose, Real, Vec3,
+        real::{Twist, real},
+    },
     experiments::{oracles::impact::Collision, record::Record},
     physics::{
         Controls, Model, Scratch, State, System,
@@ -9,8 +12,7 @@ use crate::{
             body::BodyMotion,
             wall::{WallModel, WallShape},
         },
-        contact::law::{PairLaw, Surface},
-        measure::real,
+        law::{PairLaw, Surface},
         membrane::{CARRIER_ID, MembraneModel, MembraneState, Sheet, mesh::Mesh},
         model::ChamberModel,
         state::{Grains, Springs},
@@ -76,7 +78,7 @@ impl Bench {
         let state = State {
             grains: Grains::default(),
             membrane: MembraneState::at_rest(&membrane.mesh),
-            springs: Springs::none(0, 1, 0),
+            springs: Springs::none(0, 0),
             pair_ids: Vec::new(),
             gauge: 0.0,
             walls: walls.clone(),
@@ -113,13 +115,13 @@ impl Bench {
         let grains = &mut state.grains;
         grains.positions.push(position);
         grains.velocities.push(Vec3::zeros());
-        grains.spins.push(Vec3::zeros());
+        grains.angular_velocities.push(Vec3::zeros());
         grains.radii.push(radius);
         grains.masses.push(mass(radius, density));
         model.radius_max = model.radius_max.max(radius);
         model.radius_mean = radius;
         model.skin = 0.1 * model.radius_max;
-        state.springs = Springs::none(grains.positions.len(), 1, 0);
+        state.springs = Springs::none(grains.positions.len(), 0);
         *scratch = Scratch::new(model);
     }
 
@@ -153,10 +155,8 @@ impl Bench {
     /// Normal force between the grains, or of the plane [N].
     pub(super) fn normal_force(&self) -> Real {
         match self.grains().len() {
-            1 => self.system.scratch.wall_forces[0].normal,
-            _ => {
-                self.system.scratch.pair_forces.first().map_or(0.0, |pair| pair.signed_normal.abs())
-            }
+            1 => self.system.scratch.wall_forces.first().map_or(0.0, |wall| wall.normal),
+            _ => self.system.scratch.pair_forces.first().map_or(0.0, |pair| pair.normal),
         }
     }
 
@@ -168,7 +168,7 @@ impl Bench {
             let momentum = grains.velocities[i] * grains.masses[i];
             linear += momentum;
             angular += grains.positions[i].cross(&momentum)
-                + grains.spins[i] * (0.4 * grains.masses[i] * grains.radii[i].powi(2));
+                + grains.angular_velocities[i] * (0.4 * grains.masses[i] * grains.radii[i].powi(2));
         }
         (linear, angular)
     }
@@ -179,7 +179,7 @@ impl Bench {
         let of_grain = |i: usize| {
             let inertia = 0.4 * grains.masses[i] * grains.radii[i].powi(2);
             0.5 * grains.masses[i] * grains.velocities[i].norm_squared()
-                + 0.5 * inertia * grains.spins[i].norm_squared()
+                + 0.5 * inertia * grains.angular_velocities[i].norm_squared()
         };
         (0..grains.len()).map(of_grain).sum()
     }
@@ -245,7 +245,7 @@ impl Flight {
         let mut bench = Bench::on_plane(&self.material, self.surface, dt);
         bench.add_grain(Vec3::z() * self.radius, self.radius, self.material.density);
         bench.grains_mut().velocities[0] = self.velocity;
-        bench.grains_mut().spins[0] = self.spin;
+        bench.grains_mut().angular_velocities[0] = self.spin;
         let met = bench.collide();
         note_overlap(record, met.overlap_max / (2.0 * self.radius));
         (bench, met)
@@ -305,7 +305,7 @@ impl Encounter {
         for (i, x) in [-self.radii[0], self.radii[1]].into_iter().enumerate() {
             bench.add_grain(high + Vec3::x() * x, self.radii[i], self.densities[i]);
             bench.grains_mut().velocities[i] = Vec3::x() * self.speeds[i];
-            bench.grains_mut().spins[i] = self.spins[i];
+            bench.grains_mut().angular_velocities[i] = self.spins[i];
         }
         let met = bench.collide();
         note_overlap(record, met.overlap_max / (self.radii[0] + self.radii[1]));

@@ -14,15 +14,12 @@
 
 use super::{Law, Line, judge, scene::Scene};
 use crate::{
-    base::{Real, Vec3},
+    base::{Real, Vec3, real::real},
     experiments::{
         findings::{Expected, Findings},
         record::Record,
     },
-    physics::{
-        measure::real,
-        membrane::{MembraneModel, MembraneScratch, MembraneState, Sheet, forces, mesh::Mesh},
-    },
+    physics::membrane::{MembraneModel, MembraneScratch, MembraneState, Sheet, forces, mesh::Mesh},
 };
 
 pub(super) struct Plate;

@@ -2,7 +2,7 @@
 
 use crate::{
     base::{Real, Vec3},
-    physics::{contact::law, membrane::Sheet},
+    physics::{law, membrane::Sheet},
     scene::{
         Material,
         quantity::{ANGLE, DENSITY, IMPULSE, LENGTH, PRESSURE, SPEED, TIME, TORQUE},

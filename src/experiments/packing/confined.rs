@@ -22,15 +22,15 @@ use crate::{
         random::{Random, Stream},
         real::Twist,
     },
+    measure::{enclosed_volume, packing, stress},
     physics::{
         Model, System,
         boundary::{
             body::BodyMotion,
             wall::{WallModel, WallShape},
         },
-        contact::law::{self, PairLaw},
         health::Diverged,
-        measure::{enclosed_volume, packing, stress},
+        law::{self, PairLaw},
         membrane::{CARRIER_ID, FREE, MembraneModel, Sheet, mesh::Mesh},
         model::ChamberModel,
         packing::{Grown, Growth, Recipe, Room, first_scale, grow, scatter, sphere_volume},

@@ -10,21 +10,25 @@ use super::{
     scene::{Pull, Scene},
 };
 use crate::{
-    base::{Pose, Real, Vec3, real::Twist},
+    base::{
+        Pose, Real, Vec3,
+        real::{Twist, real, real_of},
+    },
     experiments::{
         Progress, ResumeError, Run, StartError,
         record::{Column, Record},
         saved_run,
     },
+    measure::packing,
     physics::{
         Controls, Model, Scratch, State, System,
         boundary::{
             body::BodyMotion,
             wall::{WallModel, WallShape},
         },
-        contact::{self, law::PairLaw, sums},
+        contact::sums,
         health::Diverged,
-        measure::{packing, real, real_of},
+        law::PairLaw,
         membrane::{CARRIER_ID, FREE, MembraneModel, MembraneState, SheetContact, critical_step},
         model::ChamberModel,
         state::{Grains, Springs},
@@ -187,7 +191,7 @@ impl Ride {
         *v = self.along * speed;
         *x = before + *v * dt;
         (x.z, v.z) = (height, fall);
-        grains.spins[0] = Vec3::zeros();
+        grains.angular_velocities[0] = Vec3::zeros();
         self.n_done += 1;
         if !self.behind.is_empty() && (*x - self.start).dot(&self.along) >= self.period {
             self.set_back();
@@ -307,7 +311,7 @@ fn model(scene: &Scene, case: &Case, patch: Patch) -> Model {
         let holder = |&is_on_rim: &bool| if is_on_rim { CARRIER_ID } else { FREE };
         membrane.holders = membrane.mesh.is_on_rim.iter().map(holder).collect();
         membrane.scale_rest_lengths(1.0 / (1.0 + scene.frame.stretch));
-        let stiffness = contact::stiffness(&law, contact_radius, case.weight(scene));
+        let stiffness = law.stiffness(contact_radius, case.weight(scene));
         let longest = SAFETY * critical_step::critical_step(&membrane, stiffness);
         substep = substep.min(longest);
     } else {
@@ -336,7 +340,7 @@ fn state(scene: &Scene, model: &Model, start: Vec3) -> State {
     State {
         grains: Grains::at_rest(vec![start], vec![scene.ball.radius], vec![mass(scene)]),
         membrane: MembraneState::at_rest(&model.membrane.mesh),
-        springs: Springs::none(1, model.walls.len(), 0),
+        springs: Springs::none(1, 0),
         pair_ids: Vec::new(),
         gauge: 0.0,
         walls: vec![BodyMotion { pose: Pose::identity(), twist: Twist::zero() }],

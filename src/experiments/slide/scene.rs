@@ -2,7 +2,7 @@
 
 use crate::{
     base::Real,
-    physics::{contact::law, membrane::Sheet},
+    physics::{law, membrane::Sheet},
     scene::{
         Material,
         quantity::{FORCE, IMPULSE, LENGTH, SPEED, TIME, TORQUE},

@@ -18,11 +18,8 @@ use crate::{
             body::BodyMotion,
             wall::{WallModel, WallShape},
         },
-        contact::{
-            law::{PairLaw, Surface},
-            stiffness_at_vertex,
-        },
-        critical_step::{RAYLEIGH_SHARE, rayleigh_time},
+        critical_step::{RAYLEIGH_SHARE, rayleigh_time, stiffness_at_vertex},
+        law::{PairLaw, Surface},
         membrane::{
             FREE, MembraneModel, SheetContact,
             critical_step::critical_step_at,

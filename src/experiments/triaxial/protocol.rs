@@ -17,11 +17,11 @@ use super::{
     time_series::Logbook,
 };
 use crate::{
-    base::Real,
+    base::{Real, real::real},
+    measure as packing_measure,
     physics::{
         System,
         health::Diverged,
-        measure::{self as packing_measure, real},
         packing::{
             Grown, Growth, Laws,
             grow::{self, Progress as Grow},
@@ -319,7 +319,8 @@ impl Test {
     fn damp(&mut self, rate: Real) {
         let left = 1.0 - rate * self.course.substep;
         let state = &mut self.system.state;
-        let of_grains = state.grains.velocities.iter_mut().chain(&mut state.grains.spins);
+        let of_grains =
+            state.grains.velocities.iter_mut().chain(&mut state.grains.angular_velocities);
         of_grains.chain(&mut state.membrane.velocities).for_each(|it| *it *= left);
     }
 

@@ -7,9 +7,9 @@ use super::{
     scene::Setup,
 };
 use crate::{
-    base::Real,
+    base::{Real, real::real},
     experiments::{Progress, ResumeError, Run, Stepped, record::Record, saved_run},
-    physics::{health::Diverged, measure::real, membrane::mesh::MeshFault, state::State},
+    physics::{health::Diverged, membrane::mesh::MeshFault, state::State},
 };
 
 /// Contacts and vertices that a slice goes over: about a tenth of a second.

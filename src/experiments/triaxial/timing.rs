@@ -10,14 +10,13 @@ use super::{
     scene::Setup,
 };
 use crate::{
-    base::{Real, digest::Digest},
-    experiments::{Progress, ResumeError, Run, record::Record, saved_run},
-    physics::{
-        State,
-        health::Diverged,
-        measure::{real, real_of},
-        membrane::mesh::MeshFault,
+    base::{
+        Real,
+        digest::Digest,
+        real::{real, real_of},
     },
+    experiments::{Progress, ResumeError, Run, record::Record, saved_run},
+    physics::{State, health::Diverged, membrane::mesh::MeshFault},
 };
 
 /// Stage in which both are made ready.

@@ -4,7 +4,7 @@
 use super::body::BodyMotion;
 use crate::{
     base::{Real, Vec3},
-    physics::contact::law::PairLaw,
+    physics::law::PairLaw,
 };
 
 /// The first wall carries the bag; a gripper's is the flange, whose inner face is the plate.
