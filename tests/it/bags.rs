@@ -269,7 +269,7 @@ fn fill(disk: &Path) {
     let folder = disk.join("bag");
     fs::write(disk.join("other"), vec![0; 9 << 20]).unwrap();
     let error = create(&folder).err().unwrap();
-    assert!(error.to_string().contains("at least 4 MiB of room"), "{error}");
+    assert!(error.to_string().contains("at least 4 MiB of free space"), "{error}");
     fs::remove_file(disk.join("other")).unwrap();
     let mut bag = create(&folder).unwrap();
     let reporter = bag.reporter();
@@ -277,7 +277,7 @@ fn fill(disk: &Path) {
         .find_map(|tick| bag.write(&synthetic::incompressible_packet(tick)).err())
         .unwrap();
     let text = fault.to_string();
-    assert!(text.contains("the disk is full after") && text.contains("make room"), "{text}");
+    assert!(text.contains("the disk is full after") && text.contains("free some space"), "{text}");
     // The same fault for every packet from now on; closing has nothing left to do.
     assert_eq!(bag.write(&synthetic::packet(100_000)).unwrap_err().to_string(), text);
     bag.close().unwrap();

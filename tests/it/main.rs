@@ -20,7 +20,7 @@ mod generated_types; // msgs/*.msg and the Rust types agree
 mod grains; // one, two and three grains
 mod gripper; // the gripper experiment, coarse
 mod hollow_sphere; // an object in an evacuated shell of grains
-mod lab; // experiments: side by side, stopped and resumed, told in files
+mod runner; // experiments: in parallel, stopped and resumed, result files
 mod leaks; // what comes through the membranes
 mod lifts; // whole runs: what is lifted, and what is not
 #[cfg(feature = "ros")]

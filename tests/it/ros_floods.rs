@@ -31,8 +31,8 @@ use jamgrip::{
 
 use crate::{
     coarse,
-    private_network::{inside, reach},
-    ros_program::{Client, Running, wait_until},
+    private_network::{discovery_range, inside},
+    ros_program::{Client, Program, wait_until},
 };
 
 /// Commands that are asked for [Hz].
@@ -86,17 +86,17 @@ fn ten_thousand_commands_change_no_bit() {
     inside("ros_floods::ten_thousand_commands_change_no_bit", || {
         let folder = tempfile::tempdir().unwrap();
         let bag = folder.path().join("bag");
-        let program = Running::start_with(folder.path(), &[], &["--bag", bag.to_str().unwrap()]);
-        let node = RosNode::join_as("operator", &reach()).unwrap();
+        let program = Program::start_with(folder.path(), &[], &["--bag", bag.to_str().unwrap()]);
+        let node = RosNode::join_as("operator", &discovery_range()).unwrap();
         let mut set = Client::of::<srv::SetSimulationState>(&node, "set_simulation_state");
         let mut reset = Client::of::<srv::ResetSimulation>(&node, "reset_simulation");
         let mut step = Client::of::<srv::StepSimulation>(&node, "step_simulation");
         let state = SimulationState { state: SimulationState::STATE_PAUSED };
-        let answer: SetSimulationStateResponse = set.ask(&SetSimulationStateRequest { state });
+        let answer: SetSimulationStateResponse = set.call(&SetSimulationStateRequest { state });
         assert_eq!(answer.result.result, SimResult::RESULT_OK);
         let mut episode = || {
             let since = now();
-            let answer: StepSimulationResponse = step.ask(&StepSimulationRequest { steps: TICKS });
+            let answer: StepSimulationResponse = step.call(&StepSimulationRequest { steps: TICKS });
             assert_eq!(
                 answer.result.result,
                 SimResult::RESULT_OK,
@@ -112,7 +112,7 @@ fn ten_thousand_commands_change_no_bit() {
         let flooder = std::thread::spawn({
             let n_sent = Arc::clone(&n_sent);
             move || {
-                let other = RosNode::join_as("flooder", &reach()).unwrap();
+                let other = RosNode::join_as("flooder", &discovery_range()).unwrap();
                 flood(&other, &stopped, &n_sent)
             }
         });
@@ -120,7 +120,7 @@ fn ten_thousand_commands_change_no_bit() {
         let n_before = n_sent.load(Ordering::Relaxed);
         let mut loud_s = Vec::new();
         while n_sent.load(Ordering::Relaxed) < n_before + COMMANDS_MIN {
-            let answer: ResetSimulationResponse = reset.ask(&ResetSimulationRequest { scope });
+            let answer: ResetSimulationResponse = reset.call(&ResetSimulationRequest { scope });
             assert_eq!(answer.result.result, SimResult::RESULT_OK);
             loud_s.push(episode());
             assert!(loud_s.len() < 100, "{n_sent:?} commands in 100 episodes are no flood");

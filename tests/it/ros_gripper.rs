@@ -39,8 +39,8 @@ use jamgrip::{
 
 use crate::{
     by_tick::scene,
-    private_network::{inside, reach},
-    ros_program::{Client, Running, wait_until},
+    private_network::{discovery_range, inside},
+    ros_program::{Client, Program, wait_until},
 };
 
 fn topic(name: &str) -> Topic {
@@ -78,17 +78,17 @@ impl Action {
 
     fn send<G: serde::Serialize>(&mut self, id: u8, goal: G) -> bool {
         let goal_id = UUID { uuid: [id; 16] };
-        let answer: SendGoalResponse = self.send.ask(&SendGoalRequest { goal_id, goal });
+        let answer: SendGoalResponse = self.send.call(&SendGoalRequest { goal_id, goal });
         answer.accepted
     }
 
     fn result<R: serde::de::DeserializeOwned>(&mut self, id: u8) -> GetResultResponse<R> {
-        self.result.ask(&GetResultRequest { goal_id: UUID { uuid: [id; 16] } })
+        self.result.call(&GetResultRequest { goal_id: UUID { uuid: [id; 16] } })
     }
 
     fn cancel(&mut self, id: u8) -> CancelGoalResponse {
         let goal_info = GoalInfo { goal_id: UUID { uuid: [id; 16] }, ..Default::default() };
-        self.cancel.ask(&CancelGoalRequest { goal_info })
+        self.cancel.call(&CancelGoalRequest { goal_info })
     }
 }
 
@@ -102,7 +102,7 @@ const STRONGEST: f64 = 95e3;
 fn set_state(node: &RosNode, state: u8) {
     let mut client = Client::of::<srv::SetSimulationState>(node, "set_simulation_state");
     let state = SimulationState { state };
-    let answer: SetSimulationStateResponse = client.ask(&SetSimulationStateRequest { state });
+    let answer: SetSimulationStateResponse = client.call(&SetSimulationStateRequest { state });
     assert_eq!(answer.result.result, SimResult::RESULT_OK, "{}", answer.result.error_message);
 }
 
@@ -112,8 +112,8 @@ fn set_state(node: &RosNode, state: u8) {
 fn a_gripper_is_driven_by_its_actions() {
     inside("ros_gripper::a_gripper_is_driven_by_its_actions", || {
         let folder = tempfile::tempdir().unwrap();
-        let _program = Running::start(folder.path(), &[]);
-        let node = RosNode::join_as("operator", &reach()).unwrap();
+        let _program = Program::start(folder.path(), &[]);
+        let node = RosNode::join_as("operator", &discovery_range()).unwrap();
         let ready = node.subscription::<Bool>(&topic("/jamgrip/ready")).unwrap();
         let vacuum = node.subscription::<VacuumState>(&topic("/jamgrip/vacuum_state")).unwrap();
         set_state(&node, SimulationState::STATE_PLAYING);
@@ -150,7 +150,7 @@ fn a_gripper_is_driven_by_its_actions() {
         assert!(!parallel.send(7, ParallelGripperCommandGoal { command: other }));
 
         let mut grip_cmd = Client::of::<SetBool>(&node, "grip_cmd");
-        let answer: SetBoolResponse = grip_cmd.ask(&SetBoolRequest { data: true });
+        let answer: SetBoolResponse = grip_cmd.call(&SetBoolRequest { data: true });
         assert!(answer.success, "{}", answer.message);
         let is_set = |it: VacuumState| (it.gauge_setpoint + STRONGEST).abs() < 1e-6;
         wait_until("full vacuum", || last(&vacuum).is_some_and(is_set));
@@ -164,8 +164,8 @@ fn goals_are_cancelled_and_replaced() {
     inside("ros_gripper::goals_are_cancelled_and_replaced", || {
         let folder = tempfile::tempdir().unwrap();
         // A pump that takes its time, so that goals are still on their way.
-        let _program = Running::start(folder.path(), &["chamber.lag=20 s"]);
-        let node = RosNode::join_as("operator", &reach()).unwrap();
+        let _program = Program::start(folder.path(), &["chamber.lag=20 s"]);
+        let node = RosNode::join_as("operator", &discovery_range()).unwrap();
         set_state(&node, SimulationState::STATE_PLAYING);
         let mut gripper = Action::of::<action::GripperCommand>(&node, "gripper_cmd");
         assert!(gripper.send(1, grip(1.0, 0.0)));
@@ -190,15 +190,15 @@ fn goals_are_cancelled_and_replaced() {
 fn the_wrist_sensor_is_set_to_zero() {
     inside("ros_gripper::the_wrist_sensor_is_set_to_zero", || {
         let folder = tempfile::tempdir().unwrap();
-        let _program = Running::start(folder.path(), &["outputs.state_rate=1000 Hz"]);
-        let node = RosNode::join_as("operator", &reach()).unwrap();
+        let _program = Program::start(folder.path(), &["outputs.state_rate=1000 Hz"]);
+        let node = RosNode::join_as("operator", &discovery_range()).unwrap();
         let wrench = node.subscription::<WrenchStamped>(&topic("/jamgrip/flange/wrench")).unwrap();
         wait_until("the sensor", || 0 < node.n_writers("/jamgrip/flange/wrench"));
         set_state(&node, SimulationState::STATE_PAUSED);
         let mut step = Client::of::<srv::StepSimulation>(&node, "step_simulation");
         let mut zero = Client::of::<Trigger>(&node, "zero_ftsensor");
         let mut read = |until_ns: u32| {
-            let answer: StepSimulationResponse = step.ask(&StepSimulationRequest { steps: 50 });
+            let answer: StepSimulationResponse = step.call(&StepSimulationRequest { steps: 50 });
             assert_eq!(answer.result.result, SimResult::RESULT_OK);
             let mut found = None;
             wait_until("the wrench of the last tick", || {
@@ -209,7 +209,7 @@ fn the_wrist_sensor_is_set_to_zero() {
         };
         let before = read(50_000_000);
         assert!(before < -0.5, "the gripper weighs {before} N");
-        let answer: TriggerResponse = zero.ask(&TriggerRequest::default());
+        let answer: TriggerResponse = zero.call(&TriggerRequest::default());
         assert!(answer.success, "{}", answer.message);
         let after = read(100_000_000);
         assert!(after.abs() < 0.02 * before.abs(), "{after} N after zeroing {before} N");
@@ -258,7 +258,7 @@ impl Controller {
     fn episode(&self, n: u32) -> EntityState {
         let mut reset = Client::of::<srv::ResetSimulation>(&self.node, "reset_simulation");
         let scope = ResetSimulationRequest::SCOPE_ALL;
-        let answer: ResetSimulationResponse = reset.ask(&ResetSimulationRequest { scope });
+        let answer: ResetSimulationResponse = reset.call(&ResetSimulationRequest { scope });
         assert_eq!(answer.result.result, SimResult::RESULT_OK, "{}", answer.result.error_message);
         // The reset publishes the start, so that nothing older is still to come.
         wait_until("the clock of the reset", || {
@@ -278,7 +278,7 @@ impl Controller {
 fn look(node: &RosNode) -> EntityState {
     let mut client = Client::of::<srv::GetEntityState>(node, "get_entity_state");
     let entity = "cylinder".to_owned();
-    let answer: GetEntityStateResponse = client.ask(&GetEntityStateRequest { entity });
+    let answer: GetEntityStateResponse = client.call(&GetEntityStateRequest { entity });
     answer.state
 }
 
@@ -292,8 +292,8 @@ fn a_controller_in_lockstep_misses_no_tick() {
     inside("ros_gripper::a_controller_in_lockstep_misses_no_tick", || {
         let folder = tempfile::tempdir().unwrap();
         let changes = ["topics.lockstep=wait_command", "outputs.pressure_rate=1000 Hz"];
-        let _program = Running::start(folder.path(), &changes);
-        let node = RosNode::join_as("controller", &reach()).unwrap();
+        let _program = Program::start(folder.path(), &changes);
+        let node = RosNode::join_as("controller", &discovery_range()).unwrap();
         let vacuum = node.subscription::<VacuumState>(&topic("/jamgrip/vacuum_state")).unwrap();
         let controller = Controller {
             clock: node.subscription::<Clock>(&topic("/clock")).unwrap(),
@@ -328,8 +328,8 @@ fn time_follows_the_clock_of_another_simulator() {
     inside("ros_gripper::time_follows_the_clock_of_another_simulator", || {
         let folder = tempfile::tempdir().unwrap();
         let changes = ["topics.lockstep=external_clock", "outputs.state_rate=1000 Hz"];
-        let _program = Running::start(folder.path(), &changes);
-        let node = RosNode::join_as("other", &reach()).unwrap();
+        let _program = Program::start(folder.path(), &changes);
+        let node = RosNode::join_as("other", &discovery_range()).unwrap();
         let joints = node.subscription::<JointState>(&topic("/jamgrip/joint_states")).unwrap();
         let clock = node.publisher(&topic("/clock")).unwrap();
         wait_until("the node's ear", || 0 < node.n_readers("/clock"));

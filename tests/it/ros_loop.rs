@@ -38,7 +38,7 @@ use jamgrip::{
 use crate::{
     by_tick::{Synthetic, scene},
     peers,
-    private_network::{cyclone_config, inside, inside_with_peers, reach},
+    private_network::{cyclone_config, discovery_range, inside, inside_with_peers},
 };
 
 #[expect(clippy::disallowed_methods, reason = "a limit on how long a test waits")]
@@ -70,8 +70,8 @@ fn encoder() -> Arc<Encoder> {
 #[test]
 fn what_is_published_reaches_our_own_subscribers() {
     inside("ros_loop::what_is_published_reaches_our_own_subscribers", || {
-        let here = RosNode::join(&reach()).unwrap();
-        let there = RosNode::join_as("listener", &reach()).unwrap();
+        let here = RosNode::join(&discovery_range()).unwrap();
+        let there = RosNode::join_as("listener", &discovery_range()).unwrap();
         let mut sink = RosSink::new(&here, &encoder()).unwrap();
         let clock = there.subscription::<Clock>(&topic("/clock")).unwrap();
         let wrench = there.subscription::<WrenchStamped>(&topic("/jamgrip/wrench")).unwrap();
@@ -114,8 +114,8 @@ fn what_is_published_reaches_our_own_subscribers() {
 #[test]
 fn commands_wait_in_order_for_the_next_tick() {
     inside("ros_loop::commands_wait_in_order_for_the_next_tick", || {
-        let here = RosNode::join(&reach()).unwrap();
-        let there = RosNode::join_as("operator", &reach()).unwrap();
+        let here = RosNode::join(&discovery_range()).unwrap();
+        let there = RosNode::join_as("operator", &discovery_range()).unwrap();
         let mut source = RosSource::new(&here, &encoder()).unwrap();
         let seen = Synthetic::new("cylinder").snapshot;
         let flange = there.publisher(&topic("/jamgrip/flange/pose_cmd")).unwrap();
@@ -174,8 +174,8 @@ fn commands_wait_in_order_for_the_next_tick() {
 #[test]
 fn a_flood_of_commands_holds_up_nothing() {
     inside("ros_loop::a_flood_of_commands_holds_up_nothing", || {
-        let here = RosNode::join(&reach()).unwrap();
-        let there = RosNode::join_as("flooder", &reach()).unwrap();
+        let here = RosNode::join(&discovery_range()).unwrap();
+        let there = RosNode::join_as("flooder", &discovery_range()).unwrap();
         let mut source = RosSource::new(&here, &encoder()).unwrap();
         let seen = Synthetic::new("cylinder").snapshot;
         let vacuum = there.publisher(&topic("/jamgrip/vacuum_cmd")).unwrap();
@@ -227,7 +227,7 @@ fn a_flood_of_commands_holds_up_nothing() {
 #[test]
 fn an_independent_dds_hears_and_is_heard() {
     inside_with_peers("ros_loop::an_independent_dds_hears_and_is_heard", || {
-        let node = RosNode::join(&reach()).unwrap();
+        let node = RosNode::join(&discovery_range()).unwrap();
         let encoder = encoder();
         let mut sink = RosSink::new(&node, &encoder).unwrap();
         let mut source = RosSource::new(&node, &encoder).unwrap();
@@ -235,7 +235,7 @@ fn an_independent_dds_hears_and_is_heard() {
         let seconds = std::env::var("JAMGRIP_LOOP_SECONDS").unwrap_or_else(|_| "2".to_owned());
         let mut peer = peers::script("hear_and_say.py")
             .arg(&seconds)
-            .env("ROS_DOMAIN_ID", reach().domain_id.to_string())
+            .env("ROS_DOMAIN_ID", discovery_range().domain_id.to_string())
             .env("CYCLONEDDS_URI", format!("file://{}", cyclone_config(folder.path()).display()))
             .stdout(Stdio::piped())
             .spawn()
