@@ -4,10 +4,7 @@
 //! Segments are started in order and there are never more sessions than jobs, so memory does not
 //! grow with the length of the recording.
 
-use std::sync::{
-    Mutex, PoisonError,
-    atomic::{AtomicU64, AtomicUsize, Ordering},
-};
+use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 
 use super::{
     recorded_run::{RecordedRun, ReplayError},
@@ -15,7 +12,7 @@ use super::{
 };
 use crate::{
     bag::source::Script,
-    host::{clock::Stopwatch, progress_bar::Progress, shutdown::Shutdown},
+    host::{clock::Stopwatch, job_queue::run_jobs, progress_bar::Progress, shutdown::Shutdown},
 };
 
 /// How to divide the processors among simulations.
@@ -51,13 +48,10 @@ pub(super) struct Workers<'a> {
 
 /// The progress of the jobs.
 struct SharedProgress {
-    /// Index of the next segment that no job has taken.
-    next: AtomicUsize,
     /// Index of the first segment with a difference or an error; later segments no longer matter.
     first_failed: AtomicUsize,
     n_ticks: AtomicU64,
     stopwatch: Stopwatch,
-    results: Mutex<Vec<(usize, Result<SegmentResult, ReplayError>)>>,
 }
 
 impl Workers<'_> {
@@ -67,24 +61,18 @@ impl Workers<'_> {
     /// The first error, unless there is a difference before it.
     pub(super) fn simulate(&self, segments: &[Segment<'_>]) -> Result<SegmentResult, ReplayError> {
         let shared = SharedProgress {
-            next: AtomicUsize::new(0),
             first_failed: AtomicUsize::new(usize::MAX),
             n_ticks: AtomicU64::new(0),
             stopwatch: Stopwatch::start(),
-            results: Mutex::default(),
         };
-        std::thread::scope(|scope| {
-            for _ in 0..self.n_jobs {
-                scope.spawn(|| self.work(segments, &shared));
-            }
-        });
-        let mut results = shared.results.into_inner().unwrap_or_else(PoisonError::into_inner);
-        results.sort_by_key(|(i, _)| *i);
+        let queue: Vec<usize> = (0..segments.len()).collect();
+        let results =
+            run_jobs(self.n_jobs, &queue, |_, i| self.simulate_segment(segments, i, &shared));
         let mut all = SegmentResult {
             is_interrupted: self.shutdown.is_requested(),
             ..SegmentResult::default()
         };
-        for (_, result) in results {
+        for result in results {
             all.append(result?);
             if all.first_difference.is_some() {
                 break;
@@ -93,24 +81,29 @@ impl Workers<'_> {
         Ok(all)
     }
 
-    fn work(&self, segments: &[Segment<'_>], shared: &SharedProgress) {
-        loop {
-            let i = shared.next.fetch_add(1, Ordering::SeqCst);
-            let is_over =
-                || self.shutdown.is_requested() || shared.first_failed.load(Ordering::SeqCst) < i;
-            let Some(segment) = segments.get(i).filter(|_| !is_over()) else { return };
-            let first = segments[0].start.tick();
-            let interrupts = || {
-                self.report_progress(first, shared);
-                is_over()
-            };
-            let result =
-                segment.simulate(self.run, self.script.clone(), self.n_threads, &interrupts);
-            if result.as_ref().map_or(true, |it| it.first_difference.is_some()) {
-                shared.first_failed.fetch_min(i, Ordering::SeqCst);
-            }
-            shared.results.lock().unwrap_or_else(PoisonError::into_inner).push((i, result));
+    /// Simulates segment `i`; `None` if it no longer matters.
+    fn simulate_segment(
+        &self,
+        segments: &[Segment<'_>],
+        i: usize,
+        shared: &SharedProgress,
+    ) -> Option<Result<SegmentResult, ReplayError>> {
+        let is_over =
+            || self.shutdown.is_requested() || shared.first_failed.load(Ordering::SeqCst) < i;
+        if is_over() {
+            return None;
         }
+        let first = segments[0].start.tick();
+        let interrupts = || {
+            self.report_progress(first, shared);
+            is_over()
+        };
+        let result =
+            segments[i].simulate(self.run, self.script.clone(), self.n_threads, &interrupts);
+        if result.as_ref().map_or(true, |it| it.first_difference.is_some()) {
+            shared.first_failed.fetch_min(i, Ordering::SeqCst);
+        }
+        Some(result)
     }
 
     /// Reports the progress of all segments together. It is called once for each tick of a segment.

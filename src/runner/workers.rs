@@ -1,17 +1,15 @@
 //! Runs cases in parallel. Each case runs on a single thread with its own pool, so that the results
 //! do not depend on how many run at the same time.
 
-use std::sync::{
-    Mutex,
-    atomic::{AtomicUsize, Ordering},
-};
-
 use super::{
     case::{self, CaseEnd},
     folder::Folder,
 };
 use crate::runner::{experiment::LoadedExperiment, progress::ProgressBoard};
-use crate::{base::parallel, host::shutdown::Shutdown};
+use crate::{
+    base::parallel,
+    host::{job_queue::run_jobs, shutdown::Shutdown},
+};
 
 /// A case to run.
 pub(super) struct Job<'a> {
@@ -44,25 +42,13 @@ pub(super) fn run_all(
 ) -> Result<Vec<CaseEnd>, rayon::ThreadPoolBuildError> {
     let n_threads = n_threads.clamp(1, jobs.len().max(1));
     let pools = (0..n_threads).map(|_| parallel::pool(1)).collect::<Result<Vec<_>, _>>()?;
-    let (queue, next) = (queue(jobs), AtomicUsize::new(0));
-    let ends: Vec<Mutex<Option<CaseEnd>>> = jobs.iter().map(|_| Mutex::new(None)).collect();
-    std::thread::scope(|scope| {
-        for pool in &pools {
-            scope.spawn(|| {
-                while let Some(&i) = queue.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    let line = progress.begin(i);
-                    let end = parallel::lead(pool, || case::run_case(&jobs[i], shutdown, &line));
-                    line.end(&end);
-                    *ends[i].lock().expect("nothing panics under this lock") = Some(end);
-                }
-            });
-        }
+    let ends = run_jobs(n_threads, &queue(jobs), |thread, i| {
+        let line = progress.begin(i);
+        let end = parallel::lead(&pools[thread], || case::run_case(&jobs[i], shutdown, &line));
+        line.end(&end);
+        Some(end)
     });
-    let end = |slot: Mutex<Option<CaseEnd>>| {
-        let end = slot.into_inner().expect("nothing panics under this lock");
-        end.expect("every job was taken from the queue")
-    };
-    Ok(ends.into_iter().map(end).collect())
+    Ok(ends)
 }
 
 /// The order in which jobs are started: the longest first; jobs of unknown length come before.
