@@ -39,7 +39,7 @@ pub struct Info {
 pub struct FileInfo {
     /// Its path.
     pub path: PathBuf,
-    /// Its length [bytes].
+    /// Its length (bytes).
     pub n_bytes: u64,
     /// Number of messages on each topic.
     pub counts: BTreeMap<String, u64>,

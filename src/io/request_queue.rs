@@ -48,7 +48,7 @@ impl RequestQueue {
         self.counters
     }
 
-    /// Takes the error of the last request that could not be decoded, if any since the last request.
+    /// Takes the error of the last request that could not be decoded, if any since the last call.
     pub fn take_error(&mut self) -> Option<String> {
         self.last_error.take()
     }

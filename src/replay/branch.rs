@@ -29,7 +29,7 @@ pub struct Branch {
 /// Why a run cannot be branched.
 #[derive(Debug, thiserror::Error)]
 pub enum BranchError {
-    /// The recorded run cannot be simulated run.
+    /// The recorded run cannot be simulated again.
     #[error(transparent)]
     Replay(#[from] ReplayError),
     /// An override is invalid.

@@ -1,4 +1,4 @@
-//! Verification: simulates a recorded run run and compares every digest.
+//! Verification: simulates a recorded run again and compares every digest.
 
 use super::{
     compatibility,
@@ -78,7 +78,7 @@ impl VerifyReport {
 /// Verifies a recorded run.
 ///
 /// # Errors
-/// If the run cannot be simulated run. A difference is not an error.
+/// If the run cannot be simulated again. A difference is not an error.
 pub fn verify(run: &RecordedRun, options: &Options<'_>) -> Result<VerifyReport, ReplayError> {
     let (history, tick_ns) = (&run.history, run.scene.time.tick_ns);
     let mut remarks = remarks(run);
@@ -119,11 +119,11 @@ pub fn verify(run: &RecordedRun, options: &Options<'_>) -> Result<VerifyReport, 
     })
 }
 
-/// A remark about a scene that was loaded later, when start states are settled anew.
+/// A remark about a scene that was loaded later, when start states are settled again.
 fn not_settled(change: &RecordedChange) -> Option<String> {
     let RecordedChange { tick, what, .. } = change;
     matches!(Change::from_bytes(&change.change), Ok(Change::LoadScene(_))).then(|| {
-        format!("after tick {tick}: {what}: this scene starts as recorded; only the first scene is settled anew")
+        format!("after tick {tick}: {what}: this scene starts as recorded; only the first scene is settled again")
     })
 }
 

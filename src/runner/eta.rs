@@ -39,7 +39,7 @@ impl TimeEstimate {
         Self { n_threads: n_threads.max(1), cases: cases.map(case).collect() }
     }
 
-    /// Case `i` is running: its done fraction at the start of this run and now, and the time
+    /// Case `i` is running: its completed fraction at the start of this run and now, and the time
     /// between (s).
     pub fn running(&mut self, i: usize, start_share: f64, share: f64, wall_s: f64) {
         self.cases[i].state = CaseState::Running { start_share, share, wall_s };

@@ -1,7 +1,7 @@
 //! Runs experiments: cases in parallel, with their state on disk, and results in files and tables.
 //!
 //! A [`LoadedExperiment`] is an experiment whose scene has been read. Its cases run in parallel,
-//! each on one thread. Their results are combined to an [`Outcome`], from which result files,
+//! each on one thread. Their results are combined into an [`Outcome`], from which result files,
 //! tables, reports and documents are made.
 
 mod case; // runs one case

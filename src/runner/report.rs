@@ -51,7 +51,7 @@ fn badges(outcome: &Outcome) -> Markup {
             @if outcome.left_validity.is_empty() {
                 li.good { "within the model's validity" }
             } @else {
-                li.bad { "left the model's validity" }
+                li.bad { "outside the model's validity" }
             }
             li { (outcome.cases.len()) " cases" }
             li { (duration(outcome.wall_s)) " of processor time" }
@@ -69,7 +69,7 @@ fn warnings(outcome: &Outcome) -> Markup {
                     @for (case, error) in failed {
                         li { "Case " b { (case.case) } " failed: " (error) }
                     }
-                    @for it in &outcome.left_validity { li { "Left validity: " (it) } }
+                    @for it in &outcome.left_validity { li { "Outside the model's validity: " (it) } }
                 }
             }
         }
@@ -150,7 +150,7 @@ fn cases(outcome: &Outcome) -> Markup {
             h2 { "Cases and validity" }
             p { "Each case runs on one thread. Largest values, in red beyond their limits: "
                 "overlap over diameter " (number(OVERLAP_LIMIT)) ", unbalanced force over contact "
-                "force at rest " (number(UNBALANCED_LIMIT)) ", inertial number in stages that should  "
+                "force at rest " (number(UNBALANCED_LIMIT)) ", inertial number in stages that should "
                 "be quasi-static " (number(INERTIAL_LIMIT)) "." }
             div.wide { table {
                 thead { tr {

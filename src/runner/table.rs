@@ -65,7 +65,7 @@ pub fn of_one(outcome: &Outcome, layout: TableLayout) -> String {
 /// Violations of the model's validity.
 fn violations(outcome: &Outcome) -> String {
     let left = outcome.left_validity.iter();
-    let left = left.map(|it| format!("{} left validity: {it}\n", outcome.name()));
+    let left = left.map(|it| format!("{}: outside the model's validity: {it}\n", outcome.name()));
     left.collect()
 }
 

@@ -76,13 +76,13 @@ impl EntityTable {
         self.infos.insert(name.to_owned(), info);
     }
 
-    /// Adds a add_spawned object.
+    /// Adds a spawned object.
     pub(super) fn add_spawned(&mut self, scene: &Scene, object: &Object, info: EntityInfo) {
         self.infos.insert(object.name.clone(), info);
         self.measure(scene, object);
     }
 
-    /// Removes all add_spawned objects.
+    /// Removes all spawned objects.
     pub(super) fn remove_spawned(&mut self, scene: &Scene) {
         let is_permanent = |name: &str| {
             [FLANGE, BAG, TABLE].contains(&name) || scene.objects.iter().any(|it| it.name == name)

@@ -247,7 +247,10 @@ fn files_contain_the_outcome() {
         );
     }
     assert!(page_text.contains("pictures 1\n") && page_text.contains(&found.about), "{page_text}");
-    assert!(page_text.contains("Left validity: damping_0.2: overlap over diameter"), "{page_text}");
+    assert!(
+        page_text.contains("Outside the model's validity: damping_0.2: overlap over diameter"),
+        "{page_text}"
+    );
     assert!(page_text.contains("jamgrip experiment oscillator --quick"), "{page_text}");
 }
 
@@ -268,7 +271,10 @@ fn documents_and_tables_contain_every_row() {
     assert!(document.contains("height at the end \\| of the run"), "cells are escaped");
     let in_table = |line: &&str| line.starts_with(['│', '┌', '├', '└']);
     assert!(screen.lines().filter(in_table).all(|line| line.chars().count() <= 110));
-    assert!(screen.contains("3 of 4 rows pass") && screen.contains("left validity"), "{screen}");
+    assert!(
+        screen.contains("3 of 4 rows pass") && screen.contains("outside the model's validity"),
+        "{screen}"
+    );
     let rows: Vec<_> = found.rows_as_json().collect();
     assert_eq!(rows.len(), 4);
     for key in ["id", "quantity", "unit", "oracle", "tolerance", "measured", "pass", "reason"] {
