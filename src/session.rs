@@ -1,5 +1,7 @@
 //! One run in memory: tick, look, save, resume.
 
+use std::sync::Arc;
+
 use serde::{Deserialize, Serialize};
 
 use crate::{
@@ -12,17 +14,18 @@ use crate::{
     command::{
         Command, CommandRecord,
         apply::{CommandProcessor, Frames},
-        change::{Change, ChangeRefused, Scope, SettledScene, TunableParameter},
+        change::{Change, Scope, SettledScene, TunableParameter},
     },
     cosim::{
         Coupled, FLANGE, Inputs, Means,
         compile::{Compiled, retune},
         rapier_world::RapierWorld,
+        refused::ChangeError,
         saved_state::{self, SavedStateError},
     },
     measure,
     physics::{
-        State,
+        State, System,
         boundary::body::BodyMotion,
         fill::{self, Progress},
         health::{self, Diverged},
@@ -58,7 +61,7 @@ pub struct Session {
     records: Vec<CommandRecord>,
     digest: u64,
     normal_forces: Vec<f64>,
-    pool: rayon::ThreadPool,
+    pool: Arc<rayon::ThreadPool>,
 }
 
 /// A run that has stopped between two ticks.
@@ -137,7 +140,7 @@ impl Session {
     pub fn remember_start(&mut self, bytes: &[u8]) -> Result<(), SavedStateError> {
         let saved = Saved::read(bytes)?;
         let state = saved_state::read(saved.state)?;
-        let now = &self.coupled.state;
+        let now = &self.coupled.system.state;
         saved_state::same_counts(&[
             ("grains", state.grains.len(), now.grains.len()),
             ("vertices", state.membrane.positions.len(), now.membrane.positions.len()),
@@ -155,7 +158,8 @@ impl Session {
         if there != own || self.is_loaded {
             return None;
         }
-        let (state, world) = (saved_state::write(&self.coupled.state), self.coupled.world.save());
+        let (state, world) =
+            (saved_state::write(&self.coupled.system.state), self.coupled.world.save());
         let processor = self.processor.save();
         let (tick, run_tick) = (self.tick.0, self.run_tick.0);
         let Wrench { force, torque } = self.sensor_zero;
@@ -182,7 +186,7 @@ impl Session {
         };
         let parts = [
             ("time", [self.tick.0, self.run_tick.0] == [other.tick, other.run_tick]),
-            ("grains and membrane", saved_state::is_same(self.coupled.state.clone(), state)),
+            ("grains and membrane", saved_state::is_same(self.coupled.system.state.clone(), state)),
             ("rigid world", self.coupled.world.save() == other.world),
             ("what was commanded", self.processor.save() == other.processor),
             ("zero of the wrist sensor", bits(sensor_zero) == bits(other.sensor_zero)),
@@ -237,7 +241,7 @@ impl Session {
         self.advance(&inputs);
         self.tick = self.tick.next();
         self.run_tick = self.run_tick.next();
-        let Coupled { state, scratch, .. } = &self.coupled;
+        let System { state, scratch, .. } = &self.coupled.system;
         self.normal_forces = measure::normal_forces(state, scratch);
         self.digest = self.take_digest();
         health::check(state, scratch, self.tick.0)
@@ -247,7 +251,7 @@ impl Session {
     ///
     /// # Errors
     /// If the change cannot be made; nothing is changed then.
-    pub fn change(&mut self, change: &Change) -> Result<(), ChangeRefused> {
+    pub fn change(&mut self, change: &Change) -> Result<(), ChangeError> {
         match change {
             Change::Reset(scope) => self.reset(*scope)?,
             Change::PlaceObject { object, pose, twist } => {
@@ -289,23 +293,23 @@ impl Session {
         if parameter == TunableParameter::ObjectFriction {
             self.start.objects.iter_mut().for_each(|it| it.friction = value);
         }
-        retune(&self.scene, &mut self.coupled.model);
+        retune(&self.scene, &mut self.coupled.system.model);
         self.parameters.retain(|(other, _)| *other != parameter);
         self.parameters.push((parameter, value));
     }
 
     /// Begins another scene; ticks of the run and counts of commands go on.
-    fn load(&mut self, settled: &SettledScene) -> Result<(), ChangeRefused> {
+    fn load(&mut self, settled: &SettledScene) -> Result<(), ChangeError> {
         let SettledScene { scene, start, keeps_time } = settled;
         let [now, then] = [&self.scene, scene].map(|it| it.time.tick_ns);
         if now != then {
             let why = format!("its ticks are {then} ns long, those of this run {now} ns");
-            return Err(ChangeRefused::Unusable(why));
+            return Err(ChangeError::Unusable(why));
         }
-        let compiled = Compiled::new(scene, self.pool.current_num_threads())
-            .map_err(|fault| ChangeRefused::Unusable(fault.to_string()))?;
+        let compiled = Compiled::new(scene, &self.pool)
+            .map_err(|fault| ChangeError::Unusable(fault.to_string()))?;
         let mut next = Self::from_start_state(compiled, start)
-            .map_err(|fault| ChangeRefused::Unusable(fault.to_string()))?;
+            .map_err(|fault| ChangeError::Unusable(fault.to_string()))?;
         next.run_tick = self.run_tick;
         next.is_loaded = true;
         next.processor.count_on(self.processor.counts());
@@ -318,10 +322,10 @@ impl Session {
         Ok(())
     }
 
-    fn reset(&mut self, scope: Scope) -> Result<(), ChangeRefused> {
+    fn reset(&mut self, scope: Scope) -> Result<(), ChangeError> {
         let is_own = |object: &Object| self.start.objects.iter().any(|it| it.name == object.name);
         if scope.state {
-            let start = self.start.state.as_ref().ok_or(ChangeRefused::StartUnknown)?;
+            let start = self.start.state.as_ref().ok_or(ChangeError::StartUnknown)?;
             let added = self.scene.objects.iter().filter(|it| !scope.spawned && !is_own(it));
             self.scene.objects = self.start.objects.iter().chain(added).cloned().collect();
             self.coupled.start_anew(&self.scene, start);
@@ -341,10 +345,10 @@ impl Session {
         Ok(())
     }
 
-    fn insert(&mut self, object: &Object) -> Result<(), ChangeRefused> {
+    fn insert(&mut self, object: &Object) -> Result<(), ChangeError> {
         let mut names = self.scene.objects.iter().chain(&self.start.objects);
         if names.any(|it| it.name == object.name) {
-            return Err(ChangeRefused::NameTaken { object: object.name.clone() });
+            return Err(ChangeError::NameTaken { object: object.name.clone() });
         }
         self.coupled.insert(&self.scene, object)?;
         self.scene.objects.push(object.clone());
@@ -358,11 +362,11 @@ impl Session {
         self.processor.remove(i);
     }
 
-    fn find(&self, object: &str) -> Result<usize, ChangeRefused> {
+    fn find(&self, object: &str) -> Result<usize, ChangeError> {
         let objects = &self.scene.objects;
         objects.iter().position(|it| it.name == object).ok_or_else(|| {
             let known: Vec<&str> = objects.iter().map(|it| it.name.as_str()).collect();
-            ChangeRefused::UnknownObject { object: object.to_owned(), known: known.join(", ") }
+            ChangeError::UnknownObject { object: object.to_owned(), known: known.join(", ") }
         })
     }
 
@@ -374,7 +378,7 @@ impl Session {
     fn frames(&self) -> Frames {
         let world = &self.coupled.world;
         Frames {
-            flange: self.coupled.state.walls[FLANGE].pose,
+            flange: self.coupled.system.state.walls[FLANGE].pose,
             objects: (0..self.coupled.n_objects()).map(|i| world.motion(i).pose).collect(),
         }
     }
@@ -382,7 +386,7 @@ impl Session {
     fn take_digest(&self) -> u64 {
         let mut digest = Digest::new();
         digest.integer(self.tick.0);
-        self.coupled.state.digest(&mut digest);
+        self.coupled.system.state.digest(&mut digest);
         self.coupled.world.digest(&mut digest);
         digest.finish()
     }
@@ -425,7 +429,7 @@ impl Session {
     /// What a wrist sensor feels that was never set to zero: the wrench of the whole gripper on its
     /// mount about the flange's origin, flange axes, mean over the last tick.
     fn sensed(&self) -> Wrench {
-        let to_flange = self.coupled.state.walls[FLANGE].pose.rotation.inverse();
+        let to_flange = self.coupled.system.state.walls[FLANGE].pose.rotation.inverse();
         let Wrench { force, torque } = self.means.gripper_on_mount;
         Wrench { force: to_flange * force, torque: to_flange * torque }
     }
@@ -458,7 +462,7 @@ impl Session {
 
     /// The settled start state as bytes for a cache. Only meaningful before the first tick.
     pub fn start_state(&self) -> Vec<u8> {
-        saved_state::write(&self.coupled.state)
+        saved_state::write(&self.coupled.system.state)
     }
 }
 

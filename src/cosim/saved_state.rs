@@ -7,7 +7,7 @@ use crate::{
     base::{Pose, Quat, Real, Vec3, real::Twist},
     physics::{
         State,
-        boundary::body::BodyMotion,
+        boundary::{body::BodyMotion, motion::WallMemory},
         membrane::MembraneState,
         state::{Grains, ListedSprings, N_PATCHES, Patch, Patches, Springs},
     },
@@ -92,11 +92,34 @@ pub fn write(state: &State) -> Vec<u8> {
         wall_ids: state.springs.walls.ids.clone(),
         walls: state.springs.walls.memories.clone(),
     };
-    // Only cohesive laws have any: without them the bytes are those of earlier versions.
-    if !memories.pairs.is_empty() || !memories.walls.is_empty() {
+    let is_cohesive = !memories.pairs.is_empty() || !memories.walls.is_empty();
+    let moves_by_itself = !state.wall_memory.is_empty();
+    // Only cohesive laws and walls that move by time or load have any: without them the bytes are
+    // those of earlier versions.
+    if is_cohesive || moves_by_itself {
+        let memories = if is_cohesive { memories } else { Memories::default() };
         bytes = postcard::to_extend(&memories, bytes).expect("a list of numbers always serialises");
     }
+    if moves_by_itself {
+        let walls: Vec<[Real; 2]> =
+            state.wall_memory.iter().map(|it| [it.time, it.force]).collect();
+        bytes = postcard::to_extend(&walls, bytes).expect("a list of numbers always serialises");
+    }
     sealed(bytes)
+}
+
+/// What follows the numbers of a state: memories of contacts, then those of walls, if there are any.
+fn read_memories(rest: &[u8]) -> Result<(Memories, Vec<WallMemory>), postcard::Error> {
+    if rest.is_empty() {
+        return Ok((Memories::default(), Vec::new()));
+    }
+    let (memories, rest) = postcard::take_from_bytes(rest)?;
+    if rest.is_empty() {
+        return Ok((memories, Vec::new()));
+    }
+    let walls: Vec<[Real; 2]> = postcard::from_bytes(rest)?;
+    let walls = walls.into_iter().map(|[time, force]| WallMemory { time, force }).collect();
+    Ok((memories, walls))
 }
 
 /// True if both are the same to the bit. As in the digest, only loaded springs count: which empty
@@ -180,14 +203,14 @@ pub(crate) fn unsealed(bytes: &[u8]) -> Result<&[u8], SavedStateError> {
 /// If they are damaged, or their lists do not fit each other.
 pub fn read(bytes: &[u8]) -> Result<State, SavedStateError> {
     let corrupt = SavedStateError::Corrupt { n_bytes: bytes.len() };
-    let (numbers, rest) =
-        postcard::take_from_bytes::<Numbers>(unsealed(bytes)?).map_err(|_| corrupt.clone())?;
+    let (numbers, rest): (Numbers, _) =
+        postcard::take_from_bytes(unsealed(bytes)?).map_err(|_| corrupt.clone())?;
     numbers.check()?;
-    let memories: Memories = match rest {
-        [] => Memories::default(),
-        _ => postcard::from_bytes(rest).map_err(|_| corrupt)?,
-    };
+    let (memories, wall_memory) = read_memories(rest).map_err(|_| corrupt)?;
     let walls = listed_walls(&numbers, memories.wall_ids, memories.walls);
+    if !wall_memory.is_empty() {
+        same_counts(&[("walls' motions", wall_memory.len(), numbers.walls.len())])?;
+    }
     Ok(State {
         grains: Grains {
             positions: vectors(&numbers.grain_positions),
@@ -215,6 +238,7 @@ pub fn read(bytes: &[u8]) -> Result<State, SavedStateError> {
         pair_ids: numbers.pair_ids,
         gauge: numbers.gauge,
         walls: numbers.walls.iter().map(motion).collect(),
+        wall_memory,
     })
 }
 
@@ -324,6 +348,7 @@ mod tests {
             pair_ids: vec![[0, 1], [0, 2]],
             gauge: -1.0,
             walls: vec![motion; 2],
+            wall_memory: Vec::new(),
         }
     }
 

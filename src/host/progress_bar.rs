@@ -10,8 +10,7 @@ use std::{
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-use crate::snapshot::Snapshot;
-use crate::{host::clock::Pacer, node::lift_monitor::contact_force_world};
+use crate::{host::clock::Pacer, snapshot::Snapshot};
 
 /// Ticks between two updates of the line.
 const UPDATE_PERIOD: u64 = 25;
@@ -72,7 +71,7 @@ impl Progress {
         let real_time_factor = pacer.real_time_factor();
         let time = Duration::from_nanos(snapshot.time_ns).as_secs_f64();
         let pressure = snapshot.chamber.gauge / 1e3;
-        let force = contact_force_world(snapshot).z;
+        let force = snapshot.contact_force_world().z;
         self.bar.set_position(snapshot.time_ns);
         self.bar.set_message(format!(
             "{time:7.3} s  {real_time_factor:5.2} x real time  {phase:<9} {pressure:6.1} kPa  \

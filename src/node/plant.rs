@@ -4,10 +4,8 @@ use std::error::Error;
 
 use super::schedule::Parts;
 use crate::{
-    command::{
-        Command,
-        change::{Change, ChangeRefused},
-    },
+    command::{Command, change::Change},
+    cosim::refused::ChangeError,
     physics::health::Diverged,
     session::Session,
     simulator::WorldAccess,
@@ -65,12 +63,12 @@ impl Plant for Session {
     }
 
     fn encoder(&self, before: &Encoder) -> Option<Encoder> {
-        let mesh = &self.coupled().model.membrane.mesh;
+        let mesh = &self.coupled().system.model.membrane.mesh;
         Some(before.with_scene(self.scene(), &mesh.triangles, &mesh.positions))
     }
 
     fn substep_s(&self) -> f64 {
-        self.coupled().model.substep
+        self.coupled().system.model.substep
     }
 
     fn view<'a>(&'a self, seen: &'a Snapshot) -> View<'a> {
@@ -83,7 +81,7 @@ impl WorldAccess for Session {
         take::snapshot(self, Parts::ALL)
     }
 
-    fn change(&mut self, change: &Change) -> Result<(), ChangeRefused> {
+    fn change(&mut self, change: &Change) -> Result<(), ChangeError> {
         Self::change(self, change)
     }
 }

@@ -15,7 +15,7 @@
 
 use super::{
     law::PairLaw,
-    membrane::{MembraneModel, SheetContact, critical_step::critical_step as membrane_limit},
+    membrane::{MembraneContact, MembraneModel, critical_step::critical_step as membrane_limit},
     model::BodyModel,
 };
 use crate::{base::Real, scene::Material};
@@ -52,11 +52,11 @@ pub fn stiffness_at_vertex(
 ) -> Real {
     match membrane.contact {
         // One contact carries the pressure on the grain's square of membrane.
-        SheetContact::Triangles => {
+        MembraneContact::Triangles => {
             law.stiffness(grain_radius, pressure * 4.0 * grain_radius.powi(2))
         }
         // Two grains at one sphere, each with the pressure on the vertex's own share of the membrane.
-        SheetContact::Spheres { radius } => {
+        MembraneContact::Spheres { radius } => {
             let area = membrane.mesh.vertex_areas().into_iter().fold(0.0, Real::max);
             let shared = grain_radius * radius / (grain_radius + radius);
             2.0 * law.stiffness(shared, pressure * area)

@@ -1,5 +1,7 @@
 //! Verification: simulates a recorded run again and compares every digest.
 
+use std::sync::Arc;
+
 use super::{
     compatibility,
     recorded_run::{RecordedRun, ReplayError},
@@ -8,10 +10,11 @@ use super::{
 };
 use crate::{
     bag::recording::RecordedChange,
+    base::parallel,
     command::change::Change,
     cosim::compile::Compiled,
     host::{cache::Cache, clock::Stopwatch, progress_bar::Progress, shutdown::Shutdown},
-    node::start::{self, Started},
+    node::start::{self, StartError, Started},
     session::Session,
 };
 
@@ -144,14 +147,15 @@ fn start<'a>(
         return Err(ReplayError::NoStart { path: run.path.clone(), tick: first });
     }
     let (_, n_threads) = options.cpu_budget.jobs_and_threads(1);
-    let compiled = Compiled::new(&run.scene, n_threads)?;
+    let pool = Arc::new(parallel::pool(n_threads).map_err(StartError::from)?);
+    let compiled = Compiled::new(&run.scene, &pool)?;
     let session = if options.settles {
         let on_progress = &mut |it: crate::physics::fill::Progress| {
             options.progress.settling(it.stage, it.share);
         };
         Session::settle(compiled, on_progress)?
     } else {
-        let started = start::start(compiled, n_threads, &options.cache, options.progress);
+        let started = start::start(compiled, &options.cache, options.progress);
         let Started { session, origin } = started.map_err(ReplayError::from)?;
         let start =
             format!("the recording has no checkpoint: the start was {origin} from the scene");

@@ -14,9 +14,9 @@ use crate::{
     },
     command::{
         apply::{self, object_frame},
-        change::{Change, ChangeRefused},
+        change::Change,
     },
-    cosim::rapier_world::TABLE_HALF,
+    cosim::{rapier_world::TABLE_HALF, refused::ChangeError},
     physics::boundary::shape::Aabb,
     snapshot::Snapshot,
     wire::{
@@ -262,7 +262,7 @@ impl Simulator {
             name => Change::PlaceObject { object: name.to_owned(), pose, twist },
         };
         self.change(&change, world).map_err(|error| match error {
-            ChangeRefused::Overlap { .. } => failed(INVALID, error),
+            ChangeError::Overlap { .. } => failed(INVALID, error),
             _ => failed(SimResult::RESULT_OPERATION_FAILED, error),
         })
     }

@@ -36,10 +36,8 @@ use self::{
 };
 use crate::{
     base::real::Twist,
-    command::{
-        Command,
-        change::{Change, ChangeRefused},
-    },
+    command::{Command, change::Change},
+    cosim::refused::ChangeError,
     io::server::{Outgoing, RequestId, ServiceRequest},
     physics::boundary::shape::Aabb,
     scene::{Outputs, Scene, resource::Shelf},
@@ -61,7 +59,7 @@ pub trait WorldAccess {
     ///
     /// # Errors
     /// If the change is impossible; the world is unchanged then.
-    fn change(&mut self, change: &Change) -> Result<(), ChangeRefused>;
+    fn change(&mut self, change: &Change) -> Result<(), ChangeError>;
 }
 
 /// The world between two ticks, and its last snapshot.
@@ -316,14 +314,14 @@ impl Simulator {
         self.run_state.has_world()
     }
 
-    fn change(&mut self, change: &Change, world: &mut World<'_>) -> Result<(), ChangeRefused> {
+    fn change(&mut self, change: &Change, world: &mut World<'_>) -> Result<(), ChangeError> {
         if !self.has_world() {
-            return Err(ChangeRefused::NoScene);
+            return Err(ChangeError::NoScene);
         }
         self.apply(change, world)
     }
 
-    fn apply(&mut self, change: &Change, world: &mut World<'_>) -> Result<(), ChangeRefused> {
+    fn apply(&mut self, change: &Change, world: &mut World<'_>) -> Result<(), ChangeError> {
         let changed = world.access.change(change);
         if changed.is_ok() {
             self.changed.changes.push(change.clone());

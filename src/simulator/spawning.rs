@@ -10,8 +10,8 @@ use super::{
     failed, ok,
 };
 use crate::{
-    command::change::{Change, ChangeRefused},
-    cosim::compile::body,
+    command::change::Change,
+    cosim::{compile::body, refused::ChangeError},
     scene::{
         Object,
         resource::{self, ResourceFault, Shelf},
@@ -82,7 +82,7 @@ impl Simulator {
         world: &mut World<'_>,
     ) -> Result<String, SimResult> {
         if !self.has_world() {
-            return Err(failed(SimResult::RESULT_INCORRECT_STATE, ChangeRefused::NoScene));
+            return Err(failed(SimResult::RESULT_INCORRECT_STATE, ChangeError::NoScene));
         }
         if OBJECTS_MAX <= world.snapshot.objects.len() {
             let reason = format!("there are already {OBJECTS_MAX} objects");
@@ -96,9 +96,9 @@ impl Simulator {
         let name = object.name.clone();
         self.change(&Change::Insert(Box::new(object.clone())), world).map_err(|error| {
             let code = match error {
-                ChangeRefused::NameTaken { .. } => SpawnResult::NAME_NOT_UNIQUE,
-                ChangeRefused::Overlap { .. } => SpawnResult::INVALID_POSE,
-                ChangeRefused::Unusable(_) => SpawnResult::UNSUPPORTED_ASSETS,
+                ChangeError::NameTaken { .. } => SpawnResult::NAME_NOT_UNIQUE,
+                ChangeError::Overlap { .. } => SpawnResult::INVALID_POSE,
+                ChangeError::Unusable(_) => SpawnResult::UNSUPPORTED_ASSETS,
                 _ => SimResult::RESULT_OPERATION_FAILED,
             };
             failed(code, error)
@@ -181,10 +181,10 @@ impl Simulator {
         } else {
             match self.change(&Change::Remove { object: name.clone() }, world) {
                 Ok(()) => ok(),
-                Err(error @ ChangeRefused::UnknownObject { .. }) => {
+                Err(error @ ChangeError::UnknownObject { .. }) => {
                     failed(SimResult::RESULT_NOT_FOUND, error)
                 }
-                Err(error @ ChangeRefused::NoScene) => failed(SimResult::RESULT_NOT_FOUND, error),
+                Err(error @ ChangeError::NoScene) => failed(SimResult::RESULT_NOT_FOUND, error),
                 Err(error) => failed(SimResult::RESULT_OPERATION_FAILED, error),
             }
         };

@@ -53,6 +53,13 @@ pub struct Snapshot {
     pub digest: u64,
 }
 
+impl Snapshot {
+    /// Force of the object on the gripper, world axes (N).
+    pub fn contact_force_world(&self) -> Vec3 {
+        self.flange.pose.rotation * self.contact_wrench.force
+    }
+}
+
 /// Pose and velocity of a body.
 #[derive(Clone, Copy, Debug)]
 pub struct BodySnapshot {

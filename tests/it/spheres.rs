@@ -6,7 +6,7 @@ use jamgrip::{
     physics::{
         Scratch, health,
         law::Surface,
-        membrane::{FREE, SheetContact},
+        membrane::{FREE, MembraneContact},
         scratch::SphereForce,
     },
 };
@@ -23,7 +23,7 @@ const RADIUS: Real = 2e-3;
 /// A held hexagon of spheres, `n` edges along each side; its outside is below.
 fn rig(n: i32, surface: Surface, dt: Real) -> Rig {
     let mut rig = Rig::on_sheet(&GRAIN, surface, hexagon(n, EDGE), dt);
-    rig.model.membrane.contact = SheetContact::Spheres { radius: SPHERE };
+    rig.model.membrane.contact = MembraneContact::Spheres { radius: SPHERE };
     rig
 }
 

@@ -10,10 +10,8 @@ use crate::{
         BenchError, Options,
         packing::{Boxed, Phase},
     },
-    command::{
-        Command,
-        change::{Change, ChangeRefused},
-    },
+    command::{Command, change::Change},
+    cosim::refused::ChangeError,
     host::clock::{Stopwatch, wall_ns},
     node::plant::Plant,
     physics::{System, health::Diverged},
@@ -80,8 +78,8 @@ impl WorldAccess for IdlePlant {
         Plant::snapshot(self, Parts::ALL)
     }
 
-    fn change(&mut self, _: &Change) -> Result<(), ChangeRefused> {
-        Err(ChangeRefused::Unchangeable)
+    fn change(&mut self, _: &Change) -> Result<(), ChangeError> {
+        Err(ChangeError::Unchangeable)
     }
 }
 

@@ -15,8 +15,8 @@ use crate::{
         digest::Digest,
         real::{real, real_of},
     },
-    experiments::{Progress, ResumeError, Run, record::Record, saved_run},
-    physics::{State, health::Diverged, membrane::mesh::MeshFault},
+    experiments::{Progress, ResumeError, Run, StartError, record::Record, saved_run},
+    physics::{State, health::Diverged},
 };
 
 /// Stage in which both are made ready.
@@ -47,12 +47,12 @@ const KINDS: [Kind; 2] = [Kind::Triangles, Kind::Spheres];
 impl Timed {
     /// Both models of the same size, in the initial state A, with the source's hinge damping and a
     /// substep that needs no other argument.
-    pub(super) fn new(setup: &Setup, name: &str, size: usize) -> Result<Self, MeshFault> {
+    pub(super) fn new(setup: &Setup, name: &str, size: usize) -> Result<Self, StartError> {
         let mut setup = setup.clone();
         setup.membrane.bending_damping_spheres = setup.membrane.bending_damping;
         setup.time.rayleigh_share = setup.runs.check_rayleigh_share;
         let shear = &setup.shear;
-        let test = |kind: Kind| -> Result<Test, MeshFault> {
+        let test = |kind: Kind| -> Result<Test, StartError> {
             let (recipe, system) = Recipe::new(&setup, Choice { size, kind, initial: 0 })?;
             let speed = shear.speed * shear.speed_factor;
             Ok(Test::new(recipe, system, speed, (shear.strain, shear.n_points)))

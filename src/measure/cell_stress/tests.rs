@@ -8,11 +8,8 @@ use crate::{
     },
     measure::stress::{branches, contact_stress, mean_stress},
     physics::{
-        Model, System,
-        boundary::{
-            body::BodyMotion,
-            wall::{WallModel, WallShape},
-        },
+        System, SystemBuilder,
+        builder::Wall,
         law::{PairLaw, Surface},
         state::Grains,
     },
@@ -79,12 +76,12 @@ fn a_squeezed_lattice_is_hydrostatic_in_every_cell() {
     let positions: Vec<Vec3> = (0..n * n * n)
         .map(|k| Vec3::new(real(k % n) + 0.3, real(k / n % n) + 0.4, real(k / n / n) + 0.2) * edge)
         .collect();
-    let mut model = Model::of_grains(law(), 1e-6, radius, radius);
     let period = Vec3::repeat(real(n) * edge);
-    model.period = Some(period);
     let masses = vec![1e-5; positions.len()];
     let grains = Grains::at_rest(positions, vec![radius; n * n * n], masses);
-    let mut system = System::at_rest(model, Vec::new(), grains);
+    let mut builder = SystemBuilder::new(law());
+    builder.substep(1e-6).radii_up_to(radius, radius).period(period).grains(grains);
+    let mut system = builder.build().unwrap();
     system.step();
     let System { model, state, scratch, .. } = &system;
     let whole = contact_stress(model, state, scratch, period.product());
@@ -103,13 +100,13 @@ fn a_squeezed_lattice_is_hydrostatic_in_every_cell() {
 #[test]
 fn a_wall_carries_its_share() {
     let (radius, n) = (1e-3, 3);
-    let mut model = Model::of_grains(law(), 1e-6, radius, radius);
-    model.walls.push(WallModel { shape: WallShape::Plane { normal: Vec3::z() }, law: law() });
-    let floor = BodyMotion { pose: Pose::identity(), twist: crate::base::real::Twist::zero() };
     let positions: Vec<Vec3> =
         (0..n).map(|k| Vec3::new(0.0, 0.0, (real(k) + 0.5) * 1.99e-3)).collect();
     let grains = Grains::at_rest(positions, vec![radius; n], vec![1e-5; n]);
-    let mut system = System::at_rest(model, vec![floor], grains);
+    let mut builder = SystemBuilder::new(law());
+    builder.substep(1e-6).radii_up_to(radius, radius).grains(grains);
+    builder.wall(Wall::floor(0.0));
+    let mut system = builder.build().unwrap();
     system.step();
     let System { model, state, scratch, .. } = &system;
     let branches = branches(model, state, scratch);

@@ -27,7 +27,7 @@ use crate::{
     physics::{
         Model,
         law::{self, ContactState},
-        membrane::{MembraneState, SheetContact},
+        membrane::{MembraneContact, MembraneState},
         scratch::{ContactFlags, SphereForce},
         state::{Grains, ListedSprings},
     },
@@ -42,7 +42,7 @@ pub fn forces(
     forces: &mut Vec<SphereForce>,
 ) {
     forces.resize(listed.ids.len(), SphereForce::default());
-    let SheetContact::Spheres { radius } = model.membrane.contact else { return };
+    let MembraneContact::Spheres { radius } = model.membrane.contact else { return };
     let ListedSprings { ids, springs, .. } = listed;
     parallel::for_each_of_two(forces, springs, |k, force, spring| {
         let [grain, vertex] = ids[k].map(|id| id as usize);

@@ -6,14 +6,11 @@ use crate::{
         digest::Digest,
         lanes::{self, Width},
         random::{Random, Stream},
-        real::Twist,
     },
     physics::{
-        Model, System,
-        boundary::{
-            body::BodyMotion,
-            wall::{WallModel, WallShape},
-        },
+        System, SystemBuilder,
+        boundary::wall::WallShape,
+        builder::Wall,
         law::{PairLaw, Surface, tests::bridged},
         state::Grains,
     },
@@ -30,16 +27,15 @@ fn law(pull: Real) -> PairLaw {
     bridged(surface, pull, RUPTURE)
 }
 
-fn fixed(position: Vec3) -> BodyMotion {
-    BodyMotion { pose: Pose::from_parts(position.into(), Default::default()), twist: Twist::zero() }
-}
-
 fn system(law: PairLaw, positions: &[Vec3], walls: &[(WallShape, Vec3)]) -> System {
-    let mut model = Model::of_grains(law, DT, RADIUS, RADIUS);
-    model.walls = walls.iter().map(|&(shape, _)| WallModel { shape, law }).collect();
     let n = positions.len();
-    let grains = Grains::at_rest(positions.to_vec(), vec![RADIUS; n], vec![MASS; n]);
-    System::at_rest(model, walls.iter().map(|&(_, origin)| fixed(origin)).collect(), grains)
+    let mut builder = SystemBuilder::new(law);
+    builder.substep(DT).grains(Grains::at_rest(positions.to_vec(), vec![RADIUS; n], vec![MASS; n]));
+    let wall = |(shape, origin): &(WallShape, Vec3)| {
+        Wall::new(shape.clone()).at(Pose::translation(origin.x, origin.y, origin.z))
+    };
+    builder.walls(walls.iter().map(wall));
+    builder.build().unwrap()
 }
 
 /// True if a grain of weight m g still hangs after 60 ms on what pulls with `pull_over_weight` m g: on a
@@ -77,12 +73,12 @@ fn a_hanging_grain_falls_where_its_weight_exceeds_the_pull() {
 #[test]
 fn lists_reach_as_far_as_the_law() {
     // Oracle: contact plus range plus skin, by hand, of a pair and of a wall.
-    let floor = (WallShape::Plane { normal: Vec3::z() }, Vec3::zeros());
+    let floor = || (WallShape::Plane { normal: Vec3::z() }, Vec3::zeros());
     for (share, is_listed) in [(0.999, true), (1.001, false)] {
         let gap = share * (RUPTURE + 0.25 * RADIUS);
         let low = Vec3::z() * (RADIUS + gap);
         let high = low + Vec3::z() * (2.0 * RADIUS + gap);
-        let mut system = system(law(1e-3), &[low, high], &[floor]);
+        let mut system = system(law(1e-3), &[low, high], &[floor()]);
         system.step();
         assert_eq!(system.state.pair_ids.len(), usize::from(is_listed));
         assert_eq!(system.state.springs.walls.ids.len(), usize::from(is_listed));
