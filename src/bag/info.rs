@@ -162,7 +162,7 @@ impl Info {
     }
 
     /// True if no file is damaged.
-    pub fn is_whole(&self) -> bool {
+    pub fn is_undamaged(&self) -> bool {
         self.files.iter().all(|file| file.damages.is_empty())
     }
 
@@ -210,7 +210,7 @@ impl Info {
             "has_scene": self.has_scene,
             "checkpoints": self.checkpoints,
             "attachments": self.attachments,
-            "is_whole": self.is_whole(),
+            "is_whole": self.is_undamaged(),
         })
     }
 }

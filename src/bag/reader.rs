@@ -282,7 +282,7 @@ impl<R: Read> Reader<R> {
         self.offset += RECORD_HEADER as u64 + available;
         if available < length {
             if opcode == op::CHUNK {
-                self.cut_chunk(offset, &body);
+                self.truncated_chunk(offset, &body);
             }
             return self.end_with(Some(Damage::Cut { offset, missing: length - available }));
         }
@@ -375,7 +375,7 @@ impl<R: Read> Reader<R> {
     }
 
     /// Reads the messages of a truncated chunk before the cut.
-    fn cut_chunk(&mut self, offset: u64, body: &[u8]) {
+    fn truncated_chunk(&mut self, offset: u64, body: &[u8]) {
         // Times, length and checksum take 28 bytes; then come the name of the compression and the
         // length.
         let Some(name_length) = body.get(28..32).and_then(|it| it.try_into().ok()) else { return };

@@ -24,7 +24,7 @@ use self::{
     experiment::{LoadedExperiment, RunRequest},
     folder::{Folder, Policy},
     outcome::Outcome,
-    progress::ProgressBoard,
+    progress::ProgressDisplay,
     workers::Job,
 };
 use crate::{experiments::findings::Findings, host::shutdown::Shutdown};
@@ -70,17 +70,17 @@ pub enum Ending {
 /// # Errors
 /// If an experiment cannot be loaded, or its files cannot be written.
 pub fn run(tasks: &[Task<'_>], options: &Options<'_>) -> Result<Ending, RunnerError> {
-    let loaded_all = tasks
+    let experiments = tasks
         .iter()
         .map(|task| LoadedExperiment::read(&task.request))
         .collect::<Result<Vec<_>, RunnerError>>()?;
     let folders = tasks
         .iter()
-        .zip(&loaded_all)
+        .zip(&experiments)
         .map(|(task, loaded)| open(task.out.as_deref(), loaded, options.policy))
         .collect::<Result<Vec<_>, RunnerError>>()?;
-    let jobs = jobs(&loaded_all, &folders);
-    let progress = ProgressBoard::new(&jobs, options.n_threads, options.is_quiet);
+    let jobs = jobs(&experiments, &folders);
+    let progress = ProgressDisplay::new(&jobs, options.n_threads, options.is_quiet);
     let ends = workers::run_all(&jobs, options.n_threads, options.shutdown, &progress);
     progress.end();
     let ends = ends?;
@@ -90,7 +90,7 @@ pub fn run(tasks: &[Task<'_>], options: &Options<'_>) -> Result<Ending, RunnerEr
     }
     let mut ends = ends.into_iter();
     let mut outcomes = Vec::new();
-    for (loaded, folder) in loaded_all.iter().zip(&folders) {
+    for (loaded, folder) in experiments.iter().zip(&folders) {
         let ends = ends.by_ref().take(loaded.cases().len()).collect();
         let (outcome, findings) = loaded.evaluate(ends);
         if let Some(folder) = folder {
@@ -110,11 +110,14 @@ fn open(
 }
 
 /// All cases, in the order of the experiments.
-fn jobs<'a>(loaded_all: &'a [LoadedExperiment<'a>], folders: &'a [Option<Folder>]) -> Vec<Job<'a>> {
+fn jobs<'a>(
+    experiments: &'a [LoadedExperiment<'a>],
+    folders: &'a [Option<Folder>],
+) -> Vec<Job<'a>> {
     let of_experiment = |(loaded, folder): (&'a LoadedExperiment<'a>, &'a Option<Folder>)| {
         loaded.cases().iter().map(move |case| Job { loaded, folder: folder.as_ref(), case })
     };
-    loaded_all.iter().zip(folders).flat_map(of_experiment).collect()
+    experiments.iter().zip(folders).flat_map(of_experiment).collect()
 }
 
 fn write(folder: &Folder, outcome: &Outcome, findings: &Findings) -> Result<(), RunnerError> {

@@ -22,7 +22,7 @@ const STEPS: u64 = 1000;
 const LINE_PERIOD_S: f64 = 60.0;
 
 /// The progress display on standard error.
-pub struct ProgressBoard {
+pub struct ProgressDisplay {
     bars: MultiProgress,
     overall: ProgressBar,
     titles: Vec<String>,
@@ -34,7 +34,7 @@ pub struct ProgressBoard {
     is_quiet: bool,
 }
 
-impl ProgressBoard {
+impl ProgressDisplay {
     /// Creates a display; with `is_quiet` it only shows errors.
     pub(super) fn new(jobs: &[Job<'_>], n_threads: usize, is_quiet: bool) -> Self {
         let target =
@@ -116,7 +116,7 @@ impl ProgressBoard {
 
 /// The display of one case.
 pub(super) struct CaseProgress<'a> {
-    progress: &'a ProgressBoard,
+    progress: &'a ProgressDisplay,
     i: usize,
     bar: ProgressBar,
 }

@@ -5,7 +5,7 @@ use super::{
     case::{self, CaseEnd},
     folder::Folder,
 };
-use crate::runner::{experiment::LoadedExperiment, progress::ProgressBoard};
+use crate::runner::{experiment::LoadedExperiment, progress::ProgressDisplay};
 use crate::{
     base::parallel,
     host::{job_queue::run_jobs, shutdown::Shutdown},
@@ -38,7 +38,7 @@ pub(super) fn run_all(
     jobs: &[Job<'_>],
     n_threads: usize,
     shutdown: &Shutdown,
-    progress: &ProgressBoard,
+    progress: &ProgressDisplay,
 ) -> Result<Vec<CaseEnd>, rayon::ThreadPoolBuildError> {
     let n_threads = n_threads.clamp(1, jobs.len().max(1));
     let pools = (0..n_threads).map(|_| parallel::pool(1)).collect::<Result<Vec<_>, _>>()?;

@@ -205,7 +205,7 @@ fn recordings_of_other_programs_are_repaired() {
     let foreign = folder.path().join("theirs");
     peers::run("write_bag.py", &[foreign.to_str().unwrap()]);
     let complete = Info::read(&foreign).unwrap();
-    assert!(complete.is_whole(), "{complete}");
+    assert!(complete.is_undamaged(), "{complete}");
     assert_eq!(complete.topics["/numbers"].n_messages, 500);
     let errors: Vec<_> =
         check::check(&foreign).unwrap().into_iter().filter(|it| it.is_error).collect();
@@ -217,7 +217,7 @@ fn recordings_of_other_programs_are_repaired() {
         let output = folder.path().join(output);
         let saved = recover::recover(&path, &output).unwrap();
         assert!(0 < saved.n_messages && saved.n_messages < 600, "{}", saved.n_messages);
-        assert!(Info::read(&output).unwrap().is_whole());
+        assert!(Info::read(&output).unwrap().is_undamaged());
     }
     let saved = folder.path().join("folder");
     let read: Value =
@@ -297,7 +297,7 @@ fn flushed_data_survive_a_hundred_kills() {
         assert!(flushed <= history.last_tick(), "{flushed} flushed, {} saved", history.last_tick());
         assert!(history.broken_at.is_none() && history.gap_after.is_none(), "kill {i}");
         assert_eq!(history.digests[0].0, 1, "kill {i}");
-        assert!(Info::read(&output).unwrap().is_whole());
+        assert!(Info::read(&output).unwrap().is_undamaged());
         fs::remove_dir_all(&output).unwrap();
         fs::remove_dir_all(&bag).unwrap();
         n_flushed += flushed;
