@@ -200,5 +200,5 @@ fn check_lift(seen: &Value) {
     // The grains go up with the flange, by another path of data than the object's pose.
     assert!((number("cloud_lifted_m") - 0.1).abs() < 0.005, "{} m", number("cloud_lifted_m"));
     assert!(number("let_go_n") < 0.1, "still touched with {} N", number("let_go_n"));
-    assert!(10.0 <= number("n_clouds") && 10.0 <= number("n_sheets"), "clouds while it ran");
+    assert!(10.0 <= number("n_clouds") && 10.0 <= number("n_membranes"), "clouds while it ran");
 }

@@ -238,7 +238,7 @@ fn an_independent_dds_subscribes_and_publishes() {
         let mut source = RosSource::new(&node, &encoder).unwrap();
         let folder = tempfile::tempdir().unwrap();
         let seconds = std::env::var("JAMGRIP_LOOP_SECONDS").unwrap_or_else(|_| "2".to_owned());
-        let mut peer = peers::script("hear_and_say.py")
+        let mut peer = peers::script("subscribe_and_publish.py")
             .arg(&seconds)
             .env("ROS_DOMAIN_ID", discovery_range().domain_id.to_string())
             .env("CYCLONEDDS_URI", format!("file://{}", cyclone_config(folder.path()).display()))
@@ -272,7 +272,7 @@ fn an_independent_dds_subscribes_and_publishes() {
             let due = start + Duration::from_millis(tick);
             std::thread::sleep(due.saturating_duration_since(now()));
             // A lost tick shows in the end; the test does not wait for it forever.
-            let expected = format!("heard {tick}");
+            let expected = format!("received {tick}");
             while tick < n_ticks
                 && lines.recv_timeout(Duration::from_secs(10)).is_ok_and(|it| it != expected)
             {
@@ -313,7 +313,7 @@ fn check_received_by_peer(peer: &serde_json::Value, n_ticks: u64) {
     // Besides its topics, the node writes /rosout, /parameter_events and ros_discovery_info.
     let listed = serde_json::json!([n_inputs, n_outputs + 3]);
     assert_eq!(peer["nodes"]["/jamgrip"], listed, "the node and its topics in the graph");
-    assert_eq!(peer["faults"], serde_json::json!([]));
+    assert_eq!(peer["errors"], serde_json::json!([]));
     assert_eq!((&peer["n_ticks"], &peer["n_ticks_missed"]), (&n_ticks.into(), &0.into()));
     assert_eq!(peer["is_clock_steady"], true);
     assert_eq!(peer["status"], 3, "NO_OBJECT_DETECTED");
@@ -324,7 +324,7 @@ fn check_received_by_peer(peer: &serde_json::Value, n_ticks: u64) {
     // The peer stops at the last clock message; other messages of the same tick may follow it.
     let n_forces = peer["n_forces"].as_u64().unwrap();
     assert!((n_ticks / 4 - 1..=n_ticks / 4).contains(&n_forces), "{n_forces} wrenches");
-    for list in ["n_clouds", "n_sheets"] {
+    for list in ["n_clouds", "n_membranes"] {
         let count = peer[list].as_u64().unwrap();
         assert!((n_ticks / 33 - 1..=n_ticks / 33).contains(&count), "{list}: {count}");
     }

@@ -1,5 +1,5 @@
-// A ROS 2 peer on Fast DDS itself, told only ROS 2's names and types, going the way of rmw_fastrtps: reads
-// topics, commands a vacuum, calls services and an action, and says what came of it as one JSON line.
+// A ROS 2 peer on Fast DDS itself, which only knows the ROS 2 names and types, with the service mapping of
+// rmw_fastrtps: reads topics, commands a vacuum, calls services and an action, and prints one JSON line.
 
 #include <chrono>
 #include <cstdint>
@@ -32,7 +32,7 @@ using eprosima::fastrtps::rtps::SerializedPayload_t;
 using eprosima::fastrtps::rtps::WriteParams;
 using Bytes = std::vector<uint8_t>;
 
-// Any type: bytes of little-endian CDR behind the four that name the encoding.
+// Any type: bytes of little-endian CDR after the four bytes of encapsulation.
 class AnyType : public TopicDataType {
 public:
     explicit AnyType(const std::string& name) {
@@ -115,7 +115,7 @@ template <typename T> static Bytes bytes(T value) {
     return body;
 }
 
-// A service's client: requests name the reader that answers shall go to.
+// A service client: requests name the reader for the responses.
 class Client {
 public:
     Client(const std::string& name, const std::string& package, const std::string& type)
@@ -190,7 +190,7 @@ int main() {
     Client step("step_simulation", srv, "StepSimulation");
     const int stepped = step.call(bytes<uint64_t>(7))[0];
     std::this_thread::sleep_for(std::chrono::milliseconds(300));
-    // While time stands still the last one is told again and again.
+    // While time is paused, the last message is published repeatedly.
     size_t n_ticks = 0;
     for (const auto time : times(clock)) n_ticks += before.count(time) == 0;
 
@@ -206,7 +206,7 @@ int main() {
     double setpoint = 0.0;
     wait_for("the command's effect", [&] {
         while (take(vacuum, body, info)) {
-            // Stamp, length of the frame's name, name, then the gauge pressure and its set-point.
+            // Stamp, length of the frame's name, name, then the gauge pressure and its setpoint.
             const size_t end = 12 + read<uint32_t>(body, 8);
             setpoint = read<double>(body, (end + 7) / 8 * 8 + 8);
         }
