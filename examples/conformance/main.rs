@@ -1,7 +1,7 @@
 //! Tests a simulator against `simulation_interfaces`: everything that it advertises, from outside.
 //!
 //! ```text
-//! conformance [--prefix /jamgrip] [--way enhanced|cyclone] [--version 1|2] [--patience 10]
+//! conformance [--prefix /jamgrip] [--way enhanced|cyclone] [--version 1|2] [--timeout 10]
 //! ```
 //!
 //! It only depends on the standard, so it can test any simulator. `--mapping` selects how requests are
@@ -70,7 +70,7 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Options, Strin
             ("--way", "cyclone") => options.mapping = ServiceMapping::Cyclone,
             ("--version", "1") => options.version = 1,
             ("--version", "2") => options.version = 2,
-            ("--patience", _) => {
+            ("--timeout", _) => {
                 let seconds =
                     value.parse().map_err(|_| format!("`{value}` is not a number of seconds"))?;
                 options.timeout = Duration::from_secs(seconds);

@@ -34,7 +34,7 @@ pub struct Packet {
     /// Encoder of the messages, if it is not the one that the sinks were opened with. It has the
     /// same topics, and possibly more after them.
     encoder: Option<Arc<Encoder>>,
-    /// The encoded messages, once a sink has asked for them.
+    /// The encoded messages, once a sink has needed them.
     messages: OnceLock<Vec<Message>>,
 }
 

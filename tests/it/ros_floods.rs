@@ -59,19 +59,19 @@ fn flood(node: &RosNode, stopped: &mpsc::Receiver<()>, n_sent: &AtomicU32) -> f6
         (CommonTopic::FlangePoseCommand, pose.to_cdr()),
         (CommonTopic::ObjectCommand, unknown.to_cdr()),
     ];
-    let mouths = commands.map(|(topic, cdr)| {
+    let publishers = commands.map(|(topic, cdr)| {
         let topic = &all[common(topic)];
-        let mouth = node.publisher(topic).unwrap();
+        let publisher = node.publisher(topic).unwrap();
         wait_until("a reader", || 0 < node.n_readers(&topic.name));
-        (mouth, cdr)
+        (publisher, cdr)
     });
     let (start, mut n) = (now(), 0_u32);
     while stopped.try_recv().is_err() {
         let due = RATE * start.elapsed().as_secs_f64();
         while f64::from(n) < due {
-            let (mouth, cdr) = &mouths[n as usize % mouths.len()];
+            let (publisher, cdr) = &publishers[n as usize % publishers.len()];
             // A full history rejects some; only sent ones count.
-            n += u32::from(mouth.publish(Body::new(cdr.clone())).is_ok());
+            n += u32::from(publisher.publish(Body::new(cdr.clone())).is_ok());
             n_sent.store(n, Ordering::Relaxed);
         }
         std::thread::sleep(Duration::from_micros(200));

@@ -54,7 +54,7 @@ fn conformance(changes: &[&str], arguments: &[&str]) {
     std::fs::write(folder.path().join("other.yaml"), coarse::OTHER_TEXT).unwrap();
     let program = Program::start_with(folder.path(), changes, &["--bag", bag]);
     let output = Command::new(example("conformance"))
-        .args(["--patience", "60"])
+        .args(["--timeout", "60"])
         .args(arguments)
         .env("ROS_DOMAIN_ID", discovery_range().domain_id.to_string())
         .output()

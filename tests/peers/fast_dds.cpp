@@ -119,30 +119,30 @@ template <typename T> static Bytes bytes(T value) {
 class Client {
 public:
     Client(const std::string& name, const std::string& package, const std::string& type)
-        : name_(name), asks_(writer("rq/jamgrip/" + name + "Request", package + "::dds_::" + type + "_Request_")),
-          answers_(reader("rr/jamgrip/" + name + "Reply", package + "::dds_::" + type + "_Response_")) {
+        : name_(name), requests_(writer("rq/jamgrip/" + name + "Request", package + "::dds_::" + type + "_Request_")),
+          responses_(reader("rr/jamgrip/" + name + "Reply", package + "::dds_::" + type + "_Response_")) {
         wait_for(name.c_str(), [this] {
-            PublicationMatchedStatus heard;
+            PublicationMatchedStatus matched;
             SubscriptionMatchedStatus hears;
-            asks_->get_publication_matched_status(heard);
-            answers_->get_subscription_matched_status(hears);
-            seen_heard_ = heard.current_count;
+            requests_->get_publication_matched_status(matched);
+            responses_->get_subscription_matched_status(hears);
+            seen_heard_ = matched.current_count;
             seen_hears_ = hears.current_count;
             return 0 < seen_heard_ && 0 < seen_hears_;
         });
     }
     Bytes call(Bytes request) {
         WriteParams parameters;
-        parameters.related_sample_identity().writer_guid(answers_->guid());
-        asks_->write(&request, parameters);
-        const auto asked = parameters.sample_identity();
+        parameters.related_sample_identity().writer_guid(responses_->guid());
+        requests_->write(&request, parameters);
+        const auto sent = parameters.sample_identity();
         Bytes answer;
         wait_for(("an answer of " + name_).c_str(), [&] {
             SampleInfo info;
-            while (take(answers_, answer, info)) {
+            while (take(responses_, answer, info)) {
                 const auto& related = info.related_sample_identity;
-                const bool is_mine = related.writer_guid() == answers_->guid() || related.writer_guid() == asked.writer_guid();
-                if (is_mine && related.sequence_number() == asked.sequence_number()) return true;
+                const bool is_mine = related.writer_guid() == responses_->guid() || related.writer_guid() == sent.writer_guid();
+                if (is_mine && related.sequence_number() == sent.sequence_number()) return true;
             }
             return false;
         });
@@ -151,8 +151,8 @@ public:
 
 private:
     std::string name_;
-    DataWriter* asks_;
-    DataReader* answers_;
+    DataWriter* requests_;
+    DataReader* responses_;
     int seen_heard_ = 0, seen_hears_ = 0;
 };
 
