@@ -123,12 +123,12 @@ public:
           responses_(reader("rr/jamgrip/" + name + "Reply", package + "::dds_::" + type + "_Response_")) {
         wait_for(name.c_str(), [this] {
             PublicationMatchedStatus matched;
-            SubscriptionMatchedStatus hears;
+            SubscriptionMatchedStatus responding;
             requests_->get_publication_matched_status(matched);
-            responses_->get_subscription_matched_status(hears);
-            seen_heard_ = matched.current_count;
-            seen_hears_ = hears.current_count;
-            return 0 < seen_heard_ && 0 < seen_hears_;
+            responses_->get_subscription_matched_status(responding);
+            n_readers_ = matched.current_count;
+            n_writers_ = responding.current_count;
+            return 0 < n_readers_ && 0 < n_writers_;
         });
     }
     Bytes call(Bytes request) {
@@ -136,24 +136,24 @@ public:
         parameters.related_sample_identity().writer_guid(responses_->guid());
         requests_->write(&request, parameters);
         const auto sent = parameters.sample_identity();
-        Bytes answer;
-        wait_for(("an answer of " + name_).c_str(), [&] {
+        Bytes response;
+        wait_for(("a response of " + name_).c_str(), [&] {
             SampleInfo info;
-            while (take(responses_, answer, info)) {
+            while (take(responses_, response, info)) {
                 const auto& related = info.related_sample_identity;
                 const bool is_mine = related.writer_guid() == responses_->guid() || related.writer_guid() == sent.writer_guid();
                 if (is_mine && related.sequence_number() == sent.sequence_number()) return true;
             }
             return false;
         });
-        return answer;
+        return response;
     }
 
 private:
     std::string name_;
     DataWriter* requests_;
     DataReader* responses_;
-    int seen_heard_ = 0, seen_hears_ = 0;
+    int n_readers_ = 0, n_writers_ = 0;
 };
 
 static std::set<int64_t> times(DataReader* clock) {
