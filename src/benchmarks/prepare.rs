@@ -5,7 +5,7 @@ use crate::{
     base::{Real, digest::Digest, parallel},
     cosim::saved_state,
     experiments::{Run, SceneText, Size, StartError},
-    host::{cache::Found, progress_bar::Progress},
+    host::{cache::Lookup, progress_bar::Progress},
     physics::{State, System, health::Diverged},
     runner::experiment::by_name,
 };
@@ -204,9 +204,9 @@ impl Maker<'_> {
 
     fn load(&self, key: &str) -> Option<Vec<u8>> {
         match self.options.cache.load(number(key)) {
-            Found::State(bytes) => Some(bytes),
+            Lookup::State(bytes) => Some(bytes),
             // A damaged state is prepared again, like a missing one.
-            Found::Nothing | Found::Damaged(_) => None,
+            Lookup::Missing | Lookup::Damaged(_) => None,
         }
     }
 

@@ -76,7 +76,7 @@ impl CommandSources {
 
     /// True if the run must wait for a first command.
     pub fn is_waiting(&self) -> bool {
-        self.builtin.is_none() && !self.outside.iter().any(|source| source.has_heard())
+        self.builtin.is_none() && !self.outside.iter().any(|source| source.has_received())
     }
 
     /// What became of the messages from outside, source by source.

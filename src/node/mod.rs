@@ -192,12 +192,12 @@ impl RunContext {
             front.first_command();
         }
         let changed = {
-            let mut world = World { subject: plant, seen: &seen.snapshot };
+            let mut world = World { access: plant, snapshot: &seen.snapshot };
             front.handle_requests(&mut world, self.n_packets)
         };
         if let Some(outputs) = &changed.outputs {
             self.schedule = Schedule::new(outputs, self.tick_ns);
-            let encoder = self.outputs.encoder.as_deref().map(|it| it.at_rates(outputs));
+            let encoder = self.outputs.encoder.as_deref().map(|it| it.with_outputs(outputs));
             self.outputs.encoder = encoder.map(Arc::new);
         }
         if changed.changes.is_empty() {
@@ -270,9 +270,9 @@ impl RunContext {
         }
         pacer.wait_paused();
         let is_playing = self.front.as_ref().is_none_or(|it| it.simulator().may_tick());
-        let missed = if is_playing { self.gate.miss(pacer.stood_s()) } else { None };
+        let missed = if is_playing { self.gate.miss(pacer.paused_s()) } else { None };
         if let Some(missed) = missed {
-            self.progress.say(&format!("no command for {:.3} s of wall time", pacer.stood_s()));
+            self.progress.say(&format!("no command for {:.3} s of wall time", pacer.paused_s()));
             match (missed, &mut self.front) {
                 (Missed::Ended, _) => self.has_missed = true,
                 (Missed::Paused, Some(front)) => front.pause(),

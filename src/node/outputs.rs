@@ -74,7 +74,7 @@ impl OutputSinks {
 
     #[cfg(feature = "shm")]
     fn take_stream_fault(&mut self) -> Option<String> {
-        self.stream.as_mut()?.take_fault()
+        self.stream.as_mut()?.take_error()
     }
 
     #[cfg(not(feature = "shm"))]
@@ -84,7 +84,7 @@ impl OutputSinks {
 
     /// What went wrong since the last call, and whether the run must end for it.
     pub fn take_faults(&mut self) -> (Vec<String>, bool) {
-        let faults = self.fanout.take_faults();
+        let faults = self.fanout.take_errors();
         let must_stop = self.stops_with_bag && faults.iter().any(|fault| fault.sink == "bag");
         let texts = faults.into_iter().map(|fault| fault.text);
         (texts.chain(self.take_stream_fault()).collect(), must_stop)

@@ -8,13 +8,13 @@ use crate::{
     cosim::refused::ChangeError,
     physics::health::Diverged,
     session::Session,
-    simulator::Subject,
+    simulator::WorldAccess,
     snapshot::{Snapshot, checkpoint::Checkpoint, take, view::View},
     wire::to_ros::Encoder,
 };
 
 /// Something that ticks and can be looked at.
-pub trait Plant: Subject {
+pub trait Plant: WorldAccess {
     /// Why it cannot go on.
     type Fault: Error + Send + Sync + 'static;
 
@@ -64,7 +64,7 @@ impl Plant for Session {
 
     fn encoder(&self, before: &Encoder) -> Option<Encoder> {
         let mesh = &self.coupled().system.model.membrane.mesh;
-        Some(before.of_scene(self.scene(), &mesh.triangles, &mesh.positions))
+        Some(before.with_scene(self.scene(), &mesh.triangles, &mesh.positions))
     }
 
     fn substep_s(&self) -> f64 {
@@ -76,8 +76,8 @@ impl Plant for Session {
     }
 }
 
-impl Subject for Session {
-    fn look(&self) -> Snapshot {
+impl WorldAccess for Session {
+    fn full_snapshot(&self) -> Snapshot {
         take::snapshot(self, Parts::ALL)
     }
 

@@ -2,8 +2,10 @@
 
 use std::sync::Arc;
 
-use crate::host::cache::{Cache, Found};
-use crate::host::progress_bar::Progress;
+use crate::host::{
+    cache::{Cache, Lookup},
+    progress_bar::Progress,
+};
 use crate::{
     cosim::compile::{CompileError, Compiled},
     physics::health::Diverged,
@@ -44,13 +46,13 @@ pub fn start(
     let key = compiled.start_digest();
     let (scene, pool) = (compiled.scene.clone(), Arc::clone(&compiled.pool));
     let compiled = match cache.load(key) {
-        Found::Nothing => compiled,
-        Found::Damaged(path) => {
+        Lookup::Missing => compiled,
+        Lookup::Damaged(path) => {
             let path = path.display();
             progress.say(&format!("start state {path}: the file is damaged; it is settled anew"));
             compiled
         }
-        Found::State(bytes) => match Session::from_start_state(compiled, &bytes) {
+        Lookup::State(bytes) => match Session::from_start_state(compiled, &bytes) {
             Ok(session) => return Ok(Started { session, origin: "cached" }),
             Err(error) => {
                 progress.say(&error);

@@ -78,7 +78,7 @@ pub(crate) fn run(node: &Arc<RosNode>, mut is_over: impl FnMut() -> bool) {
     let mut tick = 0;
     while !is_over() {
         std::thread::sleep(Duration::from_micros(300));
-        if !source.has_heard() {
+        if !source.has_received() {
             continue;
         }
         toy.tick(&source.drain(&system.snapshot));

@@ -18,7 +18,7 @@ use crate::{
     node::plant::Plant,
     physics::{System, health::Diverged},
     session::Session,
-    simulator::Subject,
+    simulator::WorldAccess,
     snapshot::{Parts, Snapshot, take, view::View},
 };
 
@@ -78,8 +78,8 @@ impl IdlePlant {
     }
 }
 
-impl Subject for IdlePlant {
-    fn look(&self) -> Snapshot {
+impl WorldAccess for IdlePlant {
+    fn full_snapshot(&self) -> Snapshot {
         Plant::snapshot(self, Parts::ALL)
     }
 

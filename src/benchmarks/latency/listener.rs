@@ -19,7 +19,7 @@ use crate::{
     shm::stream::Services,
     wire::{
         messages::{RosMessage, rosgraph_msgs::Clock, std_msgs::Float64},
-        topics::{Common, Topic, topics},
+        topics::{CommonTopic, Topic, topics},
     },
 };
 
@@ -69,7 +69,8 @@ fn pressure(number: u32) -> f64 {
 /// If there is no such run.
 pub fn listen(prefix: &str, seconds: Real) -> Result<String, Box<dyn Error + Send + Sync>> {
     let topics = topics(&lift::scene(&[]).map_err(|error| error.to_string())?);
-    let [clock, vacuum] = [Common::Clock, Common::VacuumCommand].map(|it| &topics[it as usize]);
+    let [clock, vacuum] =
+        [CommonTopic::Clock, CommonTopic::VacuumCommand].map(|it| &topics[it as usize]);
     let node = RosNode::join_as("listener", &discovery_range())?;
     let is_over = AtomicBool::new(false);
     let samples = thread::scope(|scope| {

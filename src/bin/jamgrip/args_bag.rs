@@ -118,7 +118,7 @@ impl Replay {
     }
 
     /// How the machine is shared out when a recording is verified.
-    pub(crate) fn hands(&self) -> CpuBudget {
+    pub(crate) fn cpu_budget(&self) -> CpuBudget {
         let (n_threads, n_jobs) = (self.threads.map(usize::from), self.jobs.map(usize::from));
         CpuBudget { n_processors: n_processors(), n_threads, n_jobs }
     }

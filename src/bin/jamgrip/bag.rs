@@ -17,9 +17,9 @@ use jamgrip::{
         branch::{self, Branch},
         page,
         play::{self, Played},
-        player_command::{Asked, PlayerCommand},
+        player_command::{CommandRequest, PlayerCommand},
         recorded_run::RecordedRun,
-        segment::{Difference, Kind},
+        segment::{Difference, DifferenceKind},
         verify::{self, VerifyReport},
     },
     scene::Scene,
@@ -76,7 +76,7 @@ fn verify(args: &Replay) -> Result<ExitCode, Box<dyn Error>> {
     let verdict = verify::verify(
         &again,
         &verify::Options {
-            hands: args.hands(),
+            cpu_budget: args.cpu_budget(),
             settles: args.settle,
             from_ns: nanoseconds(args.start.unwrap_or(0.0)),
             to_ns: args.end.map(nanoseconds),
@@ -103,7 +103,7 @@ fn tell(out: &mut impl Write, verdict: &VerifyReport) -> io::Result<()> {
         writeln!(out, "{remark}")?;
     }
     let VerifyReport { n_ticks, n_compared, start_tick, real_time_factor, .. } = verdict;
-    let ((n_jobs, n_threads), n_checkpoints) = (verdict.shared_out, verdict.n_checkpoints);
+    let ((n_jobs, n_threads), n_checkpoints) = (verdict.jobs_and_threads, verdict.n_checkpoints);
     writeln!(
         out,
         "{n_ticks} ticks simulated from tick {start_tick} on at {real_time_factor:.3} x real time \
@@ -111,11 +111,13 @@ fn tell(out: &mut impl Write, verdict: &VerifyReport) -> io::Result<()> {
          {n_compared} digests and {n_checkpoints} checkpoints compared"
     )?;
     match &verdict.first_difference {
-        Some(Difference { tick, kind: Kind::Digest { recorded, simulated } }) => writeln!(
-            out,
-            "tick {tick} differs: {recorded:016x} is recorded, {simulated:016x} was simulated"
-        ),
-        Some(Difference { tick, kind: Kind::Checkpoint(part) }) => {
+        Some(Difference { tick, kind: DifferenceKind::Digest { recorded, simulated } }) => {
+            writeln!(
+                out,
+                "tick {tick} differs: {recorded:016x} is recorded, {simulated:016x} was simulated"
+            )
+        }
+        Some(Difference { tick, kind: DifferenceKind::Checkpoint(part) }) => {
             writeln!(out, "checkpoint at tick {tick} differs, although the digests do not: {part}")
         }
         None if verdict.is_interrupted => writeln!(out, "interrupted; all equal so far"),
@@ -172,7 +174,7 @@ fn play(args: &Replay) -> Result<ExitCode, Box<dyn Error>> {
         |stage: &mut dyn play::PlayerOutput| play::play(&files, &options, stage, &cues, &shutdown);
     let (played, fault) = on_stage(&options, teller, perform)?;
     let mut stderr = io::stderr().lock();
-    for topic in &played.refused {
+    for topic in &played.unplayable {
         writeln!(
             stderr,
             "{topic}: not played: its messages are no CDR, or its name is not ROS 2's"
@@ -187,7 +189,7 @@ fn play(args: &Replay) -> Result<ExitCode, Box<dyn Error>> {
     }
     let mut stdout = io::stdout().lock();
     if args.json {
-        let (n, refused) = (played.n_published, &played.refused);
+        let (n, refused) = (played.n_published, &played.unplayable);
         writeln!(stdout, "{}", serde_json::json!({"published": n, "refused": refused}))?;
     } else {
         writeln!(stdout, "{} messages published", played.n_published)?;
@@ -202,7 +204,7 @@ type Performance = (Played, Option<String>);
 #[cfg(feature = "ros")]
 fn on_stage(
     options: &play::Options,
-    teller: mpsc::Sender<Asked>,
+    teller: mpsc::Sender<CommandRequest>,
     perform: impl FnOnce(&mut dyn play::PlayerOutput) -> io::Result<Played>,
 ) -> Result<Performance, Box<dyn Error>> {
     use jamgrip::{replay::player_node::RosPlayerNode, ros::discovery::DiscoveryRange, scene::Ros};
@@ -210,22 +212,22 @@ fn on_stage(
     let anywhere = Ros { enabled: true, ..Ros::OFF };
     let reach = DiscoveryRange::choose(&anywhere, |name| std::env::var(name).ok())?;
     let mut stage = RosPlayerNode::join(&reach, options.clock_rate.is_some())?;
-    let _prompter = stage.prompted(teller)?;
+    let _prompter = stage.open_services(teller)?;
     let played = perform(&mut stage)?;
-    Ok((played, stage.faults.1))
+    Ok((played, stage.errors.1))
 }
 
 #[cfg(not(feature = "ros"))]
 fn on_stage(
     _: &play::Options,
-    _: mpsc::Sender<Asked>,
+    _: mpsc::Sender<CommandRequest>,
     _: impl FnOnce(&mut dyn play::PlayerOutput) -> io::Result<Played>,
 ) -> Result<Performance, Box<dyn Error>> {
     Err("this jamgrip was built without ROS 2 (feature `ros`): there is nowhere to play to".into())
 }
 
 /// Reads cues until standard input ends or nobody listens.
-fn listen(teller: &mpsc::Sender<Asked>) {
+fn listen(teller: &mpsc::Sender<CommandRequest>) {
     for line in io::stdin().lock().lines().map_while(Result::ok) {
         match PlayerCommand::parse(&line) {
             Ok(cue) => {
