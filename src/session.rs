@@ -1,5 +1,7 @@
 //! One run in memory: tick, look, save, resume.
 
+use std::sync::Arc;
+
 use serde::{Deserialize, Serialize};
 
 use crate::{
@@ -16,7 +18,7 @@ use crate::{
         saved_state::{self, SavedStateError},
     },
     physics::{
-        State,
+        State, System,
         boundary::body::BodyMotion,
         fill::{self, Progress},
         health::{self, Diverged},
@@ -53,7 +55,7 @@ pub struct Session {
     records: Vec<CommandRecord>,
     digest: u64,
     normal_forces: Vec<f64>,
-    pool: rayon::ThreadPool,
+    pool: Arc<rayon::ThreadPool>,
 }
 
 /// A run that has stopped between two ticks.
@@ -132,7 +134,7 @@ impl Session {
     pub fn remember_start(&mut self, bytes: &[u8]) -> Result<(), SavedStateError> {
         let saved = Saved::read(bytes)?;
         let state = saved_state::read(saved.state)?;
-        let now = &self.coupled.state;
+        let now = &self.coupled.system.state;
         saved_state::same_counts(&[
             ("grains", state.grains.len(), now.grains.len()),
             ("vertices", state.membrane.positions.len(), now.membrane.positions.len()),
@@ -150,7 +152,8 @@ impl Session {
         if there != own || self.is_loaded {
             return None;
         }
-        let (state, world) = (saved_state::write(&self.coupled.state), self.coupled.world.save());
+        let (state, world) =
+            (saved_state::write(&self.coupled.system.state), self.coupled.world.save());
         let processor = self.processor.save();
         let (tick, run_tick) = (self.tick.0, self.run_tick.0);
         let Wrench { force, torque } = self.sensor_zero;
@@ -177,7 +180,7 @@ impl Session {
         };
         let parts = [
             ("time", [self.tick.0, self.run_tick.0] == [other.tick, other.run_tick]),
-            ("grains and membrane", saved_state::is_same(self.coupled.state.clone(), state)),
+            ("grains and membrane", saved_state::is_same(self.coupled.system.state.clone(), state)),
             ("rigid world", self.coupled.world.save() == other.world),
             ("what was commanded", self.processor.save() == other.processor),
             ("zero of the wrist sensor", bits(sensor_zero) == bits(other.sensor_zero)),
@@ -232,7 +235,7 @@ impl Session {
         self.advance(&inputs);
         self.tick = self.tick.next();
         self.run_tick = self.run_tick.next();
-        let Coupled { state, scratch, .. } = &self.coupled;
+        let System { state, scratch, .. } = &self.coupled.system;
         self.normal_forces = measure::normal_forces(state, scratch);
         self.digest = self.take_digest();
         health::check(state, scratch, self.tick.0)
@@ -284,7 +287,7 @@ impl Session {
         if parameter == TunableParameter::ObjectFriction {
             self.start.objects.iter_mut().for_each(|it| it.friction = value);
         }
-        retune(&self.scene, &mut self.coupled.model);
+        retune(&self.scene, &mut self.coupled.system.model);
         self.parameters.retain(|(other, _)| *other != parameter);
         self.parameters.push((parameter, value));
     }
@@ -297,7 +300,7 @@ impl Session {
             let why = format!("its ticks are {then} ns long, those of this run {now} ns");
             return Err(ChangeRefused::Unusable(why));
         }
-        let compiled = Compiled::new(scene, self.pool.current_num_threads())
+        let compiled = Compiled::new(scene, &self.pool)
             .map_err(|fault| ChangeRefused::Unusable(fault.to_string()))?;
         let mut next = Self::from_start_state(compiled, start)
             .map_err(|fault| ChangeRefused::Unusable(fault.to_string()))?;
@@ -369,7 +372,7 @@ impl Session {
     fn frames(&self) -> Frames {
         let world = &self.coupled.world;
         Frames {
-            flange: self.coupled.state.walls[FLANGE].pose,
+            flange: self.coupled.system.state.walls[FLANGE].pose,
             objects: (0..self.coupled.n_objects()).map(|i| world.motion(i).pose).collect(),
         }
     }
@@ -377,7 +380,7 @@ impl Session {
     fn take_digest(&self) -> u64 {
         let mut digest = Digest::new();
         digest.integer(self.tick.0);
-        self.coupled.state.digest(&mut digest);
+        self.coupled.system.state.digest(&mut digest);
         self.coupled.world.digest(&mut digest);
         digest.finish()
     }
@@ -420,7 +423,7 @@ impl Session {
     /// What a wrist sensor feels that was never set to zero: the wrench of the whole gripper on its
     /// mount about the flange's origin, flange axes, mean over the last tick.
     fn sensed(&self) -> Wrench {
-        let to_flange = self.coupled.state.walls[FLANGE].pose.rotation.inverse();
+        let to_flange = self.coupled.system.state.walls[FLANGE].pose.rotation.inverse();
         let Wrench { force, torque } = self.means.gripper_on_mount;
         Wrench { force: to_flange * force, torque: to_flange * torque }
     }
@@ -453,7 +456,7 @@ impl Session {
 
     /// The settled start state as bytes for a cache. Only meaningful before the first tick.
     pub fn start_state(&self) -> Vec<u8> {
-        saved_state::write(&self.coupled.state)
+        saved_state::write(&self.coupled.system.state)
     }
 }
 

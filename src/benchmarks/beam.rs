@@ -5,23 +5,19 @@
 
 use crate::{
     base::{
-        Pose, Real,
+        Real,
         random::{Random, Stream},
-        real::Twist,
     },
     physics::{
-        Model, System,
-        boundary::{
-            body::BodyMotion,
-            wall::{WallModel, WallShape},
-        },
+        System, SystemBuilder,
+        builder::{BuildError, Membrane, Vertices, Wall},
         contact::{
             law::{PairLaw, Surface},
             stiffness_at_vertex,
         },
         critical_step::critical_step,
         membrane::{
-            CARRIER_ID, FREE, MembraneModel, Sheet,
+            CARRIER_ID, FREE, MembraneMaterial, MembraneModel,
             bar::Bar,
             mesh::{Mesh, MeshFault},
             pressure,
@@ -40,8 +36,10 @@ use crate::{
 const BAR: Bar = Bar { width: 0.08, length: 0.4, edge_radius: 0.01, n_side: 8, n_rows: 53 };
 /// Grains; the source leaves their number out, this is a solid fraction of 0.6.
 const N_GRAINS: usize = 18_500;
-/// Smallest and largest radius [m].
+/// Smallest and largest radius (m).
 const RADII: [Real; 2] = [2.5e-3, 2.9e-3];
+/// Mean radius (m).
+const MEAN_RADIUS: Real = 0.5 * (RADII[0] + RADII[1]);
 /// The grains' material, from the middle of the source's range.
 const GRAIN: Material = Material { youngs_modulus: 5e7, poisson_ratio: 0.245, density: 2000.0 };
 /// Latex, from the lower end of the source's range; as dense as the grains.
@@ -50,7 +48,7 @@ const BETWEEN_GRAINS: Surface =
     Surface { friction: 0.25, dissipation_time: 4.3e-6, tangential_damping: 0.3 };
 const ON_LATEX: Surface = Surface { friction: 1.2, ..BETWEEN_GRAINS };
 /// Bending constants of the seeds' other membranes, which the source leaves out here.
-const SHEET: Sheet = Sheet {
+const MEMBRANE: MembraneMaterial = MembraneMaterial {
     thickness: 3e-4,
     youngs_modulus: LATEX.youngs_modulus,
     density: LATEX.density,
@@ -58,9 +56,9 @@ const SHEET: Sheet = Sheet {
     bending_stiffness: 1e-3,
     bending_damping: 5e-6,
 };
-/// Vacuum [Pa], from the middle of the source's range.
+/// Vacuum (Pa), from the middle of the source's range.
 const VACUUM: Real = 50e3;
-/// Pressure at which nothing more would fit [Pa].
+/// Pressure at which nothing more would fit (Pa).
 const PRESSURE: Real = 10e3;
 /// Solid fraction of the scattered grains.
 const THIN: Real = 0.25;
@@ -83,6 +81,9 @@ pub enum BeamError {
     /// The grains find no place to grow from.
     #[error(transparent)]
     NoRoom(#[from] NoRoom),
+    /// The parts do not fit each other.
+    #[error(transparent)]
+    Build(#[from] BuildError),
     /// The membrane is none.
     #[error(transparent)]
     Mesh(#[from] MeshFault),
@@ -93,9 +94,8 @@ pub enum BeamError {
 /// # Errors
 /// None that `grow` did not have.
 pub(super) fn system(state: State) -> Result<System, BeamError> {
-    let mut model = model()?;
-    model.membrane.holders.fill(FREE);
-    let mut system = System::at_rest(model, vec![frame()], state.grains.clone());
+    let mut system = held(membrane()?, state.grains.clone())?;
+    system.model.membrane.holders.fill(FREE);
     system.controls.gauge_setpoint = -VACUUM;
     system.state = state;
     Ok(system)
@@ -106,8 +106,8 @@ pub(super) fn system(state: State) -> Result<System, BeamError> {
 /// # Errors
 /// If the grains find no room.
 pub(super) fn grow() -> Result<State, BeamError> {
-    let model = model()?;
-    let volume = pressure::volume(&model.membrane.mesh, &model.held_positions);
+    let membrane = membrane()?;
+    let volume = pressure::volume(&membrane.mesh, &membrane.mesh.positions);
     let mut random = Random::new(1, Stream::Radius);
     let last: Vec<Real> = (0..N_GRAINS).map(|_| random.between(RADII[0], RADII[1])).collect();
     let half = nalgebra::Vector3::new(BAR.width, BAR.width, BAR.length) / 2.0;
@@ -122,10 +122,10 @@ pub(super) fn grow() -> Result<State, BeamError> {
     let (last, small) = (ordered(&last), ordered(&small));
     let places = order.iter().map(|&i| places[i]).collect();
     let masses = last.iter().map(|&r| GRAIN.density * sphere_volume(r)).collect();
-    let mean = 0.5 * (RADII[0] + RADII[1]);
+    let mut system = held(membrane, Grains::at_rest(places, small, masses))?;
+    let mean = system.model.radius_mean;
     let mass = GRAIN.density * sphere_volume(mean);
-    let recipe = Recipe::new(&model, volume, PRESSURE, mass, mean);
-    let mut system = System::at_rest(model, vec![frame()], Grains::at_rest(places, small, masses));
+    let recipe = Recipe::new(&system.model, volume, PRESSURE, mass, mean);
     let mut growth = Growth::new(recipe, last, scale);
     while growth.step(&mut system) == Grown::Growing {
         drag(&mut system, N_REST[0].1);
@@ -141,26 +141,26 @@ pub(super) fn grow() -> Result<State, BeamError> {
     Ok(system.state)
 }
 
-/// Grains in a membrane that is held all over.
-fn model() -> Result<Model, MeshFault> {
-    let mesh = Mesh::bar(&BAR)?;
-    let law = PairLaw::between(&GRAIN, &GRAIN, BETWEEN_GRAINS);
-    let mean = 0.5 * (RADII[0] + RADII[1]);
-    let mut model = Model::of_grains(law, Real::NAN, RADII[1], mean);
-    model.skin = SKIN_SHARE * RADII[1];
-    model.membrane_law = PairLaw::between(&GRAIN, &LATEX, ON_LATEX);
-    model.held_positions.clone_from(&mesh.positions);
-    model.membrane = MembraneModel::new(mesh, SHEET);
-    model.membrane.holders.fill(CARRIER_ID);
-    model.walls.push(WallModel { shape: WallShape::Frame, law });
-    let on_vertex = stiffness_at_vertex(&model.membrane, &model.membrane_law, RADII[1], VACUUM);
-    model.substep = SAFETY * critical_step(RADII[0], &GRAIN, &model.membrane, on_vertex);
-    model.chamber = ChamberModel { lag_factor: 0.0, change_max: VACUUM / N_DRAWN };
-    Ok(model)
+fn membrane() -> Result<MembraneModel, MeshFault> {
+    Ok(MembraneModel::new(Mesh::bar(&BAR)?, MEMBRANE))
 }
 
-fn frame() -> BodyMotion {
-    BodyMotion { pose: Pose::identity(), twist: Twist::zero() }
+/// Grains in the membrane, which is held all over.
+fn held(mut membrane: MembraneModel, grains: Grains) -> Result<System, BuildError> {
+    let on_membrane = PairLaw::between(&GRAIN, &LATEX, ON_LATEX);
+    membrane.holders.fill(CARRIER_ID);
+    let on_vertex = stiffness_at_vertex(&membrane, &on_membrane, RADII[1], VACUUM);
+    let mut builder = SystemBuilder::new(PairLaw::between(&GRAIN, &GRAIN, BETWEEN_GRAINS));
+    builder
+        .membrane_law(on_membrane)
+        .substep(SAFETY * critical_step(RADII[0], &GRAIN, &membrane, on_vertex))
+        .radii_up_to(grains.radii.iter().copied().fold(RADII[1], Real::max), MEAN_RADIUS)
+        .skin(SKIN_SHARE * RADII[1])
+        .chamber(ChamberModel { lag_factor: 0.0, change_max: VACUUM / N_DRAWN })
+        .grains(grains);
+    let frame = builder.wall(Wall::frame());
+    builder.membrane(Membrane::of(membrane).hold(Vertices::All, frame));
+    builder.build()
 }
 
 /// Lets everything keep a share of its velocities.

@@ -1,6 +1,6 @@
 //! A whole session: the default scene, commanded by its own controller, without anyone who listens.
 
-use std::{collections::BTreeMap, path::Path};
+use std::{collections::BTreeMap, path::Path, sync::Arc};
 
 use super::{
     BenchError, Case, Figures, Options, process,
@@ -8,7 +8,7 @@ use super::{
     sanity::{Seen, check_lift},
 };
 use crate::{
-    base::{Real, lanes},
+    base::{Real, lanes, parallel},
     cosim::compile::Compiled,
     host::{clock::Stopwatch, progress_bar::Progress},
     node::{
@@ -79,9 +79,10 @@ pub(super) fn scene(overrides: &[String]) -> Result<Scene, SceneError> {
 
 /// A session at its first tick.
 pub(super) fn session(scene: &Scene, options: &Options) -> Result<Session, BenchError> {
-    let compiled = Compiled::new(scene, options.n_threads).map_err(start::StartError::from)?;
+    let pool = Arc::new(parallel::pool(options.n_threads)?);
+    let compiled = Compiled::new(scene, &pool).map_err(start::StartError::from)?;
     let progress = Progress::new(options.is_quiet);
-    let started = start::start(compiled, options.n_threads, &options.cache, &progress);
+    let started = start::start(compiled, &options.cache, &progress);
     progress.end();
     let Started { session, .. } = started?;
     Ok(session)
@@ -137,7 +138,7 @@ fn figures(
 ) -> Result<Figures, BenchError> {
     let last = repetitions.last().expect("there is one lap at least");
     let coupled = last.session.coupled();
-    let seen = Seen::of(&coupled.model, &coupled.state, &coupled.scratch);
+    let seen = Seen::of(&coupled.system.model, &coupled.system.state, &coupled.system.scratch);
     seen.check(&case.limits)
         .and_then(|()| check_lift(&last.lift_monitor.verdict()))
         .map_err(|fault| BenchError::Unsound { case: case.name.to_owned(), fault })?;
@@ -154,14 +155,14 @@ fn figures(
         share: time / whole,
         ns_per_step: 1e9 * time / real_of(n_steps),
     };
-    let mesh: &Mesh = &coupled.model.membrane.mesh;
+    let mesh: &Mesh = &coupled.system.model.membrane.mesh;
     Ok(Figures {
         case: case.name.to_owned(),
-        n_grains: coupled.state.grains.len(),
+        n_grains: coupled.system.state.grains.len(),
         n_vertices: mesh.n_vertices(),
         threads: options.n_threads,
         lanes: lanes::width() as u8,
-        substep_s: coupled.model.substep,
+        substep_s: coupled.system.model.substep,
         steps_per_s,
         steps_per_s_best: real_of(n_steps) / times[0],
         spread: times[times.len() - 1] / times[0] - 1.0,
@@ -176,7 +177,7 @@ fn figures(
         start_digest: format!("{start_digest:016x}"),
         n_lap_steps: n_steps,
         n_laps: repetitions.len(),
-        n_builds_per_lap: coupled.scratch.neighbours.n_builds,
+        n_builds_per_lap: coupled.system.scratch.neighbours.n_builds,
         peak_rss_bytes: process::peak(),
         stages: ["commands", "ticks", "snapshots"]
             .into_iter()

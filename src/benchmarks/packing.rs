@@ -8,17 +8,13 @@
 
 use crate::{
     base::{
-        Pose, Real, Vec3,
+        Real, Vec3,
         random::{Random, Stream},
-        real::Twist,
     },
     physics::{
-        Model, System,
-        boundary::{
-            body::BodyMotion,
-            wall::{WallModel, WallShape},
-        },
-        contact::law::{PairLaw, Surface},
+        System, SystemBuilder,
+        builder::Wall,
+        contact::law::Surface,
         neighbours::weigh_pairs,
         packing::{
             Grown, Growth, Recipe, Room, first_scale, numbering::along_curve, scatter,
@@ -37,20 +33,20 @@ pub(super) const RESTITUTION: Real = 0.5;
 /// Dissipation as of a restitution of about one half.
 pub(super) const SURFACE: Surface =
     Surface { friction: 0.5, dissipation_time: 3e-5, tangential_damping: 0.3 };
-/// Smallest and largest radius [m].
+/// Smallest and largest radius (m).
 const RADII: [Real; 2] = [1.8e-3, 2.2e-3];
 /// Solid fraction of the box at these radii; grains grow a little beyond or stay a little below.
 const SOLID_FRACTION: Real = 0.61;
 /// Of grains while they grow: with none they would be denser than any that are poured, with their own
 /// looser.
 const GROWTH_FRICTION: Real = 0.1;
-/// Pressure of the grown grains [Pa].
+/// Pressure of the grown grains (Pa).
 const PRESSURE: Real = 5e4;
 /// Solid fraction of the scattered grains.
 const THIN: Real = 0.25;
-/// Substep that is measured [s]: a tenth of the Rayleigh time.
+/// Substep that is measured (s): a tenth of the Rayleigh time.
 pub(super) const SUBSTEP: Real = 5e-6;
-/// Substep until then [s].
+/// Substep until then (s).
 const COARSE_SUBSTEP: Real = 1e-5;
 /// Neighbours are listed this share of the largest radius beyond contact.
 const SKIN_SHARE: Real = 0.25;
@@ -63,7 +59,7 @@ const N_REST: [[u64; 2]; 3] = [[1000, 3000], [200, 400], [500, 4000]];
 const N_FLOW: u64 = 2000;
 /// Height of the opened box over that of the closed one.
 const OPENED: Real = 1.5;
-/// Standard gravity [m/s²].
+/// Standard gravity (m/s²).
 const GRAVITY: Real = 9.81;
 /// Changes whenever the same box would be filled otherwise.
 const VERSION: u64 = 5;
@@ -109,13 +105,13 @@ impl Boxed {
         self.n_tiles == [1; 3] && self.phase == Phase::Rest
     }
 
-    /// Edge of the box of one copy [m].
+    /// Edge of the box of one copy (m).
     fn edge(&self) -> Real {
         let solid: Real = self.final_radii().iter().map(|&r| sphere_volume(r)).sum();
         (solid / SOLID_FRACTION).cbrt()
     }
 
-    /// Edges of the box [m]; it goes from the origin to there.
+    /// Edges of the box (m); it goes from the origin to there.
     pub(super) fn size(&self) -> Vec3 {
         let edge = self.edge();
         let lid = if self.phase == Phase::Flow { OPENED } else { 1.0 };
@@ -138,7 +134,7 @@ impl Boxed {
         system
     }
 
-    /// Gravity [m/s²].
+    /// Gravity (m/s²).
     pub(super) fn gravity(&self) -> Vec3 {
         match self.phase {
             Phase::Rest => Vec3::new(0.0, 0.0, -GRAVITY),
@@ -220,27 +216,18 @@ impl Boxed {
     }
 }
 
-/// Grains in the box from the origin to `size` [m], gravity downwards.
+/// Grains in the box from the origin to `size` (m), gravity downwards.
 fn system(grains: Grains, size: &Vec3) -> System {
-    let law = PairLaw::between(&MATERIAL, &MATERIAL, SURFACE);
     let largest = grains.radii.iter().copied().fold(RADII[1], Real::max);
-    let mut model = Model::of_grains(law, COARSE_SUBSTEP, largest, 0.5 * (RADII[0] + RADII[1]));
-    model.gravity = Vec3::new(0.0, 0.0, -GRAVITY);
-    model.skin = SKIN_SHARE * largest;
-    let mut walls = Vec::new();
-    for axis in 0..3 {
-        let mut far = Vec3::zeros();
-        far[axis] = size[axis];
-        for (place, sign) in [(Vec3::zeros(), 1.0), (far, -1.0)] {
-            let mut normal = Vec3::zeros();
-            normal[axis] = sign;
-            let law = PairLaw::against_rigid(&MATERIAL, SURFACE);
-            model.walls.push(WallModel { shape: WallShape::Plane { normal }, law });
-            let pose = Pose::translation(place.x, place.y, place.z);
-            walls.push(BodyMotion { pose, twist: Twist::zero() });
-        }
-    }
-    System::at_rest(model, walls, grains)
+    let mut builder = SystemBuilder::of_material(&MATERIAL, SURFACE);
+    builder
+        .gravity(Vec3::new(0.0, 0.0, -GRAVITY))
+        .substep(COARSE_SUBSTEP)
+        .radii_up_to(largest, 0.5 * (RADII[0] + RADII[1]))
+        .skin(SKIN_SHARE * largest)
+        .grains(grains)
+        .walls(Wall::sides(Vec3::zeros(), *size));
+    builder.build().expect("six planes and finite grains fit each other")
 }
 
 fn masses(radii: &[Real]) -> Vec<Real> {

@@ -205,7 +205,7 @@ mod tests {
         // The walls are gone.
         let mut open = packed.clone();
         for (wall, model) in open.controls.walls.iter_mut().zip(&open.model.walls) {
-            let WallShape::Plane { normal } = model.shape else { panic!("a box has planes") };
+            let WallShape::Plane { normal } = &model.shape else { panic!("a box has planes") };
             wall.pose.translation.vector -= normal;
         }
         open.state.walls.clone_from(&open.controls.walls);

@@ -12,7 +12,7 @@ use crate::{
     base::{Pose, Real, Vec3, real::Twist},
     command::change::ChangeRefused,
     physics::{
-        State,
+        Model, Scratch, State, System,
         boundary::{
             body::BodyMotion,
             shape::{Bulk, Surface},
@@ -23,7 +23,7 @@ use crate::{
     scene::{Object, Scene},
 };
 
-/// Overlap that a body may have where it is put [m]: what rests on something sinks in a little.
+/// Overlap that a body may have where it is put (m): what rests on something sinks in a little.
 const OVERLAP_TOLERANCE: Real = 1e-4;
 
 /// Who is in the way.
@@ -34,23 +34,18 @@ enum InTheWay {
 }
 
 impl Coupled {
-    /// Samples of the sheet that each body has springs for.
-    fn n_samples(&self) -> usize {
-        let mesh = &self.model.membrane.mesh;
-        mesh.n_vertices() + mesh.triangles.len()
-    }
-
-    /// Starts anew with the settled bag `start` and the objects of `scene`, in their order.
+    /// Restarts with the settled bag `start` and the objects of `scene`, in their order.
     pub fn start_anew(&mut self, scene: &Scene, start: &State) {
-        let table = self.model.bodies.pop();
+        let table = self.system.model.bodies.pop();
         let built = scene.objects.iter().filter_map(|object| body(scene, object).ok());
         let (bodies, bulks): (Vec<BodyModel>, Vec<Bulk>) = built.unzip();
-        self.model.bodies = bodies;
-        self.model.bodies.extend(table);
+        self.system.model.bodies = bodies;
+        self.system.model.bodies.extend(table);
         let mut state = start.clone();
-        state.springs.bodies = vec![Vec3::zeros(); self.n_samples() * self.model.bodies.len()];
+        let n_samples = self.system.model.n_samples() * self.system.model.bodies.len();
+        state.springs.bodies = vec![Vec3::zeros(); n_samples];
         let step = self.plan.tick / real(self.plan.n_substeps / self.plan.n_per_exchange);
-        let world = RapierWorld::new(scene, &self.model, bulks, step);
+        let world = RapierWorld::new(scene, &self.system.model, bulks, step);
         self.restart(state, world);
     }
 
@@ -61,20 +56,20 @@ impl Coupled {
     pub fn insert(&mut self, scene: &Scene, object: &Object) -> Result<(), ChangeRefused> {
         let (body, bulk) =
             body(scene, object).map_err(|fault| ChangeRefused::Unusable(fault.to_string()))?;
-        let critical = critical_step_with(scene, &self.model, &body);
-        if critical < self.model.substep {
+        let critical = critical_step_with(scene, &self.system.model, &body);
+        if critical < self.system.model.substep {
             return Err(ChangeRefused::Unusable(format!(
                 "object `{}` needs a substep of {critical:.3e} s, this run has {:.3e} s: take a \
                  softer material, or a scene with a shorter time.substep",
-                object.name, self.model.substep
+                object.name, self.system.model.substep
             )));
         }
         let pose = super::rapier_world::centre_pose(object, &bulk);
         self.refuse_overlap(scene, &object.name, &body, (&pose, None))?;
         self.world.insert(object, &body, bulk);
-        let (n, n_samples) = (self.n_objects(), self.n_samples());
-        self.model.bodies.insert(n, body);
-        let springs = &mut self.state.springs.bodies;
+        let (n, n_samples) = (self.n_objects(), self.system.model.n_samples());
+        self.system.model.bodies.insert(n, body);
+        let springs = &mut self.system.state.springs.bodies;
         springs.splice(n * n_samples..n * n_samples, vec![Vec3::zeros(); n_samples]);
         self.start_over_lists();
         Ok(())
@@ -82,10 +77,10 @@ impl Coupled {
 
     /// Takes object `i` away.
     pub fn remove(&mut self, i: usize) {
-        let n_samples = self.n_samples();
+        let n_samples = self.system.model.n_samples();
         self.world.remove(i);
-        self.model.bodies.remove(i);
-        self.state.springs.bodies.drain(i * n_samples..(i + 1) * n_samples);
+        self.system.model.bodies.remove(i);
+        self.system.state.springs.bodies.drain(i * n_samples..(i + 1) * n_samples);
         self.start_over_lists();
     }
 
@@ -101,10 +96,11 @@ impl Coupled {
     ) -> Result<(), ChangeRefused> {
         let is_elsewhere = self.world.motion(i).pose != motion.pose;
         if is_elsewhere {
-            let (name, body) = (&scene.objects[i].name, &self.model.bodies[i]);
+            let (name, body) = (&scene.objects[i].name, &self.system.model.bodies[i]);
             self.refuse_overlap(scene, name, body, (&motion.pose, Some(i)))?;
-            let n_samples = self.n_samples();
-            self.state.springs.bodies[i * n_samples..(i + 1) * n_samples].fill(Vec3::zeros());
+            let n_samples = self.system.model.n_samples();
+            let springs = &mut self.system.state.springs.bodies;
+            springs[i * n_samples..(i + 1) * n_samples].fill(Vec3::zeros());
         }
         self.world.place(i, motion);
         self.start_over_lists();
@@ -116,20 +112,21 @@ impl Coupled {
     /// # Errors
     /// If the bag would be in the table or in an object there.
     pub fn place_flange(&mut self, scene: &Scene, pose: &Pose) -> Result<(), ChangeRefused> {
-        let mut state = self.state.clone();
+        let mut state = self.system.state.clone();
         carry(&mut state, pose);
         if let Some(other) = self.in_the_bags_way(&state) {
             return Err(refused(scene, "gripper_flange", other));
         }
-        self.state = state;
+        self.system.state = state;
         self.start_over_lists();
         Ok(())
     }
 
-    fn start_over_lists(&mut self) {
-        self.n_objects = self.model.bodies.len() - 1;
-        self.controls = super::controls(&self.model, &self.state, &self.world);
-        self.scratch = crate::physics::Scratch::new(&self.model);
+    pub(super) fn start_over_lists(&mut self) {
+        let System { model, controls, state, scratch } = &mut self.system;
+        self.n_objects = model.bodies.len() - 1;
+        *controls = super::controls(model, state, &self.world);
+        *scratch = Scratch::new(model);
     }
 
     fn refuse_overlap(
@@ -140,7 +137,7 @@ impl Coupled {
         (pose, except): (&Pose, Option<usize>),
     ) -> Result<(), ChangeRefused> {
         let BodySurface::Shape(surface) = &body.surface else { return Ok(()) };
-        let other = if reaches_into(surface, pose, &self.state, &self.model) {
+        let other = if reaches_into(surface, pose, &self.system.state, &self.system.model) {
             Some(InTheWay::Bag)
         } else {
             let other = self.world.overlap(surface, pose, except, OVERLAP_TOLERANCE);
@@ -150,15 +147,15 @@ impl Coupled {
     }
 
     fn in_the_bags_way(&self, state: &State) -> Option<InTheWay> {
-        let table = self.model.table.translation.z;
+        let table = self.system.model.table.translation.z;
         let lowest = |points: &[Vec3]| points.iter().map(|it| it.z).fold(Real::INFINITY, Real::min);
         if lowest(&state.membrane.positions) < table - OVERLAP_TOLERANCE {
             return Some(InTheWay::Table);
         }
-        (0..self.n_objects()).find_map(|i| match &self.model.bodies[i].surface {
+        (0..self.n_objects()).find_map(|i| match &self.system.model.bodies[i].surface {
             BodySurface::Shape(surface) => {
                 let pose = self.world.motion(i).pose;
-                let is_there = reaches_into(surface, &pose, state, &self.model);
+                let is_there = reaches_into(surface, &pose, state, &self.system.model);
                 is_there.then_some(InTheWay::Object(i))
             }
             BodySurface::HalfSpace => None,
@@ -177,12 +174,7 @@ fn refused(scene: &Scene, what: &str, with: InTheWay) -> ChangeRefused {
 
 /// True if a body would have a piece of the bag inside: a vertex, the middle of a facet, a grain, or
 /// if it reached through the flange's plane within the rim.
-fn reaches_into(
-    surface: &Surface,
-    pose: &Pose,
-    state: &State,
-    model: &crate::physics::Model,
-) -> bool {
+fn reaches_into(surface: &Surface, pose: &Pose, state: &State, model: &Model) -> bool {
     let is_inside = |point: &Vec3| {
         let local = pose.inverse_transform_point(&(*point).into()).coords;
         surface.distance(&local).distance < -OVERLAP_TOLERANCE
@@ -199,7 +191,7 @@ fn reaches_into(
 
 /// True if `point` is inside the bag: the facets, seen from it, cover more than half of what they
 /// would cover from inside. The flange's plane closes the bag, so a point inside sees about 2π.
-fn is_enclosed(point: &Vec3, state: &State, model: &crate::physics::Model) -> bool {
+fn is_enclosed(point: &Vec3, state: &State, model: &Model) -> bool {
     let solid_angle = |&[a, b, c]: &[u32; 3]| {
         let [a, b, c] = [a, b, c].map(|v| state.membrane.positions[v as usize] - point);
         let (la, lb, lc) = (a.norm(), b.norm(), c.norm());

@@ -16,7 +16,7 @@ use crate::{
     scene,
 };
 
-/// Time constant of the approach [s].
+/// Time constant of the approach (s).
 const FOLLOW_TIME: Real = 0.05;
 /// Share of the acceleration limit that braking is planned with.
 const BRAKING: Real = 0.8;
@@ -24,11 +24,11 @@ const BRAKING: Real = 0.8;
 /// Velocity and acceleration limits of a kinematic body.
 #[derive(Clone, Copy, Debug)]
 pub struct Limits {
-    /// Linear speed [m/s].
+    /// Linear speed (m/s).
     pub speed_max: Real,
-    /// Linear acceleration [m/s²].
+    /// Linear acceleration (m/s²).
     pub acceleration_max: Real,
-    /// Angular speed [rad/s].
+    /// Angular speed (rad/s).
     pub angular_speed_max: Real,
     /// Angular acceleration [rad/s²].
     pub angular_acceleration_max: Real,
@@ -45,7 +45,7 @@ impl Limits {
         }
     }
 
-    /// Velocity after `dt` [s] of a body on its way to `target`.
+    /// Velocity after `dt` (s) of a body on its way to `target`.
     pub fn follow(&self, target: &Pose, motion: &BodyMotion, dt: Real) -> Twist {
         let way = target.translation.vector - motion.pose.translation.vector;
         let turn = (target.rotation * motion.pose.rotation.inverse()).scaled_axis();

@@ -18,10 +18,9 @@ use crate::{
         real::{Twist, Wrench},
     },
     physics::{
-        Controls, Model, Scratch, State,
+        Controls, Model, State, System,
         boundary::{body::BodyMotion, wall::CARRIER},
         measure::real,
-        substep,
     },
 };
 use flange::Limits;
@@ -33,7 +32,7 @@ pub const FLANGE: usize = CARRIER;
 /// How a tick is cut.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plan {
-    /// Length of a tick [s].
+    /// Length of a tick (s).
     pub tick: Real,
     /// Substeps in a tick, a multiple of `n_per_exchange`.
     pub n_substeps: usize,
@@ -44,7 +43,7 @@ pub struct Plan {
 /// What the outside wants during a tick.
 #[derive(Clone, Debug)]
 pub struct Inputs {
-    /// Set-point of the chamber [Pa].
+    /// Set-point of the chamber (Pa).
     pub gauge_setpoint: Real,
     /// Where the flange shall be.
     pub flange_target: Pose,
@@ -68,36 +67,30 @@ pub struct Means {
 
 /// Grains, membrane and chamber together with the rigid world.
 pub struct Coupled {
-    /// What it is made of.
-    pub model: Model,
+    /// Grains, membrane and chamber.
+    pub system: System,
     /// How a tick is cut.
     pub plan: Plan,
-    /// State of grains, membrane and chamber.
-    pub state: State,
-    /// Working memory, also read by measurements.
-    pub scratch: Scratch,
     /// Objects and table.
     pub world: RapierWorld,
-    controls: Controls,
     limits: Limits,
     n_objects: usize,
 }
 
 impl Coupled {
-    /// Couples a settled state with the rigid world. The last body of `model` is the table.
+    /// Couples a settled state with the rigid world. The last body of `model` is the table; the
+    /// motion of the flange is `WallMotion::External`.
     pub fn new(model: Model, plan: Plan, state: State, world: RapierWorld, limits: Limits) -> Self {
         let controls = controls(&model, &state, &world);
         let n_objects = model.bodies.len() - 1;
-        let scratch = Scratch::new(&model);
-        Self { model, plan, state, scratch, world, controls, limits, n_objects }
+        Self { system: System::new(model, controls, state), plan, world, limits, n_objects }
     }
 
     /// Goes on from another state and another rigid world of the same model.
     fn restart(&mut self, state: State, world: RapierWorld) {
-        self.controls = controls(&self.model, &state, &world);
-        self.n_objects = self.model.bodies.len() - 1;
-        self.scratch = Scratch::new(&self.model);
-        (self.state, self.world) = (state, world);
+        self.system.restart(state);
+        self.world = world;
+        self.start_over_lists();
     }
 
     /// Number of objects.
@@ -108,19 +101,19 @@ impl Coupled {
     /// Advances everything by one tick.
     pub fn advance(&mut self, inputs: &Inputs) -> Means {
         let n = self.plan.n_substeps;
-        let flange = self.state.walls[FLANGE];
+        let flange = self.system.state.walls[FLANGE];
         let twist_end = self.limits.follow(&inputs.flange_target, &flange, self.plan.tick);
         self.drive_objects(inputs);
-        self.controls.gauge_setpoint = inputs.gauge_setpoint;
+        self.system.controls.gauge_setpoint = inputs.gauge_setpoint;
         let before: Vec<_> = (0..self.n_objects).map(|i| self.world.momentum(i)).collect();
         let mut sums = Sums::new(self.n_objects);
         let mut exchange = vec![Wrench::zero(); self.n_objects];
         for s in 0..n {
-            self.move_flange(&flange.twist, &twist_end, s);
-            substep(&self.model, &self.controls, &mut self.state, &mut self.scratch);
+            self.set_flange_twist(&flange.twist, &twist_end, s);
+            self.system.step();
             self.add_wrenches(&mut sums, &mut exchange);
-            for body in &mut self.controls.bodies[..self.n_objects] {
-                body.advance(self.model.substep);
+            for body in &mut self.system.controls.bodies[..self.n_objects] {
+                body.advance(self.system.model.substep);
             }
             if (s + 1).is_multiple_of(self.plan.n_per_exchange) {
                 self.exchange(&mut exchange);
@@ -137,33 +130,31 @@ impl Coupled {
             self.world.drive(i, twist.as_ref());
         }
         for i in 0..self.n_objects {
-            self.controls.bodies[i] = self.world.motion(i);
+            self.system.controls.bodies[i] = self.world.motion(i);
         }
     }
 
     /// The flange's velocity goes evenly from its value at the tick's start to that at its end.
-    fn move_flange(&mut self, start: &Twist, end: &Twist, s: usize) {
+    fn set_flange_twist(&mut self, start: &Twist, end: &Twist, s: usize) {
         let share = real(s + 1) / real(self.plan.n_substeps);
         let twist = Twist {
             linear: start.linear + (end.linear - start.linear) * share,
             angular: start.angular + (end.angular - start.angular) * share,
         };
-        let flange = &mut self.controls.walls[FLANGE];
-        *flange = BodyMotion { pose: self.state.walls[FLANGE].pose, twist };
-        flange.advance(self.model.substep);
+        self.system.controls.walls[FLANGE].twist = twist;
     }
 
     fn add_wrenches(&self, sums: &mut Sums, exchange: &mut [Wrench]) {
-        let origin = self.state.walls[FLANGE].pose.translation.vector;
+        let origin = self.system.state.walls[FLANGE].pose.translation.vector;
         for i in 0..self.n_objects {
-            let wrench = &self.scratch.body_wrenches[i];
-            let centre = self.controls.bodies[i].pose.translation.vector;
+            let wrench = &self.system.scratch.body_wrenches[i];
+            let centre = self.system.controls.bodies[i].pose.translation.vector;
             add(&mut exchange[i], wrench);
             add(&mut sums.on_objects[i], wrench);
             sums.on_gripper.force -= wrench.force;
             sums.on_gripper.torque -= wrench.torque + (centre - origin).cross(&wrench.force);
         }
-        add(&mut sums.on_mount, &self.scratch.wall_wrenches[FLANGE]);
+        add(&mut sums.on_mount, &self.system.scratch.wall_wrenches[FLANGE]);
     }
 
     /// One step of the rigid world under the mean of the wrenches summed up.
@@ -174,7 +165,7 @@ impl Coupled {
         self.world.step(sums);
         sums.fill(Wrench::zero());
         for i in 0..self.n_objects {
-            self.controls.bodies[i] = self.world.motion(i);
+            self.system.controls.bodies[i] = self.world.motion(i);
         }
     }
 
@@ -185,7 +176,7 @@ impl Coupled {
                 return scaled(&sums.on_objects[i], share);
             }
             let (momentum_now, spin_now) = self.world.momentum(i);
-            let gravity = self.model.gravity * self.model.density_scaling;
+            let gravity = self.system.model.gravity * self.system.model.density_scaling;
             let weight = gravity * self.world.mass(i);
             Wrench {
                 force: (momentum_now - momentum) / self.plan.tick - weight,

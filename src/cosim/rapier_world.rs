@@ -32,12 +32,12 @@ use crate::{
     scene::{Object, Scene},
 };
 
-/// Half the edge of the table's slab, and half its thickness [m].
+/// Half the edge of the table's slab, and half its thickness (m).
 pub const TABLE_HALF: [Real; 2] = [2.0, 0.1];
-/// Length that rapier takes as typical of the bodies [m].
+/// Length that rapier takes as typical of the bodies (m).
 const LENGTH_UNIT: Real = 0.02;
 
-/// Natural frequency of contacts with the table [Hz]: an object of 30 g under 40 N sinks by
+/// Natural frequency of contacts with the table (Hz): an object of 30 g under 40 N sinks by
 /// F/(m ω²) = 30 µm. At rapier's own 60 Hz it would be 10 mm.
 const TABLE_FREQUENCY: Real = 1000.0;
 /// Damping ratio of these contacts, rapier's own.
@@ -110,7 +110,7 @@ impl RapierWorld {
     }
 
     /// Whether a body of this surface at `pose` would overlap the table or an object other than
-    /// `except` by more than `grace` [m]: the object's index, or `None` for the table.
+    /// `except` by more than `grace` (m): the object's index, or `None` for the table.
     pub fn overlap(
         &self,
         surface: &Surface,
@@ -145,7 +145,7 @@ impl RapierWorld {
         BodyMotion { pose, twist }
     }
 
-    /// Mass of object `i` [kg].
+    /// Mass of object `i` (kg).
     pub fn mass(&self, i: usize) -> Real {
         self.bulks[i].mass
     }
@@ -192,12 +192,12 @@ impl RapierWorld {
     }
 
     /// The bytes of the whole world: bodies, contacts with what was learnt in them, and the trees
-    /// of neighbours. A world that only knew poses and velocities would go on with other bits.
+    /// of neighbours. A world restored from poses and velocities alone would continue with other bits.
     pub fn save(&self) -> Vec<u8> {
         postcard::to_stdvec(&self.world).expect("rapier's world serialises as a whole")
     }
 
-    /// Puts a saved world in the place of this one, which was made for the scene to go on with:
+    /// Puts a saved world in the place of this one, which was made for the scene that continues:
     /// gravity, masses and friction are this scene's, what has come of them is the saved world's.
     ///
     /// # Errors

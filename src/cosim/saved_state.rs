@@ -7,7 +7,7 @@ use crate::{
     base::{Pose, Quat, Real, Vec3, real::Twist},
     physics::{
         State,
-        boundary::body::BodyMotion,
+        boundary::{body::BodyMotion, motion::WallMemory},
         membrane::MembraneState,
         state::{Grains, N_PATCHES, Patch, Patches, SphereSprings, Springs},
     },
@@ -77,7 +77,24 @@ pub fn write(state: &State) -> Vec<u8> {
         sphere_ids: state.springs.spheres.ids.clone(),
         sphere_springs: arrays(&state.springs.spheres.springs),
     };
-    sealed(postcard::to_stdvec(&numbers).expect("a list of numbers always serialises"))
+    let mut bytes = postcard::to_stdvec(&numbers).expect("a list of numbers always serialises");
+    // Left out where no wall needs it, which is what versions before it wrote.
+    if !state.wall_memory.is_empty() {
+        let memory: Vec<[Real; 2]> =
+            state.wall_memory.iter().map(|it| [it.time, it.force]).collect();
+        let memory = postcard::to_stdvec(&memory).expect("a list of numbers always serialises");
+        bytes.extend(memory);
+    }
+    sealed(bytes)
+}
+
+/// What follows the numbers of a state: the memory of the walls, if any wall has one.
+fn wall_memory(rest: &[u8]) -> Option<Vec<WallMemory>> {
+    if rest.is_empty() {
+        return Some(Vec::new());
+    }
+    let memory: Vec<[Real; 2]> = postcard::from_bytes(rest).ok()?;
+    Some(memory.into_iter().map(|[time, force]| WallMemory { time, force }).collect())
 }
 
 /// True if both are the same to the bit. As in the digest, only loaded springs count: which empty
@@ -122,8 +139,13 @@ pub(crate) fn unsealed(bytes: &[u8]) -> Result<&[u8], SavedStateError> {
 /// If they are damaged, or their lists do not fit each other.
 pub fn read(bytes: &[u8]) -> Result<State, SavedStateError> {
     let corrupt = SavedStateError::Corrupt { n_bytes: bytes.len() };
-    let numbers: Numbers = postcard::from_bytes(unsealed(bytes)?).map_err(|_| corrupt)?;
+    let (numbers, rest): (Numbers, _) =
+        postcard::take_from_bytes(unsealed(bytes)?).map_err(|_| corrupt.clone())?;
     numbers.check()?;
+    let wall_memory = wall_memory(rest).ok_or(corrupt)?;
+    if !wall_memory.is_empty() {
+        same_counts(&[("walls' motions", wall_memory.len(), numbers.walls.len())])?;
+    }
     Ok(State {
         grains: Grains {
             positions: vectors(&numbers.grain_positions),
@@ -149,6 +171,7 @@ pub fn read(bytes: &[u8]) -> Result<State, SavedStateError> {
         pair_ids: numbers.pair_ids,
         gauge: numbers.gauge,
         walls: numbers.walls.iter().map(motion).collect(),
+        wall_memory,
     })
 }
 

@@ -17,21 +17,21 @@ use crate::base::{Pose, Real, Vec3};
 pub enum Volume {
     /// All points near one.
     Ball {
-        /// The middle [m].
+        /// The middle (m).
         centre: Vec3,
-        /// Its radius [m].
+        /// Its radius (m).
         radius: Real,
     },
     /// A turned box.
     Box {
         /// Pose of its middle.
         pose: Pose,
-        /// Half of its edges [m].
+        /// Half of its edges (m).
         half: Vec3,
     },
     /// The convex hull of points.
     Hull {
-        /// The points [m].
+        /// The points (m).
         points: Vec<Vec3>,
     },
 }
@@ -76,7 +76,7 @@ fn hull(points: &[Vec3]) -> Result<ConvexPolyhedron, String> {
         return Err("these points lie on a line: give at least three that do not".into());
     }
     let points: Vec<Vector> = points.iter().map(|p| Vector::new(p.x, p.y, p.z)).collect();
-    // Its inner checks panic on some points that are nearly one; whoever asks may be wrong
+    // Its inner checks panic on some points that are nearly one; a caller may be wrong
     // without ending the run. Flat ones may pass as a hull without a volume.
     let made = catch_unwind(|| ConvexPolyhedron::from_convex_hull(&points));
     let hull = made.ok().flatten().filter(|hull| hull.mass_properties(1.0).mass() > 0.0);

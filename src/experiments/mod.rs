@@ -175,6 +175,9 @@ pub enum StartError {
     /// The membrane cannot be meshed.
     #[error("membrane: {0}")]
     Mesh(#[from] crate::physics::membrane::mesh::MeshFault),
+    /// The parts of the system do not fit each other.
+    #[error("system: {0}")]
+    Build(#[from] crate::physics::builder::BuildError),
     /// The grains find no place to grow from.
     #[error("packing: {0}")]
     NoRoom(#[from] crate::physics::packing::scatter::NoRoom),

@@ -18,6 +18,7 @@ use super::{
 };
 use crate::host::{cache::Cache, clock::Pacer, progress_bar::Progress, shutdown::Shutdown};
 use crate::{
+    base::parallel,
     cosim::compile::Compiled,
     io::sink::RunStatistics,
     physics::health::Diverged,
@@ -83,7 +84,7 @@ pub struct Finished {
 /// If the run cannot begin.
 pub fn launch(scene: &Scene, options: &Options) -> Result<Finished, RunError> {
     let begin = |compiled: Compiled, progress: &Progress| {
-        Ok(start::start(compiled, options.n_threads, &options.cache, progress)?)
+        Ok(start::start(compiled, &options.cache, progress)?)
     };
     launch_with(scene, options, begin, |outside| {
         (CommandSources::new(scene, outside.sources), outside.front)
@@ -101,7 +102,7 @@ pub fn launch_by(
     script: crate::bag::source::Script,
 ) -> Result<Finished, RunError> {
     let begin = |compiled: Compiled, progress: &Progress| {
-        Ok(start::start(compiled, options.n_threads, &options.cache, progress)?)
+        Ok(start::start(compiled, &options.cache, progress)?)
     };
     launch_with(scene, options, begin, |_| {
         (CommandSources::from_outside(vec![Box::new(script)]), None)
@@ -122,7 +123,8 @@ pub fn launch_with(
     let since_start = Pacer::start(false);
     let shutdown = Shutdown::listen()?;
     let progress = Progress::new(options.is_quiet);
-    let compiled = Compiled::new(scene, options.n_threads).map_err(StartError::from)?;
+    let pool = Arc::new(parallel::pool(options.n_threads).map_err(StartError::from)?);
+    let compiled = Compiled::new(scene, &pool).map_err(StartError::from)?;
     let substep_s = compiled.model.substep;
     let mesh = &compiled.model.membrane.mesh;
     let encoder = Arc::new(Encoder::new(scene, &mesh.triangles, &mesh.positions));
@@ -164,7 +166,7 @@ pub fn launch_with(
     };
     let start_time_s = since_start.wall_time_s();
     let report = super::run(&mut session, &mut context);
-    let mesh = &session.coupled().model.membrane.mesh;
+    let mesh = &session.coupled().system.model.membrane.mesh;
     let sizes = Sizes { n_grains: session.scene().grains.count, n_vertices: mesh.n_vertices() };
     let substep_s = session.substep_s();
     Ok(finish(session.scene(), context, report, Known { sizes, substep_s, origin, start_time_s }))

@@ -2,13 +2,16 @@
 //! that questions are answered meanwhile.
 
 use std::{
-    sync::mpsc::{self, Receiver, TryRecvError},
+    sync::{
+        Arc,
+        mpsc::{self, Receiver, TryRecvError},
+    },
     thread,
 };
 
 use super::start::{self, StartError};
 use crate::host::{cache::Cache, progress_bar::Progress};
-use crate::{cosim::compile::Compiled, scene::Scene};
+use crate::{base::parallel, cosim::compile::Compiled, scene::Scene};
 
 /// Settles scenes, one at a time.
 pub struct Loader {
@@ -55,9 +58,10 @@ impl Loader {
 }
 
 fn settle(scene: &Scene, n_threads: usize, cache: &Cache) -> Result<Vec<u8>, StartError> {
-    let compiled = Compiled::new(scene, n_threads)?;
+    // Threads of its own: those of the run are busy with the run.
+    let compiled = Compiled::new(scene, &Arc::new(parallel::pool(n_threads)?))?;
     // The terminal's line belongs to the run.
-    let started = start::start(compiled, n_threads, cache, &Progress::new(true))?;
+    let started = start::start(compiled, cache, &Progress::new(true))?;
     Ok(started.session.start_state())
 }
 

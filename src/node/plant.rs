@@ -65,12 +65,12 @@ impl Plant for Session {
     }
 
     fn encoder(&self, before: &Encoder) -> Option<Encoder> {
-        let mesh = &self.coupled().model.membrane.mesh;
+        let mesh = &self.coupled().system.model.membrane.mesh;
         Some(before.of_scene(self.scene(), &mesh.triangles, &mesh.positions))
     }
 
     fn substep_s(&self) -> f64 {
-        self.coupled().model.substep
+        self.coupled().system.model.substep
     }
 
     fn view<'a>(&'a self, seen: &'a Snapshot) -> View<'a> {

@@ -1,5 +1,7 @@
 //! A session at its first tick: with a settled bag from the cache, or settled now and kept.
 
+use std::sync::Arc;
+
 use crate::host::{
     cache::{Cache, Found},
     progress_bar::Progress,
@@ -16,6 +18,9 @@ pub enum StartError {
     /// The scene cannot be compiled.
     #[error(transparent)]
     Compile(#[from] CompileError),
+    /// The solver's threads could not be started.
+    #[error("the solver's threads cannot be started: {0}; ask for fewer")]
+    Threads(#[from] rayon::ThreadPoolBuildError),
     /// The bag could not be filled.
     #[error("filling the bag: {0}")]
     Settle(#[from] Diverged),
@@ -35,12 +40,11 @@ pub struct Started {
 /// If the bag cannot be filled. A cache that cannot be read or written costs time only.
 pub fn start(
     compiled: Compiled,
-    n_threads: usize,
     cache: &Cache,
     progress: &Progress,
 ) -> Result<Started, StartError> {
     let key = compiled.start_digest();
-    let scene = compiled.scene.clone();
+    let (scene, pool) = (compiled.scene.clone(), Arc::clone(&compiled.pool));
     let compiled = match cache.load(key) {
         Found::Nothing => compiled,
         Found::Damaged(path) => {
@@ -52,7 +56,7 @@ pub fn start(
             Ok(session) => return Ok(Started { session, origin: "cached" }),
             Err(error) => {
                 progress.say(&error);
-                Compiled::new(&scene, n_threads)?
+                Compiled::new(&scene, &pool)?
             }
         },
     };

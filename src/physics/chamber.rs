@@ -15,7 +15,7 @@ use super::{Controls, model::ChamberModel, state::State};
 use crate::{base::Real, scene};
 
 impl ChamberModel {
-    /// The chamber of a scene for substeps of `dt` [s].
+    /// The chamber of a scene for substeps of `dt` (s).
     pub fn new(chamber: &scene::Chamber, dt: Real) -> Self {
         let lag_factor = if chamber.lag > 0.0 { (-dt / chamber.lag).exp() } else { 0.0 };
         Self { lag_factor, change_max: chamber.rate_max * dt }

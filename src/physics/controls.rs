@@ -6,7 +6,7 @@ use crate::base::Real;
 /// Inputs held or moved by `cosim` while the physics runs.
 #[derive(Clone, Debug)]
 pub struct Controls {
-    /// Set-point of the chamber's gauge pressure [Pa].
+    /// Set-point of the chamber's gauge pressure (Pa).
     pub gauge_setpoint: Real,
     /// The walls: poses at the end of this substep, velocities during it.
     pub walls: Vec<BodyMotion>,

@@ -8,16 +8,15 @@
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Controls, Model, Scratch, State,
+    Controls, Model, State, System,
     boundary::body::BodyMotion,
     contact::law::PairLaw,
-    health::{self, Diverged},
+    health::Diverged,
     measure::real,
     membrane::{CARRIER_ID, MembraneState, mesh::Mesh},
     neighbours::weigh_pairs,
     packing::sphere_volume,
     state::{Grains, Springs},
-    substep,
 };
 use crate::{
     base::{
@@ -33,17 +32,17 @@ use crate::{
 const FIRST_SOLID_FRACTION: Real = 0.15;
 /// Growth per relaxation time: slow enough that grains get out of each other's way.
 const GROWTH_PER_RELAXATION: Real = 0.05;
-/// Pressure that the growing grains may exert, for the relaxation time [Pa].
+/// Pressure that the growing grains may exert, for the relaxation time (Pa).
 const GROWTH_PRESSURE: Real = 900.0;
-/// Time to fall into the bowl [s].
+/// Time to fall into the bowl (s).
 const FALL_TIME: Real = 0.12;
-/// Time over which the springs are shortened [s].
+/// Time over which the springs are shortened (s).
 const SHRINK_TIME: Real = 0.15;
-/// Time over which softer grains become as hard as they are [s].
+/// Time over which softer grains become as hard as they are (s).
 const HARDEN_TIME: Real = 0.03;
-/// Longest time to come to rest [s].
+/// Longest time to come to rest (s).
 const REST_TIME_MAX: Real = 0.4;
-/// Root mean square speed of grains at rest [m/s].
+/// Root mean square speed of grains at rest (m/s).
 const REST_SPEED: Real = 2e-3;
 
 /// Substeps between two looks at progress and health.
@@ -119,7 +118,7 @@ impl Stage {
     }
 }
 
-/// How far a filling is: with its state, all that is needed to go on.
+/// Progress of a filling. With the state it is all that a filling resumes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Place {
     /// What is being done.
@@ -133,16 +132,13 @@ pub struct Filling {
     /// The system while it is filled, and when it is.
     soft: Model,
     goal: Model,
-    /// That of the present stage.
-    model: Model,
-    controls: Controls,
-    state: State,
-    scratch: Scratch,
+    /// With the model of the present stage.
+    system: System,
     place: Place,
     recipe: Recipe,
 }
 
-/// What the scene says about the filling.
+/// Parameters of the filling, from the scene.
 struct Recipe {
     final_radii: Vec<Real>,
     /// Share of the final radii at which the growth begins.
@@ -195,7 +191,7 @@ impl Filling {
         Self::with([soft, goal], recipe, Place { stage: Stage::Growing, k: 0 }, state)
     }
 
-    /// Goes on with `(place, state)` of a filling of the same scene.
+    /// Resumes `(place, state)` of a filling of the same scene.
     pub fn resume(
         scene: &Scene,
         soft: &Model,
@@ -209,9 +205,8 @@ impl Filling {
         let [soft, goal] = models.map(|it| Model { bodies: Vec::new(), ..it.clone() });
         let controls =
             Controls { gauge_setpoint: 0.0, walls: state.walls.clone(), bodies: Vec::new() };
-        let scratch = Scratch::new(&goal);
-        let model = goal.clone();
-        let mut filling = Self { soft, goal, model, controls, state, scratch, place, recipe };
+        let system = System::new(goal.clone(), controls, state);
+        let mut filling = Self { soft, goal, system, place, recipe };
         filling.enter();
         filling
     }
@@ -237,7 +232,7 @@ impl Filling {
 
     /// The state so far.
     pub fn state(&self) -> &State {
-        &self.state
+        &self.system.state
     }
 
     /// True when everything has come to rest.
@@ -247,7 +242,7 @@ impl Filling {
 
     /// The state at the end.
     pub fn into_state(self) -> State {
-        self.state
+        self.system.state
     }
 
     /// Most substeps that the whole filling can take.
@@ -268,16 +263,16 @@ impl Filling {
     fn enter(&mut self) {
         let stage = self.place.stage;
         let is_soft = stage <= Stage::Closing;
-        self.model = if is_soft { self.soft.clone() } else { self.goal.clone() };
+        self.system.model = if is_soft { self.soft.clone() } else { self.goal.clone() };
         if stage <= Stage::Falling {
-            self.model.membrane.holders.fill(CARRIER_ID);
-            self.model.held_positions.clone_from(&self.recipe.held_shape);
+            self.system.model.membrane.holders.fill(CARRIER_ID);
+            self.system.model.held_positions.clone_from(&self.recipe.held_shape);
         }
         if stage == Stage::Growing {
             let smooth = |law: &mut PairLaw| law.friction = 0.0;
-            smooth(&mut self.model.grain_law);
-            self.model.walls.iter_mut().for_each(|wall| smooth(&mut wall.law));
-            smooth(&mut self.model.membrane_law);
+            smooth(&mut self.system.model.grain_law);
+            self.system.model.walls.iter_mut().for_each(|wall| smooth(&mut wall.law));
+            smooth(&mut self.system.model.membrane_law);
         }
         if Stage::Closing < stage {
             self.close(1.0);
@@ -287,7 +282,7 @@ impl Filling {
     /// Rest lengths when `share` of the closing is over.
     fn close(&mut self, share: Real) {
         let [first, last] = self.recipe.rest_lengths;
-        self.model.membrane.scale_rest_lengths(first + (last - first) * share);
+        self.system.model.membrane.scale_rest_lengths(first + (last - first) * share);
     }
 
     /// Laws when `share` of the hardening is over: moduli rise by equal factors in equal times.
@@ -301,9 +296,9 @@ impl Filling {
             }
         };
         let (soft, goal) = (&self.soft, &self.goal);
-        self.model.grain_law = between(&soft.grain_law, &goal.grain_law);
-        self.model.membrane_law = between(&soft.membrane_law, &goal.membrane_law);
-        for (k, wall) in self.model.walls.iter_mut().enumerate() {
+        self.system.model.grain_law = between(&soft.grain_law, &goal.grain_law);
+        self.system.model.membrane_law = between(&soft.membrane_law, &goal.membrane_law);
+        for (k, wall) in self.system.model.walls.iter_mut().enumerate() {
             wall.law = between(&soft.walls[k].law, &goal.walls[k].law);
         }
     }
@@ -312,10 +307,11 @@ impl Filling {
     fn grow(&mut self, share: Real) {
         let scale = self.recipe.first.powf(1.0 - share);
         for (i, &radius) in self.recipe.final_radii.iter().enumerate() {
-            self.state.grains.radii[i] = scale * radius;
-            self.state.grains.masses[i] = sphere_volume(scale * radius) * self.recipe.density;
+            self.system.state.grains.radii[i] = scale * radius;
+            self.system.state.grains.masses[i] =
+                sphere_volume(scale * radius) * self.recipe.density;
         }
-        weigh_pairs(&self.state, &mut self.scratch.neighbours);
+        weigh_pairs(&self.system.state, &mut self.system.scratch.neighbours);
     }
 
     /// The stage after `stage`, without those that have nothing to do.
@@ -335,11 +331,11 @@ impl Filling {
             Stage::Hardening => self.harden(share),
             Stage::Falling | Stage::Resting | Stage::Settled => {}
         }
-        substep(&self.model, &self.controls, &mut self.state, &mut self.scratch);
+        self.system.step();
         let mut is_over = k + 1 == n_substeps;
         if k.is_multiple_of(LOOK_EVERY) {
-            health::check(&self.state, &self.scratch, 0)?;
-            is_over |= stage == Stage::Resting && speed(&self.state) < REST_SPEED;
+            self.system.check(0)?;
+            is_over |= stage == Stage::Resting && speed(&self.system.state) < REST_SPEED;
         }
         self.place.k += 1;
         if is_over {
@@ -350,7 +346,7 @@ impl Filling {
     }
 }
 
-/// Root mean square speed of the grains [m/s].
+/// Root mean square speed of the grains (m/s).
 fn speed(state: &State) -> Real {
     let velocities = &state.grains.velocities;
     let sum: Real = velocities.iter().map(|v| v.norm_squared()).sum();
@@ -422,5 +418,6 @@ fn scatter(scene: &Scene, recipe: &Recipe) -> State {
         pair_ids: Vec::new(),
         gauge: 0.0,
         walls: vec![BodyMotion { pose, twist: Twist::zero() }],
+        wall_memory: Vec::new(),
     }
 }

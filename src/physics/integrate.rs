@@ -34,7 +34,7 @@ fn carried_to(controls: &Controls) -> Vec3 {
 }
 
 /// What grains and free vertices gain with the carrier in this substep [m/s], so that heavier ones
-/// follow it as the real ones do; see `cosim::compile::heavier`.
+/// follow it as the real ones do; see `cosim::compile::density_scaling`.
 fn carried_along(model: &Model, controls: &Controls, state: &State) -> Vec3 {
     let gained = match (controls.walls.get(CARRIER), state.walls.get(CARRIER)) {
         (Some(to), Some(from)) => to.twist.linear - from.twist.linear,

@@ -22,7 +22,9 @@ pub mod scratch;
 pub mod state;
 pub mod substep;
 pub mod system;
+pub mod builder; // any system from its parts
 
+pub use builder::SystemBuilder;
 pub use controls::Controls;
 pub use model::Model;
 pub use scratch::Scratch;

@@ -1,7 +1,8 @@
 //! State: all that must be known to go on. One `Vec` per quantity, index = id.
 
 use super::{
-    boundary::{body::BodyMotion, wall::CARRIER},
+    Model,
+    boundary::{body::BodyMotion, motion::WallMemory, wall::CARRIER},
     membrane::MembraneState,
 };
 use crate::base::{Real, Vec3, digest::Digest};
@@ -26,6 +27,9 @@ pub struct State {
     pub gauge: Real,
     /// Where the walls are and how they move. Written by `integrate` from the controls.
     pub walls: Vec<BodyMotion>,
+    /// What the motions of the walls go on from, one for each wall; empty where no wall needs it.
+    /// Written by `System::step`.
+    pub wall_memory: Vec<WallMemory>,
 }
 
 /// The grains.
@@ -49,6 +53,11 @@ impl Grains {
         let velocities = vec![Vec3::zeros(); positions.len()];
         let spins = velocities.clone();
         Self { positions, velocities, spins, radii, masses }
+    }
+
+    /// Mean radius (m), 0 without grains.
+    pub fn mean_radius(&self) -> Real {
+        self.radii.iter().sum::<Real>() / self.len().max(1) as Real
     }
 
     /// Number of grains.
@@ -129,6 +138,21 @@ impl Patches {
 }
 
 impl State {
+    /// Grains at rest in `model` without any contact, its membrane in its reference shape, walls at
+    /// `walls`, air at atmospheric pressure.
+    pub fn at_rest(model: &Model, walls: Vec<BodyMotion>, grains: Grains) -> Self {
+        let n_samples = model.n_samples() * model.bodies.len();
+        Self {
+            springs: Springs::none(grains.len(), walls.len(), n_samples),
+            grains,
+            membrane: MembraneState::at_rest(&model.membrane.mesh),
+            pair_ids: Vec::new(),
+            gauge: 0.0,
+            walls,
+            wall_memory: Vec::new(),
+        }
+    }
+
     /// Position of the carrier, the first wall [m]; zero without walls.
     pub fn carrier_position(&self) -> Vec3 {
         self.walls.get(CARRIER).map_or_else(Vec3::zeros, |it| it.pose.translation.vector)
@@ -148,6 +172,9 @@ impl State {
             digest.reals(wall.pose.translation.vector.as_slice());
             digest.reals(wall.pose.rotation.coords.as_slice());
             digest.vectors(&[wall.twist.linear, wall.twist.angular]);
+        }
+        for memory in &self.wall_memory {
+            digest.reals(&[memory.time, memory.force]);
         }
     }
 

@@ -1,21 +1,24 @@
-//! Grains, membrane, chamber and walls with all that a substep needs, driven by whoever owns it.
+//! One system: model, controls, state and scratch of grains, membranes, air and walls.
+
+use std::iter::repeat;
 
 use super::{
     Controls, Model, Scratch, State,
-    boundary::body::BodyMotion,
+    boundary::motion::{WallMemory, WallMotion},
+    builder::WallId,
     health::{self, Diverged},
-    membrane::MembraneState,
-    state::{Grains, Springs},
+    state::Springs,
     substep,
     substep::STAGES,
 };
+use crate::base::{Real, Vec3};
 
 /// One system.
 #[derive(Clone)]
 pub struct System {
     /// What it is made of.
     pub model: Model,
-    /// What the outside wants.
+    /// Inputs of the next substeps.
     pub controls: Controls,
     /// What evolves.
     pub state: State,
@@ -30,46 +33,88 @@ impl System {
         Self { model, controls, state, scratch }
     }
 
-    /// Grains at rest in `model`, its membrane in its reference shape, walls at `walls`.
-    pub fn at_rest(model: Model, walls: Vec<BodyMotion>, grains: Grains) -> Self {
-        let n_samples = model.membrane.mesh.n_vertices() + model.membrane.mesh.triangles.len();
-        let springs = Springs::none(grains.len(), walls.len(), n_samples * model.bodies.len());
-        let state = State {
-            grains,
-            membrane: MembraneState::at_rest(&model.membrane.mesh),
-            springs,
-            pair_ids: Vec::new(),
-            gauge: 0.0,
-            walls: walls.clone(),
-        };
-        let controls = Controls { gauge_setpoint: 0.0, walls, bodies: Vec::new() };
-        Self::new(model, controls, state)
-    }
-
-    /// Advances by one substep; walls move on at their velocities.
+    /// Advances by one substep. Walls move as their motions say.
     pub fn step(&mut self) {
         self.move_walls();
         substep(&self.model, &self.controls, &mut self.state, &mut self.scratch);
+        self.remember_walls();
     }
 
-    /// The same, telling `after` the number of each stage of `STAGES` that is over.
+    /// The same, calling `after` with the number of each stage of `STAGES` that is over.
     pub fn step_by_stages(&mut self, mut after: impl FnMut(usize)) {
         self.move_walls();
         for (k, (_, stage)) in STAGES.iter().enumerate() {
             stage(&self.model, &self.controls, &mut self.state, &mut self.scratch);
             after(k);
         }
+        self.remember_walls();
+    }
+
+    /// Gives a wall another motion, which begins now, from where the wall is.
+    ///
+    /// # Panics
+    /// If there is no such wall.
+    pub fn set_wall_motion(&mut self, wall: WallId, motion: WallMotion) {
+        self.model.walls[wall.index()].motion = motion;
+        if let Some(memory) = self.state.wall_memory.get_mut(wall.index()) {
+            memory.time = 0.0;
+        }
+    }
+
+    /// Adds a grain at rest while a system is set up; returns its number. All contacts are forgotten.
+    pub fn add_grain(&mut self, position: Vec3, radius: Real, mass: Real) -> usize {
+        let Self { model, state, scratch, .. } = self;
+        let grains = &mut state.grains;
+        grains.positions.push(position);
+        grains.velocities.push(Vec3::zeros());
+        grains.spins.push(Vec3::zeros());
+        grains.radii.push(radius);
+        grains.masses.push(mass);
+        model.radius_max = model.radius_max.max(radius);
+        model.radius_mean = grains.mean_radius();
+        let n_samples = model.n_samples() * model.bodies.len();
+        state.springs = Springs::none(grains.len(), model.walls.len(), n_samples);
+        state.pair_ids.clear();
+        *scratch = Scratch::new(model);
+        grains.len() - 1
+    }
+
+    /// Continues from another state of the same model.
+    pub fn restart(&mut self, state: State) {
+        self.controls.walls.clone_from(&state.walls);
+        self.scratch = Scratch::new(&self.model);
+        self.state = state;
     }
 
     fn move_walls(&mut self) {
-        let dt = self.model.substep;
-        self.controls.walls.iter_mut().for_each(|wall| wall.advance(dt));
+        let Self { model, controls, state, .. } = self;
+        let dt = model.substep;
+        if model.walls.iter().any(|wall| wall.motion.needs_memory()) {
+            state.wall_memory.resize(model.walls.len(), WallMemory::default());
+        }
+        let memories = state.wall_memory.iter().copied().chain(repeat(WallMemory::default()));
+        for ((wall, model), memory) in controls.walls.iter_mut().zip(&model.walls).zip(memories) {
+            if let Some(twist) = model.motion.twist(&wall.pose, &memory, dt) {
+                wall.twist = twist;
+            }
+            wall.advance(dt);
+        }
     }
 
-    /// Looks for what cannot go on; `tick` is only told in the fault.
+    fn remember_walls(&mut self) {
+        let wrenches = &self.scratch.wall_wrenches;
+        for (w, memory) in self.state.wall_memory.iter_mut().enumerate() {
+            memory.time += self.model.substep;
+            if let WallMotion::Servo(servo) = &self.model.walls[w].motion {
+                memory.force = -servo.axis.dot(&wrenches[w].force);
+            }
+        }
+    }
+
+    /// Checks that the run can continue; the error names `tick`.
     ///
     /// # Errors
-    /// The first fault in a fixed order.
+    /// The first problem in a fixed order.
     pub fn check(&self, tick: u64) -> Result<(), Diverged> {
         health::check(&self.state, &self.scratch, tick)
     }

@@ -4,6 +4,7 @@
 use std::{
     fs, io,
     path::{Path, PathBuf},
+    sync::Arc,
 };
 
 use crate::{
@@ -12,6 +13,7 @@ use crate::{
         recording::{Alteration, Course, Order, Place, Recording},
         source::Script,
     },
+    base::parallel,
     command::change::Change,
     cosim::{
         compile::{CompileError, Compiled},
@@ -201,7 +203,8 @@ impl RecordedRun {
         scene: &Scene,
         n_threads: usize,
     ) -> Result<Session, ReplayError> {
-        let session = Session::resume(Compiled::new(scene, n_threads)?, bytes);
+        let pool = Arc::new(parallel::pool(n_threads).map_err(StartError::from)?);
+        let session = Session::resume(Compiled::new(scene, &pool)?, bytes);
         session.map_err(|fault| self.of_no_use(tick, fault))
     }
 

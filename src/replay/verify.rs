@@ -1,5 +1,7 @@
 //! Is every tick as it was recorded? The run is simulated again, and every digest compared.
 
+use std::sync::Arc;
+
 use super::{
     compatibility,
     recorded_run::{RecordedRun, ReplayError},
@@ -8,10 +10,11 @@ use super::{
 };
 use crate::{
     bag::recording::Alteration,
+    base::parallel,
     command::change::Change,
     cosim::compile::Compiled,
     host::{cache::Cache, clock::Stopwatch, progress_bar::Progress, shutdown::Shutdown},
-    node::start::{self, Started},
+    node::start::{self, StartError, Started},
     session::Session,
 };
 
@@ -144,14 +147,15 @@ fn start<'a>(
         return Err(ReplayError::NoStart { path: again.path.clone(), tick: first });
     }
     let (_, n_threads) = options.hands.shared_out(1);
-    let compiled = Compiled::new(&again.scene, n_threads)?;
+    let pool = Arc::new(parallel::pool(n_threads).map_err(StartError::from)?);
+    let compiled = Compiled::new(&again.scene, &pool)?;
     let session = if options.settles {
         let on_progress = &mut |it: crate::physics::fill::Progress| {
             options.progress.settling(it.stage, it.share);
         };
         Session::settle(compiled, on_progress)?
     } else {
-        let started = start::start(compiled, n_threads, &options.cache, options.progress);
+        let started = start::start(compiled, &options.cache, options.progress);
         let Started { session, origin } = started.map_err(ReplayError::from)?;
         let start = format!("no checkpoint is recorded: the start was {origin} from the scene");
         remarks.push(start);

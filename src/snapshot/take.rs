@@ -8,14 +8,14 @@ use super::{
 use crate::{
     base::{Real, Vec3, real::Wrench},
     cosim::{Coupled, FLANGE},
-    physics::measure,
+    physics::{System, measure},
     session::Session,
 };
 
 /// A copy of what the outside may see, with the large parts asked for.
 pub fn snapshot(session: &Session, parts: Parts) -> Snapshot {
     let coupled = session.coupled();
-    let state = &coupled.state;
+    let state = &coupled.system.state;
     let flange = &state.walls[FLANGE];
     let to_flange = flange.pose.rotation.inverse();
     let in_flange_axes =
@@ -33,7 +33,7 @@ pub fn snapshot(session: &Session, parts: Parts) -> Snapshot {
             gauge_setpoint: session.processor().gauge_setpoint(),
             gauge: state.gauge,
             ambient: session.scene().chamber.ambient,
-            volume: measure::enclosed_volume(&coupled.model, state),
+            volume: measure::enclosed_volume(&coupled.system.model, state),
         },
         jamming: jamming(coupled),
         membrane: parts.membrane.then(|| membrane(session)),
@@ -52,7 +52,7 @@ pub fn snapshot(session: &Session, parts: Parts) -> Snapshot {
 
 /// A borrowed look at everything. `seen` is the snapshot of the same tick.
 pub fn view<'a>(session: &'a Session, seen: &'a Snapshot) -> View<'a> {
-    let Coupled { state, scratch, .. } = session.coupled();
+    let System { state, scratch, .. } = &session.coupled().system;
     View {
         snapshot: seen,
         grain_positions: &state.grains.positions,
@@ -82,7 +82,7 @@ fn objects(session: &Session) -> Vec<ObjectSnapshot> {
 }
 
 fn jamming(coupled: &Coupled) -> JammingSnapshot {
-    let Coupled { model, state, scratch, .. } = coupled;
+    let System { model, state, scratch, .. } = &coupled.system;
     let packing = measure::packing(state, scratch);
     let diameter = 2.0 * model.radius_mean;
     JammingSnapshot {
@@ -100,7 +100,7 @@ fn jamming(coupled: &Coupled) -> JammingSnapshot {
 }
 
 fn membrane(session: &Session) -> MembraneSnapshot {
-    let Coupled { model, state, scratch, .. } = session.coupled();
+    let System { model, state, scratch, .. } = &session.coupled().system;
     let mesh = &model.membrane.mesh;
     let positions = &state.membrane.positions;
     let mut area_normals = vec![Vec3::zeros(); positions.len()];
@@ -123,7 +123,7 @@ fn membrane(session: &Session) -> MembraneSnapshot {
 
 /// Mean strain of the springs at each vertex; all rest lengths are shortened by the same share.
 fn strains(session: &Session) -> Vec<Real> {
-    let Coupled { model, state, .. } = session.coupled();
+    let System { model, state, .. } = &session.coupled().system;
     let mesh = &model.membrane.mesh;
     let shortened = 1.0 - session.scene().membrane.rest_length_shrink;
     let mut sums = vec![(0.0, 0.0); mesh.n_vertices()];
@@ -141,7 +141,7 @@ fn strains(session: &Session) -> Vec<Real> {
 }
 
 fn contacts(coupled: &Coupled) -> Vec<ContactSnapshot> {
-    let Coupled { model, scratch, .. } = coupled;
+    let System { model, scratch, .. } = &coupled.system;
     let n_samples = scratch.sample_forces.len() / model.bodies.len().max(1);
     let of_objects = scratch.sample_forces.iter().take(n_samples * coupled.n_objects()).enumerate();
     let touching = of_objects.filter(|(_, sample)| 0.0 < sample.overlap);

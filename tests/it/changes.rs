@@ -122,7 +122,7 @@ fn the_gripper_is_carried_as_one() {
     let mut session = coarse::session(1, &[]);
     run(&mut session, 20);
     let local = |session: &Session| -> Vec<Vec3> {
-        let state = &session.coupled().state;
+        let state = &session.coupled().system.state;
         let flange = state.walls[FLANGE].pose;
         let points = state.grains.positions.iter().chain(&state.membrane.positions);
         points.map(|p| flange.inverse_transform_point(&(*p).into()).coords).collect()
@@ -133,12 +133,12 @@ fn the_gripper_is_carried_as_one() {
     let after = local(&session);
     let moved = before.iter().zip(&after).map(|(a, b)| (a - b).norm()).fold(0.0, Real::max);
     assert!(moved < 1e-13, "{moved} m");
-    assert_eq!(session.coupled().state.walls[FLANGE].twist, Twist::zero());
+    assert_eq!(session.coupled().system.state.walls[FLANGE].twist, Twist::zero());
     // It stays where it was put, and nothing leaks: a tick would fail.
     for _ in 0..20 {
         session.tick(&[]).unwrap();
     }
-    let now = session.coupled().state.walls[FLANGE].pose;
+    let now = session.coupled().system.state.walls[FLANGE].pose;
     assert!((now.translation.vector - pose.translation.vector).norm() < 1e-12);
 }
 

@@ -1,10 +1,13 @@
 //! A coarse gripper: the laws of the full one with an eighth of its grains, settled once for all
 //! tests of this binary.
 
-use std::{path::Path, sync::OnceLock};
+use std::{
+    path::Path,
+    sync::{Arc, OnceLock},
+};
 
 use jamgrip::{
-    base::{Real, Vec3},
+    base::{Real, Vec3, parallel},
     command::{Command, PoseCommand},
     cosim::{Coupled, compile::Compiled, rapier_world::RapierWorld},
     physics::Model,
@@ -52,7 +55,7 @@ pub(crate) fn scene(overrides: &[&str]) -> Scene {
 
 /// The scene compiled for `n_threads` solver threads.
 pub(crate) fn compiled(n_threads: usize, overrides: &[&str]) -> Compiled {
-    Compiled::new(&scene(overrides), n_threads).unwrap()
+    Compiled::new(&scene(overrides), &Arc::new(parallel::pool(n_threads).unwrap())).unwrap()
 }
 
 /// Bytes of the settled start state.
@@ -78,9 +81,7 @@ pub(crate) fn coupled_of(compiled: Compiled) -> Coupled {
     let mut state = compiled.read_start_state(start_state()).unwrap();
     state.grains.masses.iter_mut().for_each(|it| *it *= compiled.model.density_scaling);
     let Compiled { scene, model, plan, bulks, limits, .. } = compiled;
-    let mesh = &model.membrane.mesh;
-    let n_samples = (mesh.n_vertices() + mesh.triangles.len()) * model.bodies.len();
-    state.springs.bodies = vec![Vec3::zeros(); n_samples];
+    state.springs.bodies = vec![Vec3::zeros(); model.n_samples() * model.bodies.len()];
     #[expect(clippy::cast_precision_loss, reason = "a small count")]
     let step = model.substep * plan.n_per_exchange as Real;
     let world = RapierWorld::new(&scene, &model, bulks, step);

@@ -7,7 +7,7 @@ use jamgrip::{
     base::{Pose, Real, Vec3, parallel},
     command::Command,
     cosim::{Coupled, FLANGE, Inputs},
-    physics::{Controls, Scratch, State, measure, substep},
+    physics::{Controls, Scratch, State, System, measure, substep},
     session::Session,
     snapshot::{Parts, take},
 };
@@ -41,7 +41,7 @@ fn pushing_with(scaling: Real) -> Coupled {
 
 /// Momentum, and angular momentum about the origin, of grains and sheet.
 fn momenta(coupled: &Coupled) -> (Vec3, Vec3) {
-    let Coupled { model, state, .. } = coupled;
+    let System { model, state, .. } = &coupled.system;
     let (mut linear, mut angular) = (Vec3::zeros(), Vec3::zeros());
     let mut add = |mass: Real, position: &Vec3, velocity: &Vec3| {
         linear += velocity * mass;
@@ -65,19 +65,22 @@ fn momenta(coupled: &Coupled) -> (Vec3, Vec3) {
 fn held_controls(coupled: &Coupled) -> Controls {
     let mut bodies = vec![coupled.world.motion(0)];
     bodies.push(jamgrip::physics::boundary::body::BodyMotion {
-        pose: coupled.model.table,
+        pose: coupled.system.model.table,
         twist: jamgrip::base::real::Twist::zero(),
     });
-    Controls { gauge_setpoint: coupled.state.gauge, walls: coupled.state.walls.clone(), bodies }
+    Controls {
+        gauge_setpoint: coupled.system.state.gauge,
+        walls: coupled.system.state.walls.clone(),
+        bodies,
+    }
 }
 
 #[test]
 fn what_the_sheet_gets_the_object_gives() {
     let coupled = pushing();
     let Scratch { sample_forces, body_wrenches, vertex_forces, patch_forces, .. } =
-        &coupled.scratch;
-    let mesh = &coupled.model.membrane.mesh;
-    let n_samples = mesh.n_vertices() + mesh.triangles.len();
+        &coupled.system.scratch;
+    let n_samples = coupled.system.model.n_samples();
     let controls = held_controls(&coupled);
     let mut on_sheet = Vec3::zeros();
     for (body, of_body) in sample_forces.chunks(n_samples).enumerate() {
@@ -125,19 +128,22 @@ fn a_flange_accelerates_the_real_mass_of_heavier_grains() {
 
 fn momentum_is_kept(scaling: Real) {
     let mut coupled = pushing_with(scaling);
-    let mass = measure::mass(&coupled.model, &coupled.state);
+    let mass = measure::mass(&coupled.system.model, &coupled.system.state);
     let tick = coupled.plan.tick;
     let (mut worst, mut scale) = (0.0_f64, 0.0_f64);
     parallel::lead(&parallel::pool(1).unwrap(), || {
         for k in 0..40 {
             let (before, _) = momenta(&coupled);
-            let carried_before = coupled.state.walls[FLANGE].twist.linear;
+            let carried_before = coupled.system.state.walls[FLANGE].twist.linear;
             let means = coupled.advance(&inputs(if k < 15 { 0.08 } else { 0.1 }, -50e3));
             let (after, _) = momenta(&coupled);
-            let accelerated = coupled.state.walls[FLANGE].twist.linear - carried_before;
-            assert!(coupled.scratch.body_wrenches[1].force == Vec3::zeros(), "the table is far");
+            let accelerated = coupled.system.state.walls[FLANGE].twist.linear - carried_before;
+            assert!(
+                coupled.system.scratch.body_wrenches[1].force == Vec3::zeros(),
+                "the table is far"
+            );
             let given = means.objects_on_gripper.force - means.gripper_on_mount.force
-                + coupled.model.gravity * mass;
+                + coupled.system.model.gravity * mass;
             // What heavier ones gain with the flange is free: they are carried along.
             let carried = accelerated * mass * (1.0 - 1.0 / scaling);
             let gained = (after - before - carried) / tick;
@@ -155,15 +161,15 @@ fn momentum_is_kept(scaling: Real) {
 fn angular_momentum_changes_by_what_flange_objects_and_gravity_give() {
     let mut coupled = pushing();
     let mut controls = held_controls(&coupled);
-    let dt = coupled.model.substep;
+    let dt = coupled.system.model.substep;
     let (mut worst, mut scale) = (0.0_f64, 0.0_f64);
     parallel::lead(&parallel::pool(1).unwrap(), || {
         for _ in 0..40 {
             let (_, before) = momenta(&coupled);
             let weight = moment_of_weight(&coupled);
             controls.walls[FLANGE].advance(dt);
-            let old_flange = coupled.state.walls[FLANGE].pose.translation.vector;
-            let Coupled { model, state, scratch, .. } = &mut coupled;
+            let old_flange = coupled.system.state.walls[FLANGE].pose.translation.vector;
+            let System { model, state, scratch, .. } = &mut coupled.system;
             substep(model, &controls, state, scratch);
             let mut given = weight - about_origin(&scratch.wall_wrenches[FLANGE], &old_flange);
             for (wrench, body) in scratch.body_wrenches.iter().zip(&controls.bodies) {
@@ -171,7 +177,7 @@ fn angular_momentum_changes_by_what_flange_objects_and_gravity_give() {
             }
             let (_, after) = momenta(&coupled);
             worst = worst.max(((after - before) / dt - given).norm());
-            scale = scale.max(spin_torque(&coupled.state, &coupled.scratch));
+            scale = scale.max(spin_torque(&coupled.system.state, &coupled.system.scratch));
         }
     });
     eprintln!("angular momentum: {worst:e} N m, torques on grains {scale} N m");
@@ -185,7 +191,7 @@ fn about_origin(wrench: &jamgrip::base::real::Wrench, point: &Vec3) -> Vec3 {
 }
 
 fn moment_of_weight(coupled: &Coupled) -> Vec3 {
-    let Coupled { model, state, .. } = coupled;
+    let System { model, state, .. } = &coupled.system;
     let of_grains: Vec3 =
         state.grains.positions.iter().zip(&state.grains.masses).map(|(r, m)| r * *m).sum();
     let of_sheet: Vec3 =
@@ -209,8 +215,8 @@ fn a_gripper_at_rest_hangs_on_its_mount_with_its_weight() {
         sum += session.means().gripper_on_mount.force;
     }
     let mean = sum / f64::from(n_ticks);
-    let weight = session.coupled().model.gravity
-        * measure::mass(&session.coupled().model, &session.coupled().state);
+    let weight = session.coupled().system.model.gravity
+        * measure::mass(&session.coupled().system.model, &session.coupled().system.state);
     let off = (mean - weight).norm() / weight.norm();
     eprintln!("mount at rest: {:e} of the weight off", off);
     // Oracle: statics. Tolerance 0.5 %: what is demanded of the wrench topics.
@@ -271,7 +277,7 @@ fn lift(session: &mut Session) -> Hanging {
         mount += seen.mount_wrench.force / f64::from(n_ticks);
     }
     let coupled = session.coupled();
-    let g = -coupled.model.gravity.z;
+    let g = -coupled.system.model.gravity.z;
     let gained = velocity(session) - before;
     Hanging {
         contact,
@@ -279,8 +285,8 @@ fn lift(session: &mut Session) -> Hanging {
         mount,
         weight: coupled.world.mass(0) * g,
         swing: gained * (coupled.world.mass(0) / (f64::from(n_ticks) * coupled.plan.tick)),
-        own_weight: measure::mass(&coupled.model, &coupled.state) * g,
-        energy: measure::kinetic_energy(&coupled.model, &coupled.state),
+        own_weight: measure::mass(&coupled.system.model, &coupled.system.state) * g,
+        energy: measure::kinetic_energy(&coupled.system.model, &coupled.system.state),
         lifted: height(session) - 0.025,
         sunk: 0.025 - lowest,
     }

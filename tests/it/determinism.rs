@@ -39,8 +39,8 @@ fn one_two_and_seven_threads_give_the_same_bits_and_so_does_a_second_run() {
     // The script does something: the bag is on the object, and air is drawn.
     let push = session.means().membrane_on_objects[0].force.norm();
     assert!(push > 1.0, "pushed with {push} N");
-    assert!(session.coupled().state.gauge < -50e3);
-    assert!(session.coupled().scratch.neighbours.n_builds > 1, "lists were built again");
+    assert!(session.coupled().system.state.gauge < -50e3);
+    assert!(session.coupled().system.scratch.neighbours.n_builds > 1, "lists were built again");
     for n_threads in [1, 2, 7] {
         // Oracle: the first run, to the last bit.
         assert_eq!(script(&mut coarse::session(n_threads, &[])), expected, "{n_threads} threads");
@@ -95,12 +95,12 @@ fn coupled_script(mut coupled: Coupled) -> (Vec<u64>, u64) {
         for _ in 0..80 {
             coupled.advance(&inputs);
             let mut digest = Digest::new();
-            coupled.state.digest(&mut digest);
+            coupled.system.state.digest(&mut digest);
             coupled.world.digest(&mut digest);
             digests.push(digest.finish());
         }
     });
-    (digests, coupled.scratch.neighbours.n_builds)
+    (digests, coupled.system.scratch.neighbours.n_builds)
 }
 
 #[test]

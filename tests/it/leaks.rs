@@ -8,9 +8,9 @@ use jamgrip::{
             body::BodyMotion,
             wall::{WallModel, WallShape},
         },
-        contact::law::{PairLaw, Surface},
+        contact::law::Surface,
         health::{self, Diverged},
-        membrane::{CARRIER_ID, FREE, SheetContact, mesh::Mesh},
+        membrane::{CARRIER_ID, FREE, MembraneContact, mesh::Mesh},
         state::Springs,
     },
     scene::Material,
@@ -33,12 +33,12 @@ const TUBE: Real = 5e-3;
 /// Pressure of the triaxial test [Pa].
 const PRESSURE: Real = 100e3;
 
-const SPHERES: SheetContact = SheetContact::Spheres { radius: SPHERE };
+const SPHERES: MembraneContact = MembraneContact::Spheres { radius: SPHERE };
 
 /// Grains of the triaxial test, softened: what counts is the sheet, softer by far.
 const MATERIAL: Material = Material { youngs_modulus: 1e8, poisson_ratio: 0.245, density: 2000.0 };
 
-fn rig(mesh: Mesh, contact: SheetContact, dt: Real) -> Rig {
+fn rig(mesh: Mesh, contact: MembraneContact, dt: Real) -> Rig {
     let surface = Surface { friction: 0.25, dissipation_time: 5e-6, tangential_damping: 0.3 };
     let mut rig = Rig::on_sheet(&MATERIAL, surface, mesh, dt);
     rig.model.membrane_law.friction = 1.2;
@@ -47,7 +47,7 @@ fn rig(mesh: Mesh, contact: SheetContact, dt: Real) -> Rig {
 }
 
 /// Three close layers of grains of `radius` in a tube, between a plate and a sheet whose rim is held.
-fn bed(mesh: Mesh, contact: SheetContact, radius: Real) -> Rig {
+fn bed(mesh: Mesh, contact: MembraneContact, radius: Real) -> Rig {
     let mut rig = rig(mesh, contact, 2e-6);
     let rim = rig.model.membrane.mesh.is_on_rim.clone();
     let holder = |is_on_rim| if is_on_rim { CARRIER_ID } else { FREE };
@@ -70,7 +70,7 @@ fn bed(mesh: Mesh, contact: SheetContact, radius: Real) -> Rig {
     let down = WallShape::Plane { normal: -Vec3::z() };
     for (shape, height) in [(WallShape::Tube { radius: TUBE }, 0.0), (down, top)] {
         let motion = BodyMotion { pose: Pose::translation(0.0, 0.0, height), twist: Twist::zero() };
-        rig.model.walls.push(WallModel { shape, law: PairLaw { ..law } });
+        rig.model.walls.push(WallModel::fixed(shape, law));
         rig.controls.walls.push(motion);
         rig.state.walls.push(motion);
     }
@@ -96,7 +96,7 @@ fn a_bed_of_grains_of_a_fifth_stays_inside_at_100_kpa() {
     alone(|| {
         let radius = RADIUS / 5.0;
         for (name, mesh, contact) in [
-            ("triangles", hexagon(2, EDGE), SheetContact::Triangles),
+            ("triangles", hexagon(2, EDGE), MembraneContact::Triangles),
             ("spheres", hexagon(6, SPACING), SPHERES),
         ] {
             let rig = evacuate(bed(mesh, contact, radius)).unwrap();
@@ -118,7 +118,13 @@ fn a_bed_of_grains_of_a_fifth_stays_inside_at_100_kpa() {
 }
 
 /// Load [N] under which one grain of `radius` comes through a held sheet at `place`.
-fn breakthrough(mesh: Mesh, contact: SheetContact, place: Vec3, radius: Real, most: Real) -> Real {
+fn breakthrough(
+    mesh: Mesh,
+    contact: MembraneContact,
+    place: Vec3,
+    radius: Real,
+    most: Real,
+) -> Real {
     let mut rig = rig(mesh, contact, 1e-6);
     let floor = if contact == SPHERES { SPHERE } else { 0.0 };
     rig.add_grain(place + Vec3::z() * (radius + floor), Vec3::zeros(), radius, MATERIAL.density);
@@ -161,12 +167,12 @@ fn spheres_let_the_smaller_grains_through_sooner_and_triangles_do_not() {
             let radius = RADIUS / share;
             // As a pressure on the square of sheet that a grain carries.
             let pressure = |load: Real| load / (4.0 * radius * radius);
-            let triangles = rig(hexagon(2, EDGE), SheetContact::Triangles, 1e-6);
+            let triangles = rig(hexagon(2, EDGE), MembraneContact::Triangles, 1e-6);
             // Oracle: Hertz until the centre is in the sheet, F = 4/3 E* R², that is E*/3.
             let expected = 4.0 / 3.0 * triangles.model.membrane_law.modulus * radius * radius;
             let mesh = hexagon(2, EDGE);
             let measured =
-                breakthrough(mesh, SheetContact::Triangles, face, radius, 1.3 * expected);
+                breakthrough(mesh, MembraneContact::Triangles, face, radius, 1.3 * expected);
             eprintln!(
                 "1/{share}: triangles {:.0} kPa, closed form {:.0} kPa",
                 pressure(measured) / 1e3,
@@ -204,7 +210,7 @@ fn a_fold_behind_the_sheet_is_no_leak() {
             Mesh::new(lower, triangles).unwrap()
         };
         let leaks = |mesh: Mesh| {
-            let mut rig = rig(mesh, SheetContact::Triangles, 1e-6);
+            let mut rig = rig(mesh, MembraneContact::Triangles, 1e-6);
             let place = Vec3::new(0.4 * EDGE, 0.25 * EDGE, 0.8 * radius);
             rig.add_grain(place, Vec3::zeros(), radius, MATERIAL.density);
             rig.step();

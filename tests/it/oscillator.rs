@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 use jamgrip::{
     experiments::{
         Experiment, Plan, Progress, ResumeError, Run, SceneText, StartError,
-        findings::{Curve, Expected, Findings, Kind, Plot, Quantity, Row, Series, Report},
+        findings::{Curve, Expected, Findings, Kind, Plot, Quantity, Report, Row, Series},
         record::{Column, Record, Validity},
     },
     host::shutdown::Shutdown,

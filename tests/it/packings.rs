@@ -9,7 +9,7 @@ use jamgrip::{
     },
     experiments::{Experiment, Plan, SceneText, Size, packing::Packing},
     physics::{
-        Model, System,
+        System, SystemBuilder,
         contact::{
             grains::closest_image,
             law::{PairLaw, Surface},
@@ -33,18 +33,18 @@ const N_GRAINS: usize = 200;
 fn box_of_grains(friction: Real) -> (System, Growth) {
     let surface = Surface { friction, dissipation_time: 5e-5, tangential_damping: 0.3 };
     let law = PairLaw::between(&GRAIN, &GRAIN, surface);
-    let mut model = Model::of_grains(law, 2e-5, RADIUS, RADIUS);
     let room = Room::Periodic { period: Vec3::repeat(EDGE) };
-    model.period = room.period();
     let mut random = Random::new(3, Stream::Position);
     let small = vec![0.65 * RADIUS; N_GRAINS];
     let places = scatter(&small, room.period(), &mut random, |it| room.place(0.0, it)).unwrap();
     let mass = GRAIN.density * sphere_volume(RADIUS);
-    let recipe = Recipe::new(&model, room.volume(), 1e3, mass, RADIUS);
-    let recipe = Recipe { laws: jamgrip::physics::packing::Laws::of(&model), ..recipe };
-    let growth = Growth::new(recipe, vec![RADIUS; N_GRAINS], 0.65);
-    let grains = Grains::at_rest(places, small, vec![mass; N_GRAINS]);
-    (System::at_rest(model, Vec::new(), grains), growth)
+    let mut builder = SystemBuilder::new(law);
+    builder.substep(2e-5).radii_up_to(RADIUS, RADIUS).period(Vec3::repeat(EDGE));
+    builder.grains(Grains::at_rest(places, small, vec![mass; N_GRAINS]));
+    let system = builder.build().unwrap();
+    let recipe = Recipe::new(&system.model, room.volume(), 1e3, mass, RADIUS);
+    let recipe = Recipe { laws: jamgrip::physics::packing::Laws::of(&system.model), ..recipe };
+    (system, Growth::new(recipe, vec![RADIUS; N_GRAINS], 0.65))
 }
 
 fn digest(system: &System) -> u64 {
@@ -117,15 +117,15 @@ fn a_periodic_box_has_the_same_bits_for_any_number_of_threads_and_any_origin_of_
 fn a_squeezed_lattice_has_the_stress_and_the_energy_of_its_contacts() {
     let surface = Surface { friction: 0.0, dissipation_time: 0.0, tangential_damping: 0.0 };
     let law = PairLaw::between(&GRAIN, &GRAIN, surface);
-    let mut model = Model::of_grains(law, 1e-6, RADIUS, RADIUS);
     let overlap = 1e-5;
     let cell = 2.0 * RADIUS - overlap;
-    model.period = Some(Vec3::repeat(4.0 * cell));
     let at = |k: usize| {
         Vec3::from([k % 4, k / 4 % 4, k / 16].map(|n| cell * f64::from(u32::try_from(n).unwrap())))
     };
     let grains = Grains::at_rest((0..64).map(at).collect(), vec![RADIUS; 64], vec![1e-4; 64]);
-    let mut system = System::at_rest(model, Vec::new(), grains);
+    let mut builder = SystemBuilder::new(law);
+    builder.substep(1e-6).period(Vec3::repeat(4.0 * cell)).grains(grains);
+    let mut system = builder.build().unwrap();
     system.step();
     let System { model, state, scratch, .. } = &system;
     let volume = (4.0 * cell).powi(3);

@@ -1,18 +1,15 @@
-//! A bare model by hand: grains, a plate, and a sheet, without scene, fill or rigid world.
+//! A bare system: grains, a plate, and a membrane, without scene, fill or rigid world.
+
+use std::ops::{Deref, DerefMut};
 
 use jamgrip::{
-    base::{Pose, Real, Vec3, real::Twist},
+    base::{Pose, Real, Vec3},
     physics::{
-        Controls, Model, Scratch, State,
-        boundary::{
-            body::BodyMotion,
-            wall::{WallModel, WallShape},
-        },
+        System, SystemBuilder,
+        boundary::wall::WallShape,
+        builder::{Membrane, Vertices, Wall},
         contact::law::{PairLaw, Surface},
-        membrane::{CARRIER_ID, MembraneModel, MembraneState, Sheet, mesh::Mesh},
-        model::ChamberModel,
-        state::{Grains, Springs},
-        substep,
+        membrane::{MembraneMaterial, MembraneModel, mesh::Mesh},
     },
     scene::Material,
 };
@@ -23,37 +20,51 @@ pub(crate) const GRAIN: Material =
 /// Latex.
 pub(crate) const LATEX: Material =
     Material { youngs_modulus: 1.25e6, poisson_ratio: 1.0 / 3.0, density: 2000.0 };
-/// Gravity [m/s²].
+/// Gravity (m/s²).
 pub(crate) const G: Real = 9.81;
 
-/// One system with all that a substep needs.
-pub(crate) struct Rig {
-    pub(crate) model: Model,
-    pub(crate) controls: Controls,
-    pub(crate) state: State,
-    pub(crate) scratch: Scratch,
+/// A system of one plate and one membrane.
+pub(crate) struct Rig(System);
+
+impl Deref for Rig {
+    type Target = System;
+
+    fn deref(&self) -> &System {
+        &self.0
+    }
+}
+
+impl DerefMut for Rig {
+    fn deref_mut(&mut self) -> &mut System {
+        &mut self.0
+    }
 }
 
 impl Rig {
-    /// Grains of `material` between a plate, which faces up at z = 0, and a sheet far away.
+    /// Grains of `material` between a plate, which faces up at z = 0, and a membrane far away.
     pub(crate) fn on_plate(material: &Material, surface: Surface, dt: Real) -> Self {
         let far = Vec3::new(0.0, 0.0, -1.0);
         let corners = vec![far, far + Vec3::x() * 0.01, far + Vec3::y() * 0.01];
         let mesh = Mesh::new(corners, vec![[0, 1, 2]]).unwrap();
         // Turned over, the flange's plate faces up.
         let flange = Pose::rotation(Vec3::x() * std::f64::consts::PI);
-        Self::new(material, surface, mesh, flange, dt)
+        Self::new(material, surface, (mesh, Vertices::Rims), flange, dt)
     }
 
     /// Grains of `material` on `mesh`, all of whose vertices are held; the plate is far above.
     pub(crate) fn on_sheet(material: &Material, surface: Surface, mesh: Mesh, dt: Real) -> Self {
-        let mut rig = Self::new(material, surface, mesh, Pose::translation(0.0, 0.0, 1.0), dt);
-        rig.model.membrane.holders.fill(CARRIER_ID);
-        rig
+        let flange = Pose::translation(0.0, 0.0, 1.0);
+        Self::new(material, surface, (mesh, Vertices::All), flange, dt)
     }
 
-    fn new(material: &Material, surface: Surface, mesh: Mesh, flange: Pose, dt: Real) -> Self {
-        let sheet = Sheet {
+    fn new(
+        material: &Material,
+        surface: Surface,
+        (mesh, held): (Mesh, Vertices),
+        flange: Pose,
+        dt: Real,
+    ) -> Self {
+        let latex = MembraneMaterial {
             thickness: 3e-4,
             youngs_modulus: LATEX.youngs_modulus,
             density: LATEX.density,
@@ -61,46 +72,15 @@ impl Rig {
             bending_stiffness: 1e-5,
             bending_damping: 1e-7,
         };
-        let state = State {
-            grains: Grains::default(),
-            membrane: MembraneState::at_rest(&mesh),
-            springs: Springs::none(0, 1, 0),
-            pair_ids: Vec::new(),
-            gauge: 0.0,
-            walls: vec![BodyMotion { pose: flange, twist: Twist::zero() }],
-        };
-        let in_flange = flange.inverse();
-        let of_vertex = |p: &Vec3| in_flange.rotation * p + in_flange.translation.vector;
-        let model = Model {
-            density_scaling: 1.0,
-            gravity: Vec3::zeros(),
-            substep: dt,
-            radius_max: 0.0,
-            radius_mean: 0.0,
-            skin: 2e-4,
-            period: None,
-            grain_law: PairLaw::between(material, material, surface),
-            membrane_law: PairLaw::between(material, &LATEX, surface),
-            held_positions: mesh.positions.iter().map(of_vertex).collect(),
-            membrane: MembraneModel::new(mesh, sheet),
-            walls: vec![WallModel {
-                shape: WallShape::Plane { normal: -Vec3::z() },
-                law: PairLaw::against_rigid(material, surface),
-            }],
-            chamber: ChamberModel { lag_factor: 0.0, change_max: Real::INFINITY },
-            table: Pose::identity(),
-            bodies: Vec::new(),
-        };
-        let controls = Controls {
-            gauge_setpoint: 0.0,
-            walls: vec![BodyMotion { pose: flange, twist: Twist::zero() }],
-            bodies: Vec::new(),
-        };
-        let scratch = Scratch::new(&model);
-        Self { model, controls, state, scratch }
+        let mut builder = SystemBuilder::of_material(material, surface);
+        builder.substep(dt).skin(2e-4);
+        builder.membrane_law(PairLaw::between(material, &LATEX, surface));
+        let plate = builder.wall(Wall::new(WallShape::Plane { normal: -Vec3::z() }).at(flange));
+        builder.membrane(Membrane::of(MembraneModel::new(mesh, latex)).hold(held, plate));
+        Self(builder.build().unwrap())
     }
 
-    /// Adds a grain of `density` [kg/m³].
+    /// Adds a grain of `density` (kg/m³).
     pub(crate) fn add_grain(
         &mut self,
         position: Vec3,
@@ -108,21 +88,9 @@ impl Rig {
         radius: Real,
         density: Real,
     ) {
-        let grains = &mut self.state.grains;
-        grains.positions.push(position);
-        grains.velocities.push(velocity);
-        grains.spins.push(Vec3::zeros());
-        grains.radii.push(radius);
-        grains.masses.push(4.0 / 3.0 * std::f64::consts::PI * radius.powi(3) * density);
-        self.model.radius_max = self.model.radius_max.max(radius);
-        self.model.radius_mean = radius;
-        self.state.springs = Springs::none(grains.positions.len(), 1, 0);
-        self.scratch = Scratch::new(&self.model);
-    }
-
-    /// One substep.
-    pub(crate) fn step(&mut self) {
-        substep(&self.model, &self.controls, &mut self.state, &mut self.scratch);
+        let mass = 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3) * density;
+        let grain = self.0.add_grain(position, radius, mass);
+        self.0.state.grains.velocities[grain] = velocity;
     }
 
     /// Momentum, and angular momentum about the origin, of all grains.
@@ -138,7 +106,7 @@ impl Rig {
         (linear, angular)
     }
 
-    /// Kinetic energy of the grains [J].
+    /// Kinetic energy of the grains (J).
     pub(crate) fn kinetic_energy(&self) -> Real {
         let grains = &self.state.grains;
         let of_grain = |i: usize| {

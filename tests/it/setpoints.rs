@@ -252,7 +252,7 @@ fn the_flange_keeps_its_limits_whatever_it_is_told() {
             let orientation = [q.x, q.y, q.z, q.w];
             commands.push(Command::FlangePose(PoseCommand { orientation, ..pose(place) }));
         }
-        let flange_of = |session: &Session| session.coupled().state.walls[FLANGE];
+        let flange_of = |session: &Session| session.coupled().system.state.walls[FLANGE];
         let (pose_before, before) = (flange_of(&session).pose, flange_of(&session).twist);
         session.tick(&commands).unwrap();
         let (pose_after, after) = (flange_of(&session).pose, flange_of(&session).twist);

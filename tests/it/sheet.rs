@@ -229,7 +229,7 @@ fn sag(n: i32, edge: Real, offset: [Real; 2]) -> (Real, Real) {
     let mut rig = rig(hexagon(n, edge), surface, RADIUS, 4e-6);
     let on_rim = |&it: &bool| if it { CARRIER_ID } else { FREE };
     rig.model.membrane.holders = rig.model.membrane.mesh.is_on_rim.iter().map(on_rim).collect();
-    rig.model.membrane.sheet.bending_stiffness = 1e-7;
+    rig.model.membrane.material.bending_stiffness = 1e-7;
     rig.model.membrane.scale_rest_lengths(0.9);
     rig.state.grains.masses[0] = 1.3e-3;
     rig.state.grains.positions[0] += Vec3::new(offset[0], offset[1], 0.0) * edge;

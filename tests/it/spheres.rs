@@ -7,7 +7,7 @@ use jamgrip::{
         Scratch,
         contact::law::Surface,
         health,
-        membrane::{FREE, SheetContact},
+        membrane::{FREE, MembraneContact},
         scratch::SphereForce,
     },
 };
@@ -24,7 +24,7 @@ const RADIUS: Real = 2e-3;
 /// A held hexagon of spheres, `n` edges along each side; its outside is below.
 fn rig(n: i32, surface: Surface, dt: Real) -> Rig {
     let mut rig = Rig::on_sheet(&GRAIN, surface, hexagon(n, EDGE), dt);
-    rig.model.membrane.contact = SheetContact::Spheres { radius: SPHERE };
+    rig.model.membrane.contact = MembraneContact::Spheres { radius: SPHERE };
     rig
 }
 

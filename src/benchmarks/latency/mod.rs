@@ -108,7 +108,7 @@ fn here(case: &Case, options: &Options) -> Result<Figures, BenchError> {
     let seconds = options.seconds.max(SECONDS_MIN);
     let mut plant = IdlePlant::new(session, scene.time.tick_ns, options)?;
     let prefix = format!("jamgrip_bench_{}", std::process::id());
-    let mesh = &plant.session().coupled().model.membrane.mesh;
+    let mesh = &plant.session().coupled().system.model.membrane.mesh;
     let encoder = Arc::new(Encoder::new(&scene, &mesh.triangles, &mesh.positions));
     let mut context = context(&scene, &encoder, &prefix, &plant, seconds).map_err(latency)?;
     let child = spawn(&prefix, seconds).map_err(latency)?;
@@ -124,7 +124,7 @@ fn here(case: &Case, options: &Options) -> Result<Figures, BenchError> {
     let heard = listening.join().expect("a panic is a fault of this program").map_err(latency)?;
     context.outputs.close();
     let latencies = plant.latencies(&heard).map_err(latency)?;
-    let state = &plant.session().coupled().state;
+    let state = &plant.session().coupled().system.state;
     Ok(Figures {
         case: case.name.to_owned(),
         n_grains: state.grains.len(),
@@ -152,7 +152,7 @@ fn context(
     let mut outputs = OutputSinks::default();
     let delivery = Delivery::Latest { depth: 500 };
     outputs.fanout.add(Box::new(sink), delivery).map_err(|it| closed(&it))?;
-    let state = &plant.session().coupled().state;
+    let state = &plant.session().coupled().system.state;
     let (n_grains, n_vertices) = (state.grains.len(), state.membrane.positions.len());
     let stream = Stream::open(prefix, n_grains, n_vertices).map_err(|it| closed(&it))?;
     outputs.stream = Some(stream);

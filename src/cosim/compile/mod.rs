@@ -5,7 +5,9 @@
 
 mod density_scaling;
 
-use density_scaling::heavier;
+use std::sync::Arc;
+
+pub use density_scaling::ScaledScene;
 
 use super::{
     FLANGE, Plan,
@@ -16,23 +18,24 @@ use crate::{
     base::{
         Pose, Real, Vec3,
         digest::Digest,
-        parallel,
         real::{Twist, count},
     },
     physics::{
-        Model, State,
+        Model, State, SystemBuilder,
         boundary::{
             body::BodyMotion,
+            motion::WallMotion,
             shape::{Bulk, ShapeFault, Surface},
-            wall::{WallModel, WallShape},
+            wall::WallShape,
         },
+        builder::{BuildError, Membrane, Vertices, Wall},
         contact::{
             self,
             law::{self, PairLaw},
         },
         critical_step,
         measure::real,
-        membrane::{MembraneModel, Sheet, mesh::Mesh},
+        membrane::{MembraneMaterial, MembraneModel, mesh::Mesh},
         model::{BodyModel, BodySurface, ChamberModel},
     },
     scene::{Object, Scene, Shape},
@@ -42,9 +45,9 @@ use crate::{
 pub const PHYSICS_VERSION: u64 = 6;
 /// Neighbours are listed this share of the largest radius beyond contact.
 const SKIN_SHARE: Real = 0.25;
-/// Longest time between two steps of the rigid world [s].
+/// Longest time between two steps of the rigid world (s).
 const EXCHANGE_MAX: Real = 1e-4;
-/// Effective radius R* of a sample of the sheet on the table: that of the source's object [m].
+/// Effective radius R* of a sample of the membrane on the table: that of the source's object (m).
 const TABLE_CONTACT_RADIUS: Real = 0.01;
 
 /// Why a scene cannot be compiled.
@@ -56,11 +59,11 @@ pub enum CompileError {
          use at most {advised_s:.3e} s, leave it out, or take softer materials or a coarser mesh"
     )]
     SubstepTooLong {
-        /// Asked for [s].
+        /// Asked for (s).
         given_s: Real,
-        /// Where the system becomes unstable [s].
+        /// Where the system becomes unstable (s).
         critical_s: Real,
-        /// What would be derived [s].
+        /// What would be derived (s).
         advised_s: Real,
     },
     /// The bag cannot be meshed.
@@ -74,9 +77,9 @@ pub enum CompileError {
         /// What is wrong with it.
         fault: ShapeFault,
     },
-    /// The solver's threads could not be started.
-    #[error("threads: {0}; use --threads with fewer")]
-    Threads(#[from] rayon::ThreadPoolBuildError),
+    /// The parts of the gripper do not fit each other.
+    #[error("gripper: {0}")]
+    Build(#[from] BuildError),
 }
 
 /// A scene ready to run.
@@ -92,48 +95,64 @@ pub struct Compiled {
     /// Limits of the flange's motion.
     pub limits: Limits,
     /// The solver's threads.
-    pub pool: rayon::ThreadPool,
+    pub pool: Arc<rayon::ThreadPool>,
+}
+
+/// What a scene compiles to, without the threads that will run it.
+pub struct Gripper {
+    /// Grains, membrane and chamber.
+    pub model: Model,
+    /// How a tick is cut.
+    pub plan: Plan,
+    /// Mass properties of the objects.
+    pub bulks: Vec<Bulk>,
+}
+
+/// Compiles the model of a scene.
+///
+/// # Errors
+/// If the substep is too long or a shape is unusable.
+pub fn gripper(scene: &Scene) -> Result<Gripper, CompileError> {
+    let mesh = Mesh::half_icosphere(scene.membrane.radius, scene.membrane.frequency)?;
+    let scaled = ScaledScene::new(scene);
+    let mut membrane = MembraneModel::new(mesh, MembraneMaterial::of(&scaled.membrane));
+    membrane.scale_rest_lengths(1.0 - scene.membrane.rest_length_shrink);
+    let (mut bodies, bulks) = bodies(&scaled)?;
+    bodies.push(table(&scaled));
+    let laws = Laws::new(&scaled);
+    let plan = plan(&scaled, &membrane, &laws, &bodies)?;
+    let dt = plan.tick / real(plan.n_substeps);
+    let grains = &scene.grains;
+    let mut builder = SystemBuilder::new(laws.grain);
+    builder
+        .membrane_law(laws.membrane)
+        .density_scaling(scene.time.density_scaling)
+        .gravity(scene.gravity / scene.time.density_scaling)
+        .substep(dt)
+        .radii_up_to(grains.radius_max, (grains.radius_min + grains.radius_max) / 2.0)
+        .skin(SKIN_SHARE * grains.radius_max)
+        .chamber(ChamberModel::new(&scene.chamber, dt))
+        .table(Pose::translation(0.0, 0.0, scene.table.height));
+    let plate = Wall::new(WallShape::Plane { normal: -Vec3::z() })
+        .moving(WallMotion::External)
+        .law(laws.plate);
+    let flange = builder.wall(plate);
+    builder.membrane(Membrane::of(membrane).hold(Vertices::Rims, flange));
+    for body in bodies {
+        builder.body(body, BodyMotion { pose: Pose::identity(), twist: Twist::zero() });
+    }
+    Ok(Gripper { model: builder.build_model()?, plan, bulks })
 }
 
 impl Compiled {
-    /// Compiles `scene` for `n_threads` solver threads; the result does not depend on their number.
+    /// Compiles `scene`, to be run by the threads of `pool`; no result depends on their number.
     ///
     /// # Errors
-    /// If the substep is too long, a shape is unusable, or threads cannot be had.
-    pub fn new(scene: &Scene, n_threads: usize) -> Result<Self, CompileError> {
-        let mesh = Mesh::half_icosphere(scene.membrane.radius, scene.membrane.frequency)?;
-        let heavy = heavier(scene);
-        let mut membrane = MembraneModel::new(mesh, Sheet::of(&heavy.membrane));
-        membrane.scale_rest_lengths(1.0 - scene.membrane.rest_length_shrink);
-        let (mut bodies, bulks) = bodies(&heavy)?;
-        bodies.push(table(&heavy));
-        let laws = Laws::new(&heavy);
-        let plan = plan(&heavy, &membrane, &laws, &bodies)?;
-        let dt = plan.tick / real(plan.n_substeps);
-        let grains = &scene.grains;
-        let model = Model {
-            density_scaling: scene.time.density_scaling,
-            gravity: scene.gravity / scene.time.density_scaling,
-            substep: dt,
-            radius_max: grains.radius_max,
-            radius_mean: (grains.radius_min + grains.radius_max) / 2.0,
-            skin: SKIN_SHARE * grains.radius_max,
-            period: None,
-            grain_law: laws.grain,
-            membrane_law: laws.membrane,
-            held_positions: membrane.mesh.positions.clone(),
-            membrane,
-            walls: vec![WallModel {
-                shape: WallShape::Plane { normal: -Vec3::z() },
-                law: laws.plate,
-            }],
-            chamber: ChamberModel::new(&scene.chamber, dt),
-            table: Pose::translation(0.0, 0.0, scene.table.height),
-            bodies,
-        };
+    /// If the substep is too long or a shape is unusable.
+    pub fn new(scene: &Scene, pool: &Arc<rayon::ThreadPool>) -> Result<Self, CompileError> {
+        let Gripper { model, plan, bulks } = gripper(scene)?;
         let limits = Limits::new(&scene.flange);
-        let pool = parallel::pool(n_threads)?;
-        Ok(Self { scene: scene.clone(), model, plan, bulks, limits, pool })
+        Ok(Self { scene: scene.clone(), model, plan, bulks, limits, pool: Arc::clone(pool) })
     }
 
     /// Key of the settled start state: everything that the filling depends on, nothing else.
@@ -182,10 +201,9 @@ impl Compiled {
         Ok(state)
     }
 
-    /// Number of samples of the sheet on all bodies.
+    /// Number of samples of the membrane on all bodies.
     pub fn n_samples(&self) -> usize {
-        let mesh = &self.model.membrane.mesh;
-        (mesh.n_vertices() + mesh.triangles.len()) * self.model.bodies.len()
+        self.model.n_samples() * self.model.bodies.len()
     }
 }
 
@@ -196,7 +214,7 @@ struct Laws {
 }
 
 impl Laws {
-    fn new(scene: &Scene) -> Self {
+    fn new(scene: &ScaledScene) -> Self {
         let grains = &scene.grains;
         let among_grains = law::Surface::of_grains(grains);
         let on_membrane = law::Surface::of_membrane(&scene.membrane, scene.membrane.friction);
@@ -208,16 +226,21 @@ impl Laws {
     }
 }
 
-fn bodies(scene: &Scene) -> Result<(Vec<BodyModel>, Vec<Bulk>), CompileError> {
-    let bodies = scene.objects.iter().map(|object| body(scene, object));
+fn bodies(scene: &ScaledScene) -> Result<(Vec<BodyModel>, Vec<Bulk>), CompileError> {
+    let bodies = scene.objects.iter().map(|object| scaled_body(scene, object));
     Ok(bodies.collect::<Result<Vec<_>, _>>()?.into_iter().unzip())
 }
 
-/// An object as the membrane meets it, and what it weighs.
+/// An object that is put in during a run, as the membrane meets it, and what it weighs. The damping
+/// of its contacts is that of the scene without density scaling.
 ///
 /// # Errors
 /// If its shape cannot be used.
 pub fn body(scene: &Scene, object: &Object) -> Result<(BodyModel, Bulk), CompileError> {
+    scaled_body(&ScaledScene::unscaled(scene), object)
+}
+
+fn scaled_body(scene: &ScaledScene, object: &Object) -> Result<(BodyModel, Bulk), CompileError> {
     let surface = surface(&object.shape)
         .map_err(|fault| CompileError::Object { name: object.name.clone(), fault })?;
     let bulk = surface.bulk(object.material.density);
@@ -233,7 +256,7 @@ pub fn body(scene: &Scene, object: &Object) -> Result<(BodyModel, Bulk), Compile
 
 /// Takes materials and pump from `scene` again; shapes and steps stay.
 pub fn retune(scene: &Scene, model: &mut Model) {
-    let scene = &heavier(scene);
+    let scene = &ScaledScene::new(scene);
     let laws = Laws::new(scene);
     (model.grain_law, model.membrane_law) = (laws.grain, laws.membrane);
     model.walls[FLANGE].law = laws.plate;
@@ -244,9 +267,9 @@ pub fn retune(scene: &Scene, model: &mut Model) {
     }
 }
 
-/// The longest stable substep of `scene` with an object that was not there when it was compiled [s].
+/// The longest stable substep of `scene` with an object that was not there when it was compiled (s).
 pub fn critical_step_with(scene: &Scene, model: &Model, body: &BodyModel) -> Real {
-    let scene = &heavier(scene);
+    let scene = &ScaledScene::new(scene);
     critical_step(scene, &model.membrane, &Laws::new(scene), std::slice::from_ref(body))
 }
 
@@ -261,7 +284,7 @@ fn surface(shape: &Shape) -> Result<Surface, ShapeFault> {
     })
 }
 
-/// Effective radius R* of a soft sheet on the object: the radius of spheres, cylinders and
+/// Effective radius R* of a soft membrane on the object: the radius of spheres, cylinders and
 /// capsules as in the source; for others that of the sphere of the same volume.
 fn contact_radius(shape: &Shape, volume: Real) -> Real {
     match shape {
@@ -274,7 +297,7 @@ fn contact_radius(shape: &Shape, volume: Real) -> Real {
     }
 }
 
-fn table(scene: &Scene) -> BodyModel {
+fn table(scene: &ScaledScene) -> BodyModel {
     let on_table = law::Surface::of_membrane(&scene.membrane, scene.table.friction);
     BodyModel {
         surface: BodySurface::HalfSpace,
@@ -285,7 +308,7 @@ fn table(scene: &Scene) -> BodyModel {
 }
 
 fn plan(
-    scene: &Scene,
+    scene: &ScaledScene,
     membrane: &MembraneModel,
     laws: &Laws,
     bodies: &[BodyModel],
@@ -312,14 +335,14 @@ fn plan(
 }
 
 fn critical_step(
-    scene: &Scene,
+    scene: &ScaledScene,
     membrane: &MembraneModel,
     laws: &Laws,
     bodies: &[BodyModel],
 ) -> Real {
     let grains = &scene.grains;
-    // Under the strongest vacuum a grain carries the pressure on its square of sheet, a sample
-    // that on its share of the sheet.
+    // Under the strongest vacuum a grain carries the pressure on its square of membrane, a sample
+    // that on its share of the membrane.
     let pressure = scene.chamber.gauge_min.abs().max(scene.chamber.gauge_max);
     let of_grain =
         contact::stiffness_at_vertex(membrane, &laws.membrane, grains.radius_max, pressure);

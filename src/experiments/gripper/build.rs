@@ -7,11 +7,11 @@ use super::{
 };
 use crate::{
     base::{Pose, Real, Vec3, real::Twist},
-    cosim::compile::{CompileError, Compiled},
+    cosim::compile::{self, CompileError, Gripper},
     physics::{Controls, Model, State, System, boundary::body::BodyMotion, measure::real},
 };
 
-/// How far the object goes down beyond its starting point if the bag does not let go of it [m].
+/// How far the object goes down beyond its starting point if the bag does not let go of it (m).
 const WAY_OUT_BEYOND: Real = 0.02;
 
 /// A grip ready to run.
@@ -24,7 +24,7 @@ pub(super) struct Ready {
     pub(super) is_cut: bool,
     /// Substeps in a tick.
     pub(super) n_substeps: usize,
-    /// Length of a tick [s].
+    /// Length of a tick (s).
     pub(super) tick: Real,
 }
 
@@ -45,10 +45,8 @@ impl Ready {
 
     /// The system of this grip, beginning with `state`.
     pub(super) fn system(&self, mut state: State) -> System {
-        let mesh = &self.model.membrane.mesh;
-        let n_samples = mesh.n_vertices() + mesh.triangles.len();
         // The bag was filled without any body.
-        state.springs.bodies.resize(n_samples, Vec3::zeros());
+        state.springs.bodies.resize(self.model.n_samples(), Vec3::zeros());
         let object = BodyMotion { pose: Pose::identity(), twist: Twist::zero() };
         let controls =
             Controls { gauge_setpoint: 0.0, walls: state.walls.clone(), bodies: vec![object] };
@@ -69,7 +67,7 @@ impl Ready {
         Way { length, speed, ramp: protocol.ramp_time }
     }
 
-    /// How long a phase takes at most [s].
+    /// How long a phase takes at most (s).
     pub(super) fn duration(&self, phase: Phase) -> Real {
         let protocol = &self.scene.protocol;
         match phase {
@@ -97,8 +95,8 @@ impl Ready {
         phases.map(|&phase| n_ticks(phase) * self.n_substeps).sum()
     }
 
-    /// Where the object and the pump's set-point are at `time` [s] of `phase`; `low` is the height
-    /// of the settled bag's lowest point [m].
+    /// Where the object and the pump's set-point are at `time` (s) of `phase`; `low` is the height
+    /// of the settled bag's lowest point (m).
     pub(super) fn control(&self, controls: &mut Controls, phase: Phase, time: Real, low: Real) {
         let protocol = &self.scene.protocol;
         let (start, inside) = (-protocol.clearance, protocol.penetration);
@@ -132,9 +130,9 @@ impl Ready {
     }
 }
 
-/// The model of a scene, without the table, the substeps in a tick, and the tick [s].
+/// The model of a scene, without the table, the substeps in a tick, and the tick (s).
 pub(super) fn compile(scene: &GripperScene) -> Result<(Model, usize, Real), CompileError> {
-    let Compiled { mut model, plan, .. } = Compiled::new(&scene.gripper, 1)?;
+    let Gripper { mut model, plan, .. } = compile::gripper(&scene.gripper)?;
     model.bodies.truncate(1);
     Ok((model, plan.n_substeps, plan.tick))
 }

@@ -1,47 +1,33 @@
-//! One or two grains with a plane or a sheet, by hand, moved by the substeps of the simulation.
+//! One or two grains with a plane or a membrane, moved by the substeps of the simulation.
 
 use crate::{
-    base::{Pose, Real, Vec3, real::Twist},
+    base::{Real, Vec3},
     experiments::{oracles::impact::Collision, record::Record},
     physics::{
-        Controls, Model, Scratch, State, System,
-        boundary::{
-            body::BodyMotion,
-            wall::{WallModel, WallShape},
-        },
+        System, SystemBuilder,
+        builder::{Membrane, Vertices, Wall},
         contact::law::{PairLaw, Surface},
         measure::real,
-        membrane::{CARRIER_ID, MembraneModel, MembraneState, Sheet, mesh::Mesh},
-        model::ChamberModel,
-        state::{Grains, Springs},
+        membrane::MembraneModel,
+        state::Grains,
     },
     scene::Material,
 };
 
-/// Gravity [m/s²].
+/// Gravity (m/s²).
 pub(super) const G: Real = 9.81;
 
-/// Some grains, a wall, and a sheet.
+/// Some grains with a wall or a membrane.
 pub(super) struct Bench {
     pub(super) system: System,
 }
-
-/// A sheet that plays no part.
-const NO_SHEET: Sheet = Sheet {
-    thickness: 3e-4,
-    youngs_modulus: 1e6,
-    density: 1e3,
-    spring_damping: 0.0,
-    bending_stiffness: 0.0,
-    bending_damping: 0.0,
-};
 
 /// Two surfaces with Coulomb friction alone.
 pub(super) const fn elastic(friction: Real) -> Surface {
     Surface { friction, dissipation_time: 0.0, tangential_damping: 0.0 }
 }
 
-/// Mass of a sphere [kg].
+/// Mass of a sphere (kg).
 pub(super) fn mass(radius: Real, density: Real) -> Real {
     4.0 / 3.0 * std::f64::consts::PI * radius.powi(3) * density
 }
@@ -49,78 +35,34 @@ pub(super) fn mass(radius: Real, density: Real) -> Real {
 impl Bench {
     /// Grains of `material` over a rigid plane at z = 0.
     pub(super) fn on_plane(material: &Material, surface: Surface, dt: Real) -> Self {
-        let mesh = Mesh::new(Vec::new(), Vec::new()).expect("nothing can be wrong with nothing");
-        let plane = WallShape::Plane { normal: Vec3::z() };
-        Self::new(material, surface, MembraneModel::new(mesh, NO_SHEET), plane, dt)
+        let mut builder = SystemBuilder::of_material(material, surface);
+        builder.substep(dt).walls([Wall::floor(0.0)]);
+        Self { system: builder.build().expect("a plane needs nothing else") }
     }
 
-    /// Grains of `material` on a sheet whose vertices are all held.
-    pub(super) fn on_sheet(
-        material: &Material,
-        surface: Surface,
-        mut sheet: MembraneModel,
-        dt: Real,
-    ) -> Self {
-        sheet.holders.fill(CARRIER_ID);
-        Self::new(material, surface, sheet, WallShape::Frame, dt)
-    }
-
-    fn new(
+    /// Grains of `material` on a membrane whose vertices are all held.
+    pub(super) fn on_membrane(
         material: &Material,
         surface: Surface,
         membrane: MembraneModel,
-        wall: WallShape,
         dt: Real,
     ) -> Self {
-        let walls = vec![BodyMotion { pose: Pose::identity(), twist: Twist::zero() }];
-        let state = State {
-            grains: Grains::default(),
-            membrane: MembraneState::at_rest(&membrane.mesh),
-            springs: Springs::none(0, 1, 0),
-            pair_ids: Vec::new(),
-            gauge: 0.0,
-            walls: walls.clone(),
-        };
         let latex = Material {
-            youngs_modulus: membrane.sheet.youngs_modulus,
+            youngs_modulus: membrane.material.youngs_modulus,
             poisson_ratio: 1.0 / 3.0,
-            density: membrane.sheet.density,
+            density: membrane.material.density,
         };
-        let model = Model {
-            gravity: Vec3::zeros(),
-            substep: dt,
-            radius_max: 0.0,
-            radius_mean: 0.0,
-            skin: 0.0,
-            period: None,
-            density_scaling: 1.0,
-            grain_law: PairLaw::between(material, material, surface),
-            membrane_law: PairLaw::between(material, &latex, surface),
-            held_positions: membrane.mesh.positions.clone(),
-            membrane,
-            walls: vec![WallModel { shape: wall, law: PairLaw::against_rigid(material, surface) }],
-            chamber: ChamberModel { lag_factor: 0.0, change_max: Real::INFINITY },
-            table: Pose::identity(),
-            bodies: Vec::new(),
-        };
-        let controls = Controls { gauge_setpoint: 0.0, walls, bodies: Vec::new() };
-        Self { system: System::new(model, controls, state) }
+        let mut builder = SystemBuilder::of_material(material, surface);
+        builder.substep(dt).membrane_law(PairLaw::between(material, &latex, surface));
+        let frame = builder.wall(Wall::frame());
+        builder.membrane(Membrane::of(membrane).hold(Vertices::All, frame));
+        Self { system: builder.build().expect("a frame holds any membrane") }
     }
 
     /// Adds a grain at rest.
     pub(super) fn add_grain(&mut self, position: Vec3, radius: Real, density: Real) {
-        let System { model, state, scratch, .. } = &mut self.system;
-        let grains = &mut state.grains;
-        grains.positions.push(position);
-        grains.velocities.push(Vec3::zeros());
-        grains.spins.push(Vec3::zeros());
-        grains.radii.push(radius);
-        grains.masses.push(mass(radius, density));
-        model.radius_max = model.radius_max.max(radius);
-        model.radius_mean = radius;
-        model.skin = 0.1 * model.radius_max;
-        state.springs = Springs::none(grains.positions.len(), 1, 0);
-        *scratch = Scratch::new(model);
+        self.system.add_grain(position, radius, mass(radius, density));
+        self.system.model.skin = 0.1 * self.system.model.radius_max;
     }
 
     /// One substep.
@@ -138,7 +80,7 @@ impl Bench {
         &mut self.system.state.grains
     }
 
-    /// Overlap of the first grain with the second, or with the plane if there is none [m].
+    /// Overlap of the first grain with the second, or with the plane if there is none (m).
     pub(super) fn overlap(&self) -> Real {
         let grains = self.grains();
         match grains.len() {
@@ -150,7 +92,7 @@ impl Bench {
         }
     }
 
-    /// Normal force between the grains, or of the plane [N].
+    /// Normal force between the grains, or of the plane (N).
     pub(super) fn normal_force(&self) -> Real {
         match self.grains().len() {
             1 => self.system.scratch.wall_forces[0].normal,
@@ -173,7 +115,7 @@ impl Bench {
         (linear, angular)
     }
 
-    /// Kinetic energy of all grains [J].
+    /// Kinetic energy of all grains (J).
     pub(super) fn kinetic_energy(&self) -> Real {
         let grains = self.grains();
         let of_grain = |i: usize| {
@@ -205,26 +147,26 @@ impl Bench {
 /// What was seen of a collision.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Met {
-    /// [m]
+    /// (m)
     pub(super) overlap_max: Real,
-    /// [N]
+    /// (N)
     pub(super) force_max: Real,
-    /// [N]
+    /// (N)
     pub(super) force_min: Real,
-    /// [s]
+    /// (s)
     pub(super) duration: Real,
 }
 
 /// A sphere that flies onto a rigid plane.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Flight {
-    /// [m]
+    /// (m)
     pub(super) radius: Real,
     pub(super) material: Material,
     pub(super) surface: Surface,
-    /// Down is −z [m/s].
+    /// Down is −z (m/s).
     pub(super) velocity: Vec3,
-    /// [rad/s]
+    /// (rad/s)
     pub(super) spin: Vec3,
 }
 
@@ -255,15 +197,15 @@ impl Flight {
 /// Two spheres of one material that fly towards each other along x.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Encounter {
-    /// [m]
+    /// (m)
     pub(super) radii: [Real; 2],
     pub(super) material: Material,
-    /// Of each [kg/m³].
+    /// Of each (kg/m³).
     pub(super) densities: [Real; 2],
     pub(super) surface: Surface,
-    /// Of each along x [m/s].
+    /// Of each along x (m/s).
     pub(super) speeds: [Real; 2],
-    /// Of each [rad/s].
+    /// Of each (rad/s).
     pub(super) spins: [Vec3; 2],
 }
 

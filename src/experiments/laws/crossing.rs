@@ -130,7 +130,7 @@ impl Path {
         let mesh = Mesh::new(positions, turned).expect("dents do not change who neighbours whom");
         let sheet = MembraneModel::new(mesh, scene.membrane.sheet);
         let material = &scene.grain.material;
-        let mut bench = Bench::on_sheet(material, surface, sheet, 1e-9);
+        let mut bench = Bench::on_membrane(material, surface, sheet, 1e-9);
         bench.add_grain(Vec3::z() * radius, radius, material.density);
         let angle = random.between(0.0, 2.0 * std::f64::consts::PI);
         let along = Vec3::new(angle.cos(), angle.sin(), 0.0);

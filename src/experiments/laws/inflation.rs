@@ -25,8 +25,8 @@ use crate::{
     physics::{
         measure::real,
         membrane::{
-            MembraneModel, MembraneScratch, MembraneState, Sheet, critical_step::critical_step,
-            forces, mesh::Mesh, pressure, stretch,
+            MembraneMaterial, MembraneModel, MembraneScratch, MembraneState,
+            critical_step::critical_step, forces, mesh::Mesh, pressure, stretch,
         },
     },
 };
@@ -72,9 +72,9 @@ impl Law for Inflation {
 }
 
 /// The scene's sheet without bending, well damped.
-fn bag(scene: &Scene) -> Sheet {
+fn bag(scene: &Scene) -> MembraneMaterial {
     let sheet = scene.membrane.sheet;
-    Sheet { bending_stiffness: 0.0, bending_damping: 0.0, spring_damping: 0.5, ..sheet }
+    MembraneMaterial { bending_stiffness: 0.0, bending_damping: 0.0, spring_damping: 0.5, ..sheet }
 }
 
 /// Lets the free vertices come to rest under `pressure` [Pa] and the `pull` on each vertex [N].
@@ -127,7 +127,7 @@ fn sphere(scene: &Scene, share: Real, record: &mut Record) {
     settle(&model, &mut state, overpressure, (&pull, &|_| true));
     let volume = |positions: &[Vec3]| pressure::volume(&model.mesh, positions);
     let found = (volume(&state.positions) / volume(&model.mesh.positions)).cbrt() - 1.0;
-    let in_plane = model.sheet.youngs_modulus * model.sheet.thickness;
+    let in_plane = model.material.youngs_modulus * model.material.thickness;
     let small = overpressure * radius / (3.0 * in_plane);
     let oracle = (1.0 - 2.0 * small - (1.0 - 4.0 * small).sqrt()) / (2.0 * small);
     push(record, "pressure", "Pa", overpressure);
@@ -161,7 +161,7 @@ fn cylinder(scene: &Scene, record: &mut Record) {
     let hoop = row_mean(n_rows / 2, &|p| p.xy().norm()) / radius - 1.0;
     let between = row_mean(above, &|p| p.z) - row_mean(below, &|p| p.z);
     let axial = between / (real(above - below) * height) - 1.0;
-    let unit = overpressure * radius / (model.sheet.youngs_modulus * model.sheet.thickness);
+    let unit = overpressure * radius / (model.material.youngs_modulus * model.material.thickness);
     record.set("U13.cylinder_hoop", hoop / (unit * 5.0 / 6.0), "1");
     record.set("U13.cylinder_axial", axial / (unit / 6.0), "1");
 }
@@ -197,7 +197,7 @@ fn disc(scene: &Scene, record: &mut Record) {
     let bordering = model.mesh.edges.iter().filter(|[a, b]| is_free(at(*a)) != is_free(at(*b)));
     let held: BTreeSet<u32> = bordering.map(|&[a, b]| if is_free(at(a)) { b } else { a }).collect();
     let radius = held.iter().map(|&v| at(v).norm()).sum::<Real>() / real(held.len());
-    let spring = stretch::stiffness(model.sheet.youngs_modulus, model.sheet.thickness);
+    let spring = stretch::stiffness(model.material.youngs_modulus, model.material.thickness);
     let tension = 3.0_f64.sqrt() * spring * TAUT / (1.0 + TAUT);
     let overpressure = 4.0 * tension * RISE / radius;
     let mut state = MembraneState::at_rest(&model.mesh);
@@ -212,7 +212,7 @@ fn disc(scene: &Scene, record: &mut Record) {
 fn closed_surface(scene: &Scene, record: &mut Record) {
     let radius = scene.membrane.radius;
     let mesh = Mesh::icosphere(radius, scene.laplace.frequency).expect("a frequency above zero");
-    let slack = Sheet { youngs_modulus: 0.0, ..bag(scene) };
+    let slack = MembraneMaterial { youngs_modulus: 0.0, ..bag(scene) };
     let model = MembraneModel::new(mesh, slack);
     let mut random = Random::new(1, Stream::Position);
     let mut draw = |size: Real| Vec3::from_fn(|_, _| random.between(-size, size));

@@ -21,7 +21,9 @@ use crate::{
     },
     physics::{
         measure::real,
-        membrane::{MembraneModel, MembraneScratch, MembraneState, Sheet, forces, mesh::Mesh},
+        membrane::{
+            MembraneMaterial, MembraneModel, MembraneScratch, MembraneState, forces, mesh::Mesh,
+        },
     },
 };
 
@@ -72,8 +74,8 @@ fn edge_stiffness(scene: &Scene) -> Real {
 }
 
 /// The scene's sheet without springs: bending alone.
-fn limp(scene: &Scene) -> Sheet {
-    Sheet { youngs_modulus: 0.0, bending_damping: 0.0, ..scene.membrane.sheet }
+fn limp(scene: &Scene) -> MembraneMaterial {
+    MembraneMaterial { youngs_modulus: 0.0, bending_damping: 0.0, ..scene.membrane.sheet }
 }
 
 /// Energy of a patch bent to a given curvature.
@@ -151,7 +153,7 @@ impl Strip {
         if largest == 0.0 {
             return vec![0.0; z.len()];
         }
-        let scale = SMALL * self.model.sheet.thickness / largest;
+        let scale = SMALL * self.model.material.thickness / largest;
         let mut state = MembraneState::at_rest(&self.model.mesh);
         for (position, z) in state.positions.iter_mut().zip(z) {
             position.z = scale * z;

@@ -2,7 +2,7 @@
 
 use crate::{
     base::{Real, Vec3},
-    physics::{contact::law, membrane::Sheet},
+    physics::{contact::law, membrane::MembraneMaterial},
     scene::{
         Material,
         quantity::{ANGLE, DENSITY, IMPULSE, LENGTH, PRESSURE, SPEED, TIME, TORQUE},
@@ -86,7 +86,7 @@ pub(super) struct Rolling {
 /// The sheet.
 #[derive(Clone, Debug)]
 pub(super) struct Membrane {
-    pub(super) sheet: Sheet,
+    pub(super) sheet: MembraneMaterial,
     /// Edge of a flat patch [m].
     pub(super) edge: Real,
     /// Radius of a sphere [m].
@@ -223,7 +223,7 @@ pub(super) fn blank() -> Scene {
     let nan = Real::NAN;
     let material = Material { youngs_modulus: nan, poisson_ratio: nan, density: nan };
     let surface = law::Surface { friction: nan, dissipation_time: nan, tangential_damping: nan };
-    let sheet = Sheet {
+    let sheet = MembraneMaterial {
         thickness: nan,
         youngs_modulus: nan,
         density: nan,

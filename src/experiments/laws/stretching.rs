@@ -11,7 +11,7 @@ use crate::{
     physics::{
         measure::real,
         membrane::{
-            MembraneModel, MembraneScratch, MembraneState, Sheet, forces,
+            MembraneMaterial, MembraneModel, MembraneScratch, MembraneState, forces,
             mesh::Mesh,
             pressure,
             stretch::{self, Spring, tension},
@@ -50,7 +50,8 @@ impl Law for Stretching {
 
 /// A flat hexagon of the scene's sheet without bending.
 fn patch(scene: &Scene, rings: usize, record: &mut Record) {
-    let sheet = Sheet { bending_stiffness: 0.0, bending_damping: 0.0, ..scene.membrane.sheet };
+    let sheet =
+        MembraneMaterial { bending_stiffness: 0.0, bending_damping: 0.0, ..scene.membrane.sheet };
     let mesh = Mesh::hexagonal_patch(scene.membrane.edge, rings).expect("there are rings");
     let model = MembraneModel::new(mesh, sheet);
     let in_plane = sheet.youngs_modulus * sheet.thickness;
@@ -89,7 +90,7 @@ fn stress(model: &MembraneModel, shape: &Mat3) -> Mat3 {
 
 /// Two vertices of the sheet, let go apart: the loss of amplitude in a period.
 fn ring_down(scene: &Scene, record: &mut Record) {
-    let Sheet { youngs_modulus, thickness, density, .. } = scene.membrane.sheet;
+    let MembraneMaterial { youngs_modulus, thickness, density, .. } = scene.membrane.sheet;
     let (edge, gamma) = (scene.membrane.edge, 0.15);
     let mass = density * thickness * edge * edge * 0.75_f64.sqrt();
     let k = stretch::stiffness(youngs_modulus, thickness);

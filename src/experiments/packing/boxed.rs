@@ -30,7 +30,7 @@ use crate::{
         random::{Random, Stream},
     },
     physics::{
-        Model, System,
+        Model, System, SystemBuilder,
         contact::grains::closest_image,
         health::Diverged,
         measure::{
@@ -96,7 +96,7 @@ pub(super) enum Changes {
 /// A state at rest.
 pub(super) struct Seen {
     pub(super) pressure: Real,
-    /// σ_xx − σ_yy [Pa].
+    /// σ_xx − σ_yy (Pa).
     pub(super) difference: Real,
     /// Mean overlap over diameter.
     pub(super) overlap: Real,
@@ -150,11 +150,12 @@ impl Boxed {
         let friction = friction(scene, case);
         let law = build::grain_law(&scene.grains, friction);
         let (mean, largest) = (scene.grains.radius_mean(), scene.grains.radius_max);
-        let mut model = Model::of_grains(law, scene.compression.substep, largest, mean);
-        model.period = Some(period);
-        // Dense grains hardly move: short lists are soon built anew, and soon gone through.
-        model.skin = 0.1 * mean;
-        let recipe = recipe(scene, &model, volume, friction);
+        let mut builder = SystemBuilder::new(law);
+        builder.substep(scene.compression.substep).radii_up_to(largest, mean).period(period);
+        // Dense grains hardly move: short lists are rebuilt soon, but quick to go through.
+        builder.skin(0.1 * mean).grains(grains);
+        let system = builder.build()?;
+        let recipe = recipe(scene, &system.model, volume, friction);
         let growth = Growth::new(recipe, final_radii.clone(), scale);
         let mut record = Record { case: case.name(), seed: scene.seed, ..Record::default() };
         record.columns = COLUMNS.iter().map(|(name, unit)| Column::new(name, unit)).collect();
@@ -168,7 +169,6 @@ impl Boxed {
             n_probed: 0,
             record,
         };
-        let system = System::at_rest(model, Vec::new(), grains);
         let (scene, case) = (scene.clone(), case);
         Ok(Self { scene, case, final_radii, volume, growth, system, place })
     }
@@ -297,7 +297,7 @@ impl Boxed {
         (self.scene.compression.pressure_first / stiffness).powf(2.0 / 3.0)
     }
 
-    /// Makes all grains, which are now under `pressure` [Pa], or the box larger by the share `growth`,
+    /// Makes all grains, which are now under `pressure` (Pa), or the box larger by the share `growth`,
     /// steadily.
     pub(super) fn ramp(&mut self, what: Changes, growth: Real, pressure: Real) {
         let (compression, grains) = (&self.scene.compression, &self.scene.grains);
@@ -383,7 +383,7 @@ impl Boxed {
         self.place.stage = Stage::Done;
     }
 
-    /// Share of the work that is done, as far as it can be told.
+    /// Share of the work that is done, as far as it is known.
     fn share(&self) -> Real {
         let compression = &self.scene.compression;
         let (from, to) = if friction(&self.scene, self.case) == 0.0 {
@@ -415,7 +415,7 @@ fn friction(scene: &Scene, case: Case) -> Real {
 }
 
 /// Where compression with friction rests next, when moduli have been measured `n_probed` times; `None`
-/// at the end [Pa].
+/// at the end (Pa).
 fn next_pressure(scene: &Scene, case: Case, n_probed: usize) -> Option<Real> {
     match case {
         Case::Moduli => scene.moduli.pressures.get(n_probed).copied(),
@@ -423,7 +423,7 @@ fn next_pressure(scene: &Scene, case: Case, n_probed: usize) -> Option<Real> {
     }
 }
 
-/// A cube of `volume` [m³] that is longer along x by the factor `stretch`, and shorter along y.
+/// A cube of `volume` (m³) that is longer along x by the factor `stretch`, and shorter along y.
 fn period(volume: Real, stretch: Real) -> Vec3 {
     volume.cbrt() * Vec3::new(stretch, stretch.recip(), 1.0)
 }

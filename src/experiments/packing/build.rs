@@ -34,7 +34,7 @@ pub(super) fn grain_law(grains: &Grains, friction: Real) -> PairLaw {
     PairLaw::between(&grains.material, &grains.material, grains.surface(friction))
 }
 
-/// Final radii [m]: uniform between the limits, or all the mean.
+/// Final radii (m): uniform between the limits, or all the mean.
 pub(super) fn final_radii(scene: &Scene, count: usize, is_mono: bool) -> Vec<Real> {
     let grains = &scene.grains;
     let mut random = Random::new(scene.seed, Stream::Radius);
@@ -55,7 +55,7 @@ pub(super) fn grains(
     state::Grains::at_rest(positions, radii, masses)
 }
 
-/// Lets the velocities of the grains decay by one substep of `drag_time` [s].
+/// Lets the velocities of the grains decay by one substep of `drag_time` (s).
 pub(super) fn drag(system: &mut System, drag_time: Real) {
     let left = (-system.model.substep / drag_time).exp();
     let grains = &mut system.state.grains;
@@ -69,9 +69,9 @@ pub(super) fn drag(system: &mut System, drag_time: Real) {
 pub(super) struct Settling {
     /// Substeps so far.
     pub(super) n_done: u64,
-    /// Kinetic energy when it was last looked at [J].
+    /// Kinetic energy when it was last looked at (J).
     last: Real,
-    /// Largest kinetic energy since rest was last looked for [J].
+    /// Largest kinetic energy since rest was last looked for (J).
     highest: Real,
 }
 

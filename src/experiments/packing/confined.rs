@@ -18,22 +18,19 @@ use super::{
 use crate::experiments::saved_run;
 use crate::{
     base::{
-        Pose, Real,
+        Real,
         random::{Random, Stream},
-        real::Twist,
     },
     physics::{
-        Model, System,
-        boundary::{
-            body::BodyMotion,
-            wall::{WallModel, WallShape},
-        },
+        System, SystemBuilder,
+        builder::{Membrane, Vertices, Wall},
         contact::law::{self, PairLaw},
         health::Diverged,
         measure::{enclosed_volume, packing, stress},
-        membrane::{CARRIER_ID, FREE, MembraneModel, Sheet, mesh::Mesh},
+        membrane::{FREE, MembraneMaterial, shape::MembraneShape},
         model::ChamberModel,
         packing::{Grown, Growth, Recipe, Room, first_scale, grow, scatter, sphere_volume},
+        state::Grains,
     },
     scene::Material,
 };
@@ -77,7 +74,6 @@ impl Confined {
         let final_radii = build::final_radii(scene, keys.count, false);
         let solid: Real = final_radii.iter().map(|&r| sphere_volume(r)).sum();
         let radius = (solid / FINAL_FRACTION / sphere_volume(1.0)).cbrt();
-        let model = model(scene, radius)?;
         let room = Room::Shell { inner: 0.0, outer: radius };
         let scale = first_scale(&final_radii, scene.compression.thin, room.volume());
         let small: Vec<Real> = final_radii.iter().map(|r| scale * r).collect();
@@ -85,11 +81,12 @@ impl Confined {
         let mut random = Random::new(scene.seed, Stream::Position);
         let places = scatter(&small, None, &mut random, |it| room.place(margin, it))?;
         let grains = build::grains(scene, places, &final_radii, scale);
+        let system = system(scene, radius, grains)?;
         let mean = scene.grains.radius_mean();
         let mass = scene.grains.material.density * sphere_volume(mean);
         let stop = scene.compression.pressure_first;
-        let recipe =
-            Recipe { scale_last: 2.0, ..Recipe::new(&model, room.volume(), stop, mass, mean) };
+        let recipe = Recipe::new(&system.model, room.volume(), stop, mass, mean);
+        let recipe = Recipe { scale_last: 2.0, ..recipe };
         let growth = Growth::new(recipe, final_radii.clone(), scale);
         let mut record =
             Record { case: "confined".to_owned(), seed: scene.seed, ..Record::default() };
@@ -97,8 +94,6 @@ impl Confined {
             .map(|name| Column::new(name, "Pa"))
             .to_vec();
         let place = Place { stage: Stage::Growing, growth: growth.progress(), record };
-        let frame = BodyMotion { pose: Pose::identity(), twist: Twist::zero() };
-        let system = System::at_rest(model, vec![frame], grains);
         Ok(Self { scene: scene.clone(), final_radii, recipe, growth, system, place })
     }
 
@@ -168,33 +163,33 @@ impl Confined {
     }
 }
 
-/// Grains and a spherical membrane of `radius` [m] that is held all over.
-fn model(scene: &Scene, radius: Real) -> Result<Model, StartError> {
-    let (grains, keys) = (&scene.grains, &scene.confined);
-    let mesh = Mesh::icosphere(radius, keys.frequency)?;
-    let law = build::grain_law(grains, keys.friction);
+/// Grains and a spherical membrane of `radius` (m) that is held all over.
+fn system(scene: &Scene, radius: Real, grains: Grains) -> Result<System, StartError> {
+    let (keys, law) = (&scene.confined, build::grain_law(&scene.grains, scene.confined.friction));
+    let material = &scene.grains.material;
     let substep = scene.compression.substep;
-    let mut model = Model::of_grains(law, substep, grains.radius_max, grains.radius_mean());
-    let rubber = rubber(keys, grains.material.density);
-    let surface = law::Surface { friction: keys.friction_membrane, ..grains.surface(0.0) };
-    model.membrane_law = PairLaw::between(&grains.material, &rubber, surface);
-    model.held_positions.clone_from(&mesh.positions);
-    model.membrane = MembraneModel::new(
-        mesh,
-        Sheet {
-            thickness: keys.thickness,
-            youngs_modulus: rubber.youngs_modulus,
-            density: rubber.density,
-            spring_damping: keys.spring_damping,
-            bending_stiffness: keys.bending_stiffness,
-            bending_damping: keys.bending_damping,
-        },
-    );
-    model.membrane.holders.fill(CARRIER_ID);
-    model.walls.push(WallModel { shape: WallShape::Frame, law });
+    let rubber = rubber(keys, material.density);
+    let surface = law::Surface { friction: keys.friction_membrane, ..scene.grains.surface(0.0) };
     let n_draw = DRAW_TIME * scene.compression.drag_time / substep;
-    model.chamber = ChamberModel { lag_factor: 0.0, change_max: keys.pressure / n_draw };
-    Ok(model)
+    let mut builder = SystemBuilder::new(law);
+    builder
+        .substep(substep)
+        .radii_up_to(scene.grains.radius_max, scene.grains.radius_mean())
+        .membrane_law(PairLaw::between(material, &rubber, surface))
+        .chamber(ChamberModel { lag_factor: 0.0, change_max: keys.pressure / n_draw })
+        .grains(grains);
+    let frame = builder.wall(Wall::frame());
+    let shape = MembraneShape::Icosphere { radius, frequency: keys.frequency };
+    let latex = MembraneMaterial {
+        thickness: keys.thickness,
+        youngs_modulus: rubber.youngs_modulus,
+        density: rubber.density,
+        spring_damping: keys.spring_damping,
+        bending_stiffness: keys.bending_stiffness,
+        bending_damping: keys.bending_damping,
+    };
+    builder.membrane(Membrane::new(&shape, latex)?.hold(Vertices::All, frame));
+    Ok(builder.build()?)
 }
 
 /// Latex, as dense as the grains in the seeds' tables.

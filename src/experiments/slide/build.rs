@@ -21,7 +21,7 @@ impl Way {
     /// Neither: 19.1° off the rows.
     pub(super) const SKEW: Self = Self(2, 1);
 
-    /// One period [m] on a lattice of `edge` [m].
+    /// One period (m) on a lattice of `edge` (m).
     pub(super) fn period(self, edge: Real) -> Vec3 {
         place((self.0, self.1), edge)
     }
@@ -35,7 +35,7 @@ pub(super) struct Patch {
 }
 
 impl Patch {
-    /// All whole triangles between two corners [m].
+    /// All whole triangles between two corners (m).
     ///
     /// # Errors
     /// If there are none.

@@ -10,24 +10,20 @@ use super::{
     scene::{Pull, Scene},
 };
 use crate::{
-    base::{Pose, Real, Vec3, real::Twist},
+    base::{Real, Vec3},
     experiments::{
         Progress, ResumeError, Run, StartError,
         record::{Column, Record},
         saved_run,
     },
     physics::{
-        Controls, Model, Scratch, State, System,
-        boundary::{
-            body::BodyMotion,
-            wall::{WallModel, WallShape},
-        },
+        Scratch, State, System, SystemBuilder,
+        builder::{BuildError, Membrane, Vertices, Wall},
         contact::{self, law::PairLaw, sums},
         health::Diverged,
         measure::{packing, real, real_of},
-        membrane::{CARRIER_ID, FREE, MembraneModel, MembraneState, SheetContact, critical_step},
-        model::ChamberModel,
-        state::{Grains, Springs},
+        membrane::{MembraneContact, MembraneModel, critical_step},
+        state::Grains,
     },
 };
 
@@ -144,19 +140,16 @@ impl Ride {
         let behind = if case.is_framed { Vec::new() } else { patch.behind(case.way) };
         let period = case.period();
         let start = start(scene, &case, &patch);
-        let model = model(scene, &case, patch);
-        let dt = model.substep;
+        let system = system(scene, &case, patch, start)?;
+        let dt = system.model.substep;
         let settle = if case.is_framed { scene.frame.settle } else { 0.0 };
         let n_settling = count(settle / dt);
         let n_substeps = n_settling + count(case.pull.length / (case.pull.speed * dt));
         let n_per_record = count(scene.record_every / (case.pull.speed * dt)).max(1);
-        let state = state(scene, &model, start);
-        let motion = BodyMotion { pose: Pose::identity(), twist: Twist::zero() };
-        let controls = Controls { gauge_setpoint: 0.0, walls: vec![motion], bodies: Vec::new() };
         let columns = COLUMNS.map(|(name, unit)| Column::new(name, unit)).to_vec();
         Ok(Self {
             case,
-            system: System::new(model, controls, state),
+            system,
             start,
             behind,
             period: period.norm(),
@@ -231,8 +224,8 @@ impl Ride {
             column.values.push(value);
         }
         let diameter = match model.membrane.contact {
-            SheetContact::Triangles => 2.0 * model.radius_max,
-            SheetContact::Spheres { radius } => model.radius_max + radius,
+            MembraneContact::Triangles => 2.0 * model.radius_max,
+            MembraneContact::Spheres { radius } => model.radius_max + radius,
         };
         let worst = &mut self.record.validity.overlap_over_diameter_max;
         *worst = worst.max(seen.membrane_overlap_max / diameter);
@@ -291,56 +284,31 @@ fn start(scene: &Scene, case: &Case, patch: &Patch) -> Vec3 {
     Vec3::z() * height
 }
 
-fn model(scene: &Scene, case: &Case, patch: Patch) -> Model {
+/// The ball over the membrane, which a frame holds.
+fn system(scene: &Scene, case: &Case, patch: Patch, start: Vec3) -> Result<System, BuildError> {
     let radius = scene.ball.radius;
     let law = case.law(scene);
-    let held_positions = patch.mesh.positions.clone();
     let mut membrane = MembraneModel::new(patch.mesh, scene.membrane.sheet);
     let mut contact_radius = radius;
     if case.has_spheres {
         let sphere = scene.membrane.sphere_radius;
-        membrane.contact = SheetContact::Spheres { radius: sphere };
+        membrane.contact = MembraneContact::Spheres { radius: sphere };
         contact_radius = radius * sphere / (radius + sphere);
     }
-    let mut substep = case.pull.substep;
+    let (mut substep, mut held) = (case.pull.substep, Vertices::All);
     if case.is_framed {
-        let holder = |&is_on_rim: &bool| if is_on_rim { CARRIER_ID } else { FREE };
-        membrane.holders = membrane.mesh.is_on_rim.iter().map(holder).collect();
+        held = Vertices::Rims;
         membrane.scale_rest_lengths(1.0 / (1.0 + scene.frame.stretch));
         let stiffness = contact::stiffness(&law, contact_radius, case.weight(scene));
         let longest = SAFETY * critical_step::critical_step(&membrane, stiffness);
         substep = substep.min(longest);
-    } else {
-        membrane.holders.fill(CARRIER_ID);
     }
-    Model {
-        gravity: Vec3::z() * -GRAVITY,
-        substep,
-        radius_max: radius,
-        radius_mean: radius,
-        skin: SKIN_SHARE * radius,
-        period: None,
-        density_scaling: 1.0,
-        grain_law: law,
-        membrane_law: law,
-        membrane,
-        held_positions,
-        walls: vec![WallModel { shape: WallShape::Frame, law }],
-        chamber: ChamberModel { lag_factor: 0.0, change_max: Real::INFINITY },
-        table: Pose::identity(),
-        bodies: Vec::new(),
-    }
-}
-
-fn state(scene: &Scene, model: &Model, start: Vec3) -> State {
-    State {
-        grains: Grains::at_rest(vec![start], vec![scene.ball.radius], vec![mass(scene)]),
-        membrane: MembraneState::at_rest(&model.membrane.mesh),
-        springs: Springs::none(1, model.walls.len(), 0),
-        pair_ids: Vec::new(),
-        gauge: 0.0,
-        walls: vec![BodyMotion { pose: Pose::identity(), twist: Twist::zero() }],
-    }
+    let mut builder = SystemBuilder::new(law);
+    builder.gravity(Vec3::z() * -GRAVITY).substep(substep).skin(SKIN_SHARE * radius);
+    builder.grains(Grains::at_rest(vec![start], vec![radius], vec![mass(scene)]));
+    let frame = builder.wall(Wall::frame());
+    builder.membrane(Membrane::of(membrane).hold(held, frame));
+    builder.build()
 }
 
 /// A positive real as a whole number.

@@ -2,7 +2,7 @@
 
 use crate::{
     base::Real,
-    physics::{contact::law, membrane::Sheet},
+    physics::{contact::law, membrane::MembraneMaterial},
     scene::{
         Material,
         quantity::{FORCE, IMPULSE, LENGTH, SPEED, TIME, TORQUE},
@@ -43,7 +43,7 @@ pub(super) struct Membrane {
     pub(super) sphere_radius: Real,
     pub(super) material: Material,
     pub(super) surface: law::Surface,
-    pub(super) sheet: Sheet,
+    pub(super) sheet: MembraneMaterial,
 }
 
 /// How the ball is drawn.
@@ -155,7 +155,7 @@ pub(super) fn blank() -> Scene {
     let nan = Real::NAN;
     let material = Material { youngs_modulus: nan, poisson_ratio: nan, density: nan };
     let surface = law::Surface { friction: nan, dissipation_time: nan, tangential_damping: nan };
-    let sheet = Sheet {
+    let sheet = MembraneMaterial {
         thickness: nan,
         youngs_modulus: nan,
         density: nan,

@@ -8,27 +8,23 @@
 use super::scene::{Setup, Size};
 use crate::{
     base::{
-        Pose, Real, Vec3,
+        Real, Vec3,
         random::{Random, Stream},
-        real::Twist,
     },
+    experiments::StartError,
     physics::{
-        Model, System,
-        boundary::{
-            body::BodyMotion,
-            wall::{WallModel, WallShape},
-        },
+        Model, System, SystemBuilder,
+        builder::{BuildError, Membrane, Vertices, Wall},
         contact::{
             law::{PairLaw, Surface},
             stiffness_at_vertex,
         },
         critical_step::{RAYLEIGH_SHARE, rayleigh_time},
         membrane::{
-            FREE, MembraneModel, SheetContact,
+            FREE, MembraneContact, MembraneModel,
             critical_step::critical_step_at,
             mesh::{Mesh, MeshFault},
         },
-        model::ChamberModel,
         packing::{Room, first_scale, scatter, sphere_volume},
         state::Grains,
     },
@@ -36,7 +32,7 @@ use crate::{
 };
 
 /// The wall that holds the membrane while grains grow. It is first, so that the lists of neighbours
-/// are told from the middle of the specimen.
+/// are kept relative to the middle of the specimen.
 pub(super) const FRAME: u32 = 0;
 /// The lower plate.
 pub(super) const BOTTOM: u32 = 1;
@@ -75,7 +71,7 @@ pub(super) struct Choice {
     pub(super) initial: usize,
 }
 
-/// How the specimen is made, whatever its state.
+/// How the specimen is made, independent of its state.
 #[derive(Clone)]
 pub(super) struct Recipe {
     pub(super) setup: Setup,
@@ -83,11 +79,11 @@ pub(super) struct Recipe {
     pub(super) final_radii: Vec<Real>,
     /// Common factor of the radii when they are scattered.
     pub(super) first_scale: Real,
-    /// Substep while grains grow [s].
+    /// Substep while grains grow (s).
     pub(super) growth_step: Real,
-    /// Substep of the free membrane in its first shape [s].
+    /// Substep of the free membrane in its first shape (s).
     pub(super) first_step: Real,
-    /// Stiffness of the grains at a vertex [N/m] that the sheet's substep reckons with.
+    /// Stiffness of the grains at a vertex (N/m) that the membrane's substep reckons with.
     contact_stiffness: Real,
 }
 
@@ -95,17 +91,17 @@ impl Recipe {
     /// Of the chosen specimen, and its system before the grains grow.
     ///
     /// # Errors
-    /// If the membrane cannot be meshed.
-    pub(super) fn new(setup: &Setup, choice: Choice) -> Result<(Self, System), MeshFault> {
+    /// If the membrane cannot be meshed, or the parts do not fit each other.
+    pub(super) fn new(setup: &Setup, choice: Choice) -> Result<(Self, System), StartError> {
         let Size { radius, height, .. } = setup.cases[choice.size];
-        let model = model(setup, choice)?;
+        let membrane = membrane(setup, choice)?;
+        let [_, _, law] = laws(setup, 0.0);
         let mut random = Random::new(setup.seeds[choice.initial], Stream::Radius);
         let (low, high) = (setup.grains.radius_min, setup.grains.radius_max);
         let n_grains = net(setup, choice).n_grains[choice.initial];
         let final_radii: Vec<Real> = (0..n_grains).map(|_| random.between(low, high)).collect();
         let room = Room::Tube { radius, bottom: -0.5 * height, top: 0.5 * height };
         let thin = setup.growth.first_solid_fraction;
-        let (membrane, law) = (&model.membrane, &model.membrane_law);
         let pressure = setup.confining.pressure;
         let mut recipe = Self {
             setup: setup.clone(),
@@ -114,10 +110,11 @@ impl Recipe {
             final_radii,
             growth_step: growth_step(setup),
             first_step: Real::NAN,
-            contact_stiffness: stiffness_at_vertex(membrane, law, high, pressure),
+            contact_stiffness: stiffness_at_vertex(&membrane, &law, high, pressure),
         };
-        recipe.first_step = recipe.step(membrane, &membrane.mesh.positions);
-        let system = recipe.scattered(model, &room);
+        // With its rims held, as it is sheared.
+        recipe.first_step = recipe.step(&membrane, &membrane.mesh.positions);
+        let system = recipe.system(membrane, &room)?;
         Ok((recipe, system))
     }
 
@@ -126,20 +123,37 @@ impl Recipe {
         &self.setup.cases[self.choice.size]
     }
 
-    /// Thin grains at rest in the straight membrane.
-    fn scattered(&self, model: Model, room: &Room) -> System {
+    /// Thin grains at rest in the straight membrane, which the frame holds.
+    fn system(&self, membrane: MembraneModel, room: &Room) -> Result<System, BuildError> {
+        let grains = &self.setup.grains;
+        let [plates, among_grains, on_membrane] = laws(&self.setup, 0.0);
+        let mut builder = SystemBuilder::new(among_grains);
+        builder
+            .wall_law(plates)
+            .membrane_law(on_membrane)
+            .substep(self.growth_step)
+            .radii_up_to(grains.radius_max, 0.5 * (grains.radius_min + grains.radius_max))
+            .skin(SKIN_SHARE * grains.radius_max)
+            .grains(self.scattered(room));
+        let frame = builder.wall(Wall::frame());
+        let half = 0.5 * self.size().height;
+        let plate = |z: Real, up: Real| Wall::plane(Vec3::new(0.0, 0.0, z), Vec3::z() * up);
+        builder.walls([plate(-half, 1.0), plate(half, -1.0)]);
+        builder.membrane(Membrane::of(membrane).hold(Vertices::All, frame));
+        builder.build()
+    }
+
+    /// Thin grains at random places.
+    fn scattered(&self, room: &Room) -> Grains {
+        let grains = &self.setup.grains;
         let small: Vec<Real> = self.final_radii.iter().map(|r| self.first_scale * r).collect();
         let mut random = Random::new(self.setup.seeds[self.choice.initial], Stream::Position);
-        let margin = model.radius_max;
+        let margin = grains.radius_max;
         let positions = scatter(&small, None, &mut random, |it| room.place(margin, it))
             .expect("the first solid fraction is limited to what always finds a place");
-        let density = self.setup.grains.material.density;
+        let density = grains.material.density;
         let masses = self.final_radii.iter().map(|&r| sphere_volume(r) * density).collect();
-        let half = 0.5 * self.size().height;
-        let at =
-            |z: Real| BodyMotion { pose: Pose::translation(0.0, 0.0, z), twist: Twist::zero() };
-        let walls = vec![at(0.0), at(-half), at(half)];
-        System::at_rest(model, walls, Grains::at_rest(positions, small, masses))
+        Grains::at_rest(positions, small, masses)
     }
 
     /// The frame holds the whole membrane; grains are soft.
@@ -157,9 +171,9 @@ impl Recipe {
         self.soften(model, 0.0);
     }
 
-    /// Substep of the free membrane [s] with its vertices at `positions`.
+    /// Substep of the free membrane (s) with its vertices at `positions`.
     ///
-    /// Hinges with their first areas are damped as the cube of their edges' lengths: the sheet that
+    /// Hinges with their first areas are damped as the cube of their edges' lengths: the membrane that
     /// grains stretch by a third bears half the substep of the straight one.
     ///
     /// A packing rings where ω dt nears 2, and ω² ~ √(ξ/R): at 0.4 of the Rayleigh time for overlaps
@@ -186,8 +200,8 @@ fn net(setup: &Setup, choice: Choice) -> super::scene::Net {
     }
 }
 
-/// The model as it is sheared.
-fn model(setup: &Setup, choice: Choice) -> Result<Model, MeshFault> {
+/// The membrane in its straight shape.
+fn membrane(setup: &Setup, choice: Choice) -> Result<MembraneModel, MeshFault> {
     let size = &setup.cases[choice.size];
     let net = net(setup, choice);
     let mesh = Mesh::tube(size.radius, size.height, net.n_around, net.n_rows)?;
@@ -200,33 +214,12 @@ fn model(setup: &Setup, choice: Choice) -> Result<Model, MeshFault> {
         membrane.bend_by_first_areas();
     }
     if choice.kind == Kind::Spheres {
-        membrane.contact = SheetContact::Spheres { radius: size.sphere_radius };
+        membrane.contact = MembraneContact::Spheres { radius: size.sphere_radius };
     }
-    let [frame, grains, sheet] = laws(setup, 0.0);
-    let plate =
-        |sign: Real| WallModel { shape: WallShape::Plane { normal: Vec3::z() * sign }, law: frame };
-    let mut model = Model {
-        gravity: Vec3::zeros(),
-        substep: Real::NAN,
-        radius_max: setup.grains.radius_max,
-        radius_mean: 0.5 * (setup.grains.radius_min + setup.grains.radius_max),
-        skin: SKIN_SHARE * setup.grains.radius_max,
-        period: None,
-        density_scaling: 1.0,
-        grain_law: grains,
-        membrane_law: sheet,
-        held_positions: membrane.mesh.positions.clone(),
-        membrane,
-        walls: vec![WallModel { shape: WallShape::Frame, law: frame }, plate(1.0), plate(-1.0)],
-        chamber: ChamberModel { lag_factor: 0.0, change_max: Real::INFINITY },
-        table: Pose::identity(),
-        bodies: Vec::new(),
-    };
-    fix_rings(&mut model);
-    Ok(model)
+    Ok(membrane)
 }
 
-/// Lets the plates hold the membrane's end rings, and nobody the rest.
+/// Lets the plates hold the membrane's end rings; the rest is free.
 fn fix_rings(model: &mut Model) {
     let mesh = &model.membrane.mesh;
     model.membrane.holders.fill(FREE);
@@ -269,7 +262,7 @@ fn set_laws(setup: &Setup, model: &mut Model, softness: Real) {
     (model.grain_law, model.membrane_law) = (grains, sheet);
 }
 
-/// Substep while grains grow in the held membrane [s].
+/// Substep while grains grow in the held membrane (s).
 fn growth_step(setup: &Setup) -> Real {
     let Setup { grains, growth, time, .. } = setup;
     let soft = Material { youngs_modulus: growth.youngs_modulus, ..grains.material };

@@ -66,8 +66,8 @@ pub(super) fn radii(system: &System) -> [Real; 2] {
 /// Σ F (Δx² + Δy²)/L / 2V, from the means over edges around and across, of which there are twice as many.
 pub(super) fn hoop_pressure(system: &System) -> Real {
     let membrane = &system.model.membrane;
-    let (mesh, sheet) = (&membrane.mesh, &membrane.sheet);
-    let stiffness = stretch::stiffness(sheet.youngs_modulus, sheet.thickness);
+    let (mesh, material) = (&membrane.mesh, &membrane.material);
+    let stiffness = stretch::stiffness(material.youngs_modulus, material.thickness);
     let top = mesh.positions.iter().map(|p| p.z).fold(0.0, Real::max);
     let (mut sums, mut n) = ([0.0; 2], [0; 2]);
     for ends in &mesh.edges {

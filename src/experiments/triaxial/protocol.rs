@@ -17,9 +17,10 @@ use super::{
     time_series::Logbook,
 };
 use crate::{
-    base::Real,
+    base::{Real, Vec3, real::Twist},
     physics::{
         System,
+        boundary::motion::{Load, Servo, WallMotion},
         health::Diverged,
         measure::{self as packing_measure, real},
         packing::{
@@ -122,6 +123,8 @@ impl Test {
     /// Goes on from `course` with the state that belongs to it, which the system holds already.
     pub(super) fn resume(&mut self, course: Course) {
         self.system.controls.walls.clone_from(&self.system.state.walls);
+        let walls = &self.system.state.walls;
+        self.drive([BOTTOM, TOP].map(|wall| walls[wall as usize].twist.linear.z));
         self.system.controls.gauge_setpoint = self.system.state.gauge;
         self.system.scratch = crate::physics::Scratch::new(&self.system.model);
         if course.stage == Stage::Growing {
@@ -251,7 +254,7 @@ impl Test {
             && missing.abs() < confining.rest_stress;
         let time = self.course.time_in_stage;
         if is_calm || time >= confining.rest_time_max {
-            self.drive([0.0; 2]);
+            self.drive([0.0, -0.0]);
             let logbook = &mut self.course.logbook;
             logbook.set("rest_time", time, "s");
             logbook.set("rest_energy", moving / carried.elastic_energy, "1");
@@ -265,7 +268,7 @@ impl Test {
     fn shear(&mut self) {
         let start = self.recipe.setup.shear.start_time;
         let speed = 0.5 * self.speed * (self.course.time_in_stage / start).min(1.0);
-        self.drive([speed; 2]);
+        self.drive([speed, -speed]);
         self.advance();
         let forces = measure::plate_forces(&self.system);
         let density = self.recipe.setup.grains.material.density;
@@ -282,12 +285,16 @@ impl Test {
         let (damping, pressure) = (confining.damping, confining.pressure * share);
         let (gain, fastest) = (confining.servo_speed, confining.servo_speed_max);
         self.system.controls.gauge_setpoint = -pressure;
-        let speed = |force: Real| {
-            let missing = (pressure - force / self.course.area) / confining.pressure;
-            (gain * missing).clamp(-fastest, fastest)
+        let servo = Servo {
+            axis: Vec3::z(),
+            load: Load::Pressure { area: self.course.area },
+            target: pressure,
+            full_scale: confining.pressure,
+            gain,
+            speed_max: fastest,
         };
-        let speeds = self.course.plate_forces.map(speed);
-        self.drive(speeds);
+        let [bottom, top] = self.course.plate_forces.map(|force| servo.speed(force));
+        self.drive([bottom, -top]);
         self.advance();
         self.damp(damping);
         self.course.plate_forces = measure::plate_forces(&self.system);
@@ -308,11 +315,13 @@ impl Test {
         0.5 * (bottom + top) / self.course.area
     }
 
-    /// Speeds of the lower and the upper plate towards the grains [m/s].
+    /// Velocities of the lower and the upper plate along z [m/s].
     fn drive(&mut self, [bottom, top]: [Real; 2]) {
-        let walls = &mut self.system.controls.walls;
-        walls[BOTTOM as usize].twist.linear.z = bottom;
-        walls[TOP as usize].twist.linear.z = -top;
+        for (wall, speed) in [(BOTTOM, bottom), (TOP, top)] {
+            let linear = Vec3::new(0.0, 0.0, speed);
+            let twist = Twist { linear, angular: Vec3::zeros() };
+            self.system.model.walls[wall as usize].motion = WallMotion::Velocity(twist);
+        }
     }
 
     /// Lets all speeds decay at `rate` [1/s] for a substep.

@@ -8,8 +8,8 @@ use super::{
 };
 use crate::{
     base::Real,
-    experiments::{Progress, ResumeError, Run, Stepped, record::Record, saved_run},
-    physics::{health::Diverged, measure::real, membrane::mesh::MeshFault, state::State},
+    experiments::{Progress, ResumeError, Run, StartError, Stepped, record::Record, saved_run},
+    physics::{health::Diverged, measure::real, state::State},
 };
 
 /// Contacts and vertices that a slice goes over: about a tenth of a second.
@@ -28,7 +28,7 @@ impl Sheared {
         name: &str,
         choice: Choice,
         variant: Variant,
-    ) -> Result<Self, MeshFault> {
+    ) -> Result<Self, StartError> {
         let mut setup = setup.clone();
         let (shear, runs) = (&mut setup.shear, &setup.runs);
         let mut speed = shear.speed * shear.speed_factor;

@@ -2,7 +2,7 @@
 
 use crate::{
     base::Real,
-    physics::membrane::Sheet,
+    physics::membrane::MembraneMaterial,
     scene::{
         Grains, Material,
         quantity::{FREQUENCY, IMPULSE, LENGTH, PRESSURE, SPEED, TIME, TORQUE},
@@ -66,8 +66,8 @@ pub(super) struct Membrane {
 
 impl Membrane {
     /// What a mesh is made of whose hinges have a damping [N s].
-    pub(super) fn sheet(&self, bending_damping: Real) -> Sheet {
-        Sheet {
+    pub(super) fn sheet(&self, bending_damping: Real) -> MembraneMaterial {
+        MembraneMaterial {
             thickness: self.thickness,
             youngs_modulus: self.material.youngs_modulus,
             density: self.material.density,

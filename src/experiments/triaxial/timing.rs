@@ -11,12 +11,11 @@ use super::{
 };
 use crate::{
     base::{Real, digest::Digest},
-    experiments::{Progress, ResumeError, Run, record::Record, saved_run},
+    experiments::{Progress, ResumeError, Run, StartError, record::Record, saved_run},
     physics::{
         State,
         health::Diverged,
         measure::{real, real_of},
-        membrane::mesh::MeshFault,
     },
 };
 
@@ -48,12 +47,12 @@ const KINDS: [Kind; 2] = [Kind::Triangles, Kind::Spheres];
 impl Timed {
     /// Both models of the same size, in the initial state A, with the source's hinge damping and a
     /// substep that needs no other argument.
-    pub(super) fn new(setup: &Setup, name: &str, size: usize) -> Result<Self, MeshFault> {
+    pub(super) fn new(setup: &Setup, name: &str, size: usize) -> Result<Self, StartError> {
         let mut setup = setup.clone();
         setup.membrane.bending_damping_spheres = setup.membrane.bending_damping;
         setup.time.rayleigh_share = setup.runs.check_rayleigh_share;
         let shear = &setup.shear;
-        let test = |kind: Kind| -> Result<Test, MeshFault> {
+        let test = |kind: Kind| -> Result<Test, StartError> {
             let (recipe, system) = Recipe::new(&setup, Choice { size, kind, initial: 0 })?;
             let speed = shear.speed * shear.speed_factor;
             Ok(Test::new(recipe, system, speed, (shear.strain, shear.n_points)))

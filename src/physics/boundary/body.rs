@@ -8,7 +8,7 @@ use crate::base::{Pose, Vec3, real::Twist};
 pub struct BodyMotion {
     /// Pose in the world.
     pub pose: Pose,
-    /// Velocity of the centre of mass and angular velocity, world axes [m/s], [rad/s].
+    /// Velocity of the centre of mass and angular velocity, world axes (m/s), (rad/s).
     pub twist: Twist,
 }
 

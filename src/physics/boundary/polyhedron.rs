@@ -32,9 +32,9 @@ pub struct Polyhedron {
     normals: Vec<Vec3>,
     bounding_radius: Real,
     volume: Real,
-    /// Centre of mass in the frame in which the shape was given [m].
+    /// Centre of mass in the frame in which the shape was given (m).
     centre_of_mass: Vec3,
-    /// ∫ x xᵀ dV about the centre of mass [m⁵].
+    /// ∫ x xᵀ dV about the centre of mass (m⁵).
     second_moment: Mat3,
 }
 
@@ -46,7 +46,7 @@ impl Polyhedron {
         let points: Vec<Vector> = points.iter().map(|&p| p.into()).collect();
         let (vertices, triangles) = try_convex_hull(&points).map_err(|_| fault.clone())?;
         let vertices: Vec<Vec3> = vertices.into_iter().map(Into::into).collect();
-        // Flat sets of points come back as a sheet with two sides.
+        // Flat sets of points come back as a surface with two sides.
         Self::new(&vertices, &triangles).map_err(|_| fault)
     }
 
@@ -63,7 +63,7 @@ impl Polyhedron {
         check_closed(&triangles)?;
         let (volume, centre_of_mass, second_moment) = moments(&vertices, &triangles);
         let size = vertices.iter().map(|v| (v - centre_of_mass).norm()).fold(0.0, Real::max);
-        // Rounding of a flat sheet with two sides stays far below this.
+        // Rounding of a flat surface with two sides stays far below this.
         if volume <= 1e-9 * size * size * size {
             return Err(ShapeFault::InsideOut);
         }
@@ -114,7 +114,7 @@ impl Polyhedron {
         sum.try_normalize(1e-12).unwrap_or(self.normals[face])
     }
 
-    /// Radius of a sphere about the centre of mass that holds all vertices [m].
+    /// Radius of a sphere about the centre of mass that holds all vertices (m).
     pub fn bounding_radius(&self) -> Real {
         self.bounding_radius
     }
@@ -130,7 +130,7 @@ impl Polyhedron {
         aabb
     }
 
-    /// Vertices around the centre of mass [m].
+    /// Vertices around the centre of mass (m).
     pub fn vertices(&self) -> impl Iterator<Item = Vec3> {
         self.tree.vertices().iter().map(|&v| v.into())
     }
@@ -140,7 +140,7 @@ impl Polyhedron {
         self.tree.indices()
     }
 
-    /// Volume, mass and inertia at `density` [kg/m³].
+    /// Volume, mass and inertia at `density` (kg/m³).
     pub fn bulk(&self, density: Real) -> Bulk {
         let trace = Mat3::identity() * self.second_moment.trace();
         let eigen = SymmetricEigen::new(trace - self.second_moment);

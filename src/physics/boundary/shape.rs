@@ -17,26 +17,26 @@ use crate::base::{Quat, Real, Vec3};
 pub enum Surface {
     /// A sphere.
     Sphere {
-        /// Radius [m].
+        /// Radius (m).
         radius: Real,
     },
     /// A box.
     Cuboid {
-        /// Half of each edge length [m].
+        /// Half of each edge length (m).
         half: Vec3,
     },
     /// A cylinder along z.
     Cylinder {
-        /// Radius [m].
+        /// Radius (m).
         radius: Real,
-        /// Half of the height [m].
+        /// Half of the height (m).
         half_height: Real,
     },
     /// All points at one distance from a piece of the z axis.
     Capsule {
-        /// Radius [m].
+        /// Radius (m).
         radius: Real,
-        /// Half the length of the straight part [m].
+        /// Half the length of the straight part (m).
         half_length: Real,
     },
     /// Flat triangles: a convex hull or a mesh.
@@ -46,7 +46,7 @@ pub enum Surface {
 /// A signed distance and the way out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Signed {
-    /// Distance from the surface [m], negative inside.
+    /// Distance from the surface (m), negative inside.
     pub distance: Real,
     /// Gradient of the distance: outward, length 1.
     pub normal: Vec3,
@@ -63,13 +63,13 @@ impl Signed {
 /// What a surface encloses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bulk {
-    /// Volume [m³].
+    /// Volume (m³).
     pub volume: Real,
-    /// Mass [kg].
+    /// Mass (kg).
     pub mass: Real,
-    /// Centre of mass in the frame in which the shape was given [m].
+    /// Centre of mass in the frame in which the shape was given (m).
     pub centre_of_mass: Vec3,
-    /// Principal moments of inertia about the centre of mass [kg m²].
+    /// Principal moments of inertia about the centre of mass (kg m²).
     pub principal_inertia: Vec3,
     /// Turns principal axes into the axes of the shape.
     pub principal_axes: Quat,
@@ -78,9 +78,9 @@ pub struct Bulk {
 /// Corners of a box along the axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Aabb {
-    /// Smallest coordinates [m].
+    /// Smallest coordinates (m).
     pub min: Vec3,
-    /// Largest coordinates [m].
+    /// Largest coordinates (m).
     pub max: Vec3,
 }
 
@@ -126,22 +126,22 @@ pub enum ShapeFault {
 }
 
 impl Surface {
-    /// A box with edges `size` [m].
+    /// A box with edges `size` (m).
     pub fn cuboid(size: &Vec3) -> Self {
         Self::Cuboid { half: size * 0.5 }
     }
 
-    /// A cylinder of total `height` [m].
+    /// A cylinder of total `height` (m).
     pub fn cylinder(radius: Real, height: Real) -> Self {
         Self::Cylinder { radius, half_height: 0.5 * height }
     }
 
-    /// A capsule of total `height` [m], at least twice the radius.
+    /// A capsule of total `height` (m), at least twice the radius.
     pub fn capsule(radius: Real, height: Real) -> Self {
         Self::Capsule { radius, half_length: (0.5 * height - radius).max(0.0) }
     }
 
-    /// The convex hull of `points` [m], moved to its centre of mass.
+    /// The convex hull of `points` (m), moved to its centre of mass.
     ///
     /// # Errors
     /// If the points span no volume.
@@ -157,7 +157,7 @@ impl Surface {
         Ok(Self::Polyhedron(Box::new(Polyhedron::new(vertices, triangles)?)))
     }
 
-    /// Signed distance of `p` [m] from the surface.
+    /// Signed distance of `p` (m) from the surface.
     #[inline]
     pub fn distance(&self, p: &Vec3) -> Signed {
         match self {
@@ -171,7 +171,7 @@ impl Surface {
         }
     }
 
-    /// Radius of a sphere about the centre of mass that holds the surface [m].
+    /// Radius of a sphere about the centre of mass that holds the surface (m).
     pub fn bounding_radius(&self) -> Real {
         match self {
             Self::Sphere { radius } => *radius,
@@ -196,7 +196,7 @@ impl Surface {
         Aabb { min: -half, max: half }
     }
 
-    /// Volume, mass and inertia at `density` [kg/m³].
+    /// Volume, mass and inertia at `density` (kg/m³).
     pub fn bulk(&self, density: Real) -> Bulk {
         let (volume, per_mass) = match self {
             Self::Sphere { radius } => {

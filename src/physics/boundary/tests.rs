@@ -220,7 +220,7 @@ fn a_turned_and_shifted_box_keeps_its_inertia() {
 fn no_solid_no_surface() {
     let (vertices, mut triangles) = cube(1.0, Vec3::zeros());
     let fault = |triangles: &[[u32; 3]]| Surface::mesh(&vertices, triangles).unwrap_err();
-    // Oracle: each list has exactly the fault that its name says.
+    // Oracle: the one fault of each list.
     let turned: Vec<_> = triangles.iter().map(|&[a, b, c]| [a, c, b]).collect();
     assert_eq!(fault(&turned), ShapeFault::InsideOut);
     assert!(matches!(fault(&[[0, 1, 9]]), ShapeFault::NoSuchVertex { vertex: 9, .. }));

@@ -1,26 +1,40 @@
-//! Walls: rigid surfaces with prescribed motion that grains touch and that hold vertices of the
-//! membrane. They feel forces but do not yield.
+//! Walls: rigid surfaces with prescribed motion that grains touch and that hold vertices of
+//! membranes. Forces act on them but do not move them.
 
-use super::body::BodyMotion;
+use super::{body::BodyMotion, motion::WallMotion, triangles::Triangles};
 use crate::{
     base::{Real, Vec3},
     physics::contact::law::PairLaw,
 };
 
-/// The first wall carries the bag; a gripper's is the flange, whose inner face is the plate.
+/// The carrier: the first wall. A gripper's is the flange, whose inner face is the plate.
+///
+/// It is the frame of reference of the system in two ways. Lists of neighbours are kept in terms
+/// of positions relative to it, so carrying the whole system through the room costs no rebuild.
+/// And with density scaling grains and free vertices gain its velocity directly, so that heavier
+/// ones follow it as real ones do. Where the container moves, it should be the first wall.
 pub const CARRIER: usize = 0;
 
-/// A wall as it stays during a run.
-#[derive(Clone, Copy, Debug)]
+/// What a wall is made of, and how it moves.
+#[derive(Clone, Debug)]
 pub struct WallModel {
     /// Its surface.
     pub shape: WallShape,
     /// Law between grains and the wall.
     pub law: PairLaw,
+    /// How it moves.
+    pub motion: WallMotion,
+}
+
+impl WallModel {
+    /// A wall that does not move.
+    pub fn fixed(shape: WallShape, law: PairLaw) -> Self {
+        Self { shape, law, motion: WallMotion::Fixed }
+    }
 }
 
 /// The surface of a wall in its own frame.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum WallShape {
     /// A plane through the frame's origin.
     Plane {
@@ -29,39 +43,43 @@ pub enum WallShape {
     },
     /// The inner side of a cylinder around z, without ends.
     Tube {
-        /// Radius [m].
+        /// Radius (m).
         radius: Real,
     },
     /// The inner side of a sphere.
     Bowl {
-        /// Radius [m].
+        /// Radius (m).
         radius: Real,
     },
     /// The outer side of a sphere.
     Ball {
-        /// Radius [m].
+        /// Radius (m).
         radius: Real,
     },
+    /// Triangles, touched from both sides. There is no single distance from them; see
+    /// `Triangles::within`.
+    Triangles(Box<Triangles>),
     /// Holds vertices and touches no grain.
     Frame,
 }
 
 impl WallShape {
     /// The surface where a motion has brought it.
+    #[inline]
     pub fn placed(&self, motion: &BodyMotion) -> Placed {
-        match *self {
+        match self {
             Self::Plane { normal } => Placed::Plane { normal: motion.pose.rotation * normal },
             Self::Tube { radius } => {
-                Placed::Tube { radius, axis: motion.pose.rotation * Vec3::z() }
+                Placed::Tube { radius: *radius, axis: motion.pose.rotation * Vec3::z() }
             }
-            Self::Bowl { radius } => Placed::Bowl { radius },
-            Self::Ball { radius } => Placed::Ball { radius },
-            Self::Frame => Placed::Frame,
+            Self::Bowl { radius } => Placed::Bowl { radius: *radius },
+            Self::Ball { radius } => Placed::Ball { radius: *radius },
+            Self::Triangles(_) | Self::Frame => Placed::Frame,
         }
     }
 
-    /// Distance [m] of the point at `arm` [m] from the wall's origin, and the normal towards it,
-    /// world axes. `None` where the wall has no surface.
+    /// Distance (m) of the point at `arm` (m) from the wall's origin, and the normal towards it,
+    /// world axes. `None` where the wall has no surface, or more than one distance.
     pub fn distance(&self, motion: &BodyMotion, arm: &Vec3) -> Option<(Real, Vec3)> {
         self.placed(motion).distance(arm)
     }
@@ -96,9 +114,9 @@ impl Placed {
 }
 
 impl WallShape {
-    /// No point within `extent` [m] of the wall's origin has come nearer to its surface by more than
-    /// this [m] while the wall went from one motion to another, seen from something that went by
-    /// `carried` [m].
+    /// No point within `extent` (m) of the wall's origin has come nearer to its surface by more than
+    /// this (m) while the wall went from one motion to another, seen from something that went by
+    /// `carried` (m).
     pub fn displacement(
         &self,
         from: &BodyMotion,
@@ -109,10 +127,13 @@ impl WallShape {
         let origin = |it: &BodyMotion| it.pose.translation.vector;
         let shifted = (origin(to) - origin(from) - carried).norm();
         let turned = |axis: &Vec3| (to.pose.rotation * axis - from.pose.rotation * axis).norm();
+        // No vector changes by more than the largest change of a unit vector, 2 sin(angle/2).
+        let turned_most = || 2.0 * (0.5 * to.pose.rotation.angle_to(&from.pose.rotation)).sin();
         match self {
             Self::Plane { normal } => shifted + turned(normal) * extent,
             Self::Tube { .. } => shifted + turned(&Vec3::z()) * extent,
             Self::Bowl { .. } | Self::Ball { .. } => shifted,
+            Self::Triangles(_) => shifted + turned_most() * extent,
             Self::Frame => 0.0,
         }
     }

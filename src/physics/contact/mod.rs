@@ -14,7 +14,7 @@ pub mod sums;
 
 use law::PairLaw;
 
-use super::membrane::{MembraneModel, SheetContact};
+use super::membrane::{MembraneContact, MembraneModel};
 use crate::base::Real;
 
 /// Normal stiffness dF/dξ [N/m] of a Hertz contact that carries `force` [N]; `radius` [m] is R*.
@@ -33,11 +33,11 @@ pub fn stiffness_at_vertex(
 ) -> Real {
     match membrane.contact {
         // One contact carries the pressure on the grain's square of sheet.
-        SheetContact::Triangles => {
+        MembraneContact::Triangles => {
             stiffness(law, grain_radius, pressure * 4.0 * grain_radius.powi(2))
         }
         // Two grains at one sphere, each with the pressure on the vertex's own share of the sheet.
-        SheetContact::Spheres { radius } => {
+        MembraneContact::Spheres { radius } => {
             let area = membrane.mesh.vertex_areas().into_iter().fold(0.0, Real::max);
             let shared = grain_radius * radius / (grain_radius + radius);
             2.0 * stiffness(law, shared, pressure * area)

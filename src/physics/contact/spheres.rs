@@ -27,7 +27,7 @@ use crate::{
     base::{Real, Vec3, parallel},
     physics::{
         Model,
-        membrane::SheetContact,
+        membrane::MembraneContact,
         scratch::SphereForce,
         state::{SphereSprings, State},
     },
@@ -41,7 +41,7 @@ pub fn forces(
     forces: &mut Vec<SphereForce>,
 ) {
     forces.resize(listed.ids.len(), SphereForce::default());
-    let SheetContact::Spheres { radius } = model.membrane.contact else { return };
+    let MembraneContact::Spheres { radius } = model.membrane.contact else { return };
     let SphereSprings { ids, springs } = listed;
     parallel::for_each_of_two(forces, springs, |k, force, spring| {
         let [grain, vertex] = ids[k].map(|id| id as usize);

@@ -26,11 +26,11 @@ const FEWER: usize = 2;
 /// Size and net of a bar along z, centred on the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bar {
-    /// Width of each side [m].
+    /// Width of each side (m).
     pub width: Real,
-    /// Length [m].
+    /// Length (m).
     pub length: Real,
-    /// Radius of the rounded edges along the bar [m], half the width at most.
+    /// Radius of the rounded edges along the bar (m), half the width at most.
     pub edge_radius: Real,
     /// Vertices of a row on each side.
     pub n_side: usize,
@@ -73,7 +73,7 @@ struct Net<'a> {
 }
 
 impl Net<'_> {
-    /// Adds a ring with `n_side` places on each side, turned by `half_places`, at height `z` [m].
+    /// Adds a ring with `n_side` places on each side, turned by `half_places`, at height `z` (m).
     fn ring(&mut self, n_side: usize, half_places: usize, z: Real) -> Range<usize> {
         let begin = self.positions.len();
         let shrunk = n_side as Real / self.bar.n_side as Real;
@@ -112,7 +112,7 @@ impl Net<'_> {
         }
     }
 
-    /// Closes the end at height `z` [m] whose last ring is `outer`.
+    /// Closes the end at height `z` (m) whose last ring is `outer`.
     fn close(&mut self, (mut outer, mut turn): (Range<usize>, usize), z: Real, is_up: bool) {
         while outer.len() / 4 > FEWER {
             let inner = self.ring(outer.len() / 4 - FEWER, 0, z);
@@ -144,7 +144,7 @@ impl Net<'_> {
 }
 
 /// The point `part`/`whole` of the way around a square with rounded corners, from the middle of a side,
-/// counterclockwise: x and y [m]; its sides are `half` [m] from the centre.
+/// counterclockwise: x and y (m); its sides are `half` (m) from the centre.
 fn on_contour(part: usize, whole: usize, half: Real, radius: Real) -> (Real, Real) {
     let quarter = whole / 4;
     let straight = half - radius;

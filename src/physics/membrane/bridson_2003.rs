@@ -7,11 +7,11 @@
 //! u2 = |e| n2/|n2|²                    u4 = −(1+a1) u1 − (1+a2) u2
 //! a1 = (r1 − r4)·e/|e|²,  a2 = (r2 − r4)·e/|e|²
 //!
-//! e      edge r4 − r3                                            [m]
-//! n1, n2 area normals of the two triangles, |n| = 2 · area       [m²]
-//! θ      angle between the normals, sign of (n1 × n2) · e        [rad]
-//! k_el   elastic bending constant                                [N m]
-//! k_diss dissipative bending constant                            [N s]
+//! e      edge r4 − r3                                            (m)
+//! n1, n2 area normals of the two triangles, |n| = 2 · area       (m²)
+//! θ      angle between the normals, sign of (n1 × n2) · e        (rad)
+//! k_el   elastic bending constant                                (N m)
+//! k_diss dissipative bending constant                            (N s)
 //! ```
 //!
 //! Source: Bridson, Marino, Fedkiw (2003), in the form of Götz (2024) eqs. 17–25. With this sign of
@@ -64,8 +64,8 @@ impl<L: Lanes> Fold<L> {
         }
     }
 
-    /// The same hinge with the areas that its triangles once had: `first` are twice those [m²], `sides`
-    /// and `length` [m] the present triangles and edge. Triangles that are squeezed flat then keep a
+    /// The same hinge with the areas that its triangles once had: `first` are twice those (m²), `sides`
+    /// and `length` (m) the present triangles and edge. Triangles that are squeezed flat then keep a
     /// finite stiffness, at the price of a torque on itself where the two are stretched differently.
     #[inline(always)]
     pub fn with_areas(mut self, first: [L; 2], sides: [Side<L>; 2], length: L) -> Self {

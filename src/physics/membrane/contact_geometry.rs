@@ -62,7 +62,7 @@ impl Feature {
 /// The closest point of a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Closest {
-    /// The point itself [m].
+    /// The point itself (m).
     pub point: Vec3,
     /// Its barycentric weights, none negative, together 1.
     pub weights: [Real; 3],
@@ -73,9 +73,9 @@ pub struct Closest {
 /// The closest points of a triangle in each lane.
 #[derive(Clone, Copy)]
 pub struct ClosestLanes<L> {
-    /// From the closest point to the given one [m].
+    /// From the closest point to the given one (m).
     pub to_given: Vector<L>,
-    /// Squared length of that [m²].
+    /// Squared length of that (m²).
     pub distance_squared: L,
     /// Barycentric weights of the closest point.
     pub weights: [L; 3],

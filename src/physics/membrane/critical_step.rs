@@ -9,7 +9,7 @@
 //!
 //! The first unstable mode has the factor −1 per step: x' = −x makes dt² K + 2 dt C − 4 M singular.
 //! K and C are those of springs and hinges in the reference shape or another; contacts add their
-//! stiffness to every vertex. On a regular lattice ω² = 6 k/m without hinges. A strain ε of the sheet
+//! stiffness to every vertex. On a regular lattice ω² = 6 k/m without hinges. A strain ε of the membrane
 //! changes the limit by a share of about ε, which is what a safety factor on the step is for; where
 //! damped hinges set it and have their first areas, by 3 ε.
 //!
@@ -30,7 +30,7 @@ const N_APPROACHES: usize = 8;
 /// What power iteration may still have missed: it finds eigenvalues from below.
 const MARGIN: Real = 1.02;
 
-/// The sheet as a linear force law with weights on its stiffness and its damping.
+/// The membrane as a linear force law with weights on its stiffness and its damping.
 struct Linear<'a> {
     model: &'a MembraneModel,
     positions: &'a [Vec3],
@@ -38,8 +38,8 @@ struct Linear<'a> {
     contact_stiffness: Real,
 }
 
-/// The longest stable substep [s] of a sheet whose vertices meet contacts of `contact_stiffness`
-/// [N/m] (0 for none).
+/// The longest stable substep (s) of a membrane whose vertices meet contacts of `contact_stiffness`
+/// (N/m) (0 for none).
 pub fn critical_step(model: &MembraneModel, contact_stiffness: Real) -> Real {
     critical_step_at(model, &model.mesh.positions, contact_stiffness)
 }
@@ -75,7 +75,7 @@ fn irregular(n: usize) -> Vec<Vec3> {
     (0..n).map(at).collect()
 }
 
-/// Gives a share of every mode along an axis along which none is left: the springs of a flat sheet leave
+/// Gives a share of every mode along an axis along which none is left: the springs of a flat membrane leave
 /// nothing of the modes that its hinges damp, and those nothing of the springs'.
 fn stir(mode: &mut [Vec3]) {
     for axis in 0..3 {
@@ -138,7 +138,7 @@ impl Linear<'_> {
     fn apply(&self, [stiff, damp]: [Real; 2], x: &[Vec3]) -> Vec<Vec3> {
         let model = self.model;
         let mut y: Vec<Vec3> = x.iter().map(|x| x * (stiff * self.contact_stiffness)).collect();
-        for (link, fold) in model.links.iter().zip(&self.folds) {
+        for (k, (link, fold)) in model.links.iter().zip(&self.folds).enumerate() {
             let at = link.vertices.map(|v| v as usize);
             let [_, _, r3, r4] = link.corners(self.positions);
             let edge = r4 - r3;
@@ -151,8 +151,9 @@ impl Linear<'_> {
             let Some(fold) = fold else { continue };
             // d(sin θ/2)/dθ = cos(θ/2)/2.
             let half_cosine = (1.0 - fold.half_sine * fold.half_sine).max(0.0).sqrt();
-            let elastic = 0.5 * half_cosine * model.sheet.bending_stiffness * fold.slenderness;
-            let hinge = stiff * elastic + damp * model.sheet.bending_damping * length;
+            let [stiffness, damping] = model.bending_of(k);
+            let elastic = 0.5 * half_cosine * stiffness * fold.slenderness;
+            let hinge = stiff * elastic + damp * damping * length;
             let turn = fold.project(link.corners(x).map(|x| Vector::from(*x)));
             for (vertex, force) in at.into_iter().zip(fold.spread(hinge * turn)) {
                 y[vertex] += Vec3::from(force);

@@ -13,7 +13,7 @@ use crate::base::{
     parallel,
 };
 
-/// Forces of springs, hinges and `gauge_pressure` [Pa] on every vertex, into `scratch.forces`.
+/// Forces of springs, hinges and `gauge_pressure` (Pa) on every vertex, into `scratch.forces`.
 pub fn forces(
     model: &MembraneModel,
     state: &MembraneState,
@@ -161,10 +161,17 @@ impl PullAndFold<'_> {
         {
             fold = fold.with_areas([L::load(first), L::load(second)], sides, length);
         }
-        let sheet = &self.model.sheet;
+        let material = &self.model.material;
+        let [mut stiffness, mut damping] =
+            [material.bending_stiffness, material.bending_damping].map(L::splat);
+        if let [Some(elastic), Some(viscous)] =
+            [0, 1].map(|k| self.model.bending[k].get(first..first + L::N))
+        {
+            (stiffness, damping) = (L::load(elastic), L::load(viscous));
+        }
         let opened = fold.half_sine - rest_half_sine;
-        let elastic = L::splat(sheet.bending_stiffness) * fold.slenderness * opened;
-        let viscous = L::splat(sheet.bending_damping) * length * fold.project(velocity);
+        let elastic = stiffness * fold.slenderness * opened;
+        let viscous = damping * length * fold.project(velocity);
         let [f1, f2, f3, f4] = fold.spread(elastic - viscous);
         let (f3, f4, zero) = (f3 + pull, f4 - pull, L::splat(0.0));
         let (wings, ends) = (&mut self.wings[k..k + L::N], &mut self.ends[k..k + L::N]);

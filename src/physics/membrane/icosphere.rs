@@ -123,7 +123,7 @@ fn geodesic(radius: Real, frequency: usize) -> (Vec<Vec3>, Vec<[u32; 3]>) {
         let mut at = |weights: [usize; 3]| {
             let mut key: Weights = std::array::from_fn(|k| (face[k], weights[k]));
             for entry in &mut key {
-                // Corners without weight must not tell faces apart.
+                // Corners without weight must not distinguish faces.
                 if entry.1 == 0 {
                     entry.0 = usize::MAX;
                 }

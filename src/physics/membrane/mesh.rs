@@ -1,4 +1,4 @@
-//! A triangle mesh that knows its neighbours: edges, hinges, rim, and who meets at each vertex.
+//! A triangle mesh with its connectivity: edges, hinges, rims, and what meets at each vertex.
 //!
 //! ```text
 //!            r1                triangle 1 = (r1, r3, r4), triangle 2 = (r2, r4, r3),
@@ -65,7 +65,7 @@ impl Incidence {
 /// A consistently oriented surface of one or more parts, each closed or with rims.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mesh {
-    /// Reference position of each vertex [m].
+    /// Reference position of each vertex (m).
     pub positions: Vec<Vec3>,
     /// Vertices of each triangle, counterclockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
@@ -159,6 +159,12 @@ pub enum MeshFault {
         n_around: usize,
         /// Rows.
         n_rows: usize,
+    },
+    /// A disc without a ring of vertices.
+    #[error("a disc needs 1 ring of vertices at least, not {n_rings}")]
+    TooFewRings {
+        /// Rings.
+        n_rings: usize,
     },
     /// A frequency without a ring of edges on the equator.
     #[error("subdivision frequency {frequency} is not an even number of at least 2")]
@@ -269,7 +275,7 @@ impl Mesh {
         self.rims.is_empty()
     }
 
-    /// A third of the reference area of the triangles at each vertex [m²].
+    /// A third of the reference area of the triangles at each vertex (m²).
     pub fn vertex_areas(&self) -> Vec<Real> {
         let mut areas = vec![0.0; self.n_vertices()];
         for triangle in &self.triangles {
@@ -282,7 +288,7 @@ impl Mesh {
     }
 }
 
-/// Outward normal of a triangle, as long as twice its area [m²].
+/// Outward normal of a triangle, as long as twice its area (m²).
 #[inline]
 pub fn area_normal(positions: &[Vec3], triangle: &[u32; 3]) -> Vec3 {
     let [a, b, c] = triangle.map(|v| positions[v as usize]);

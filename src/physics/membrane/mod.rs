@@ -7,6 +7,8 @@ mod icosphere;
 mod parts;
 mod tube;
 pub mod bar;
+mod disc;
+pub mod shape; // all of them by name
 pub mod stretch;
 pub mod bridson_2003;
 pub mod pressure;
@@ -31,31 +33,31 @@ use crate::{
     scene,
 };
 
-/// What the sheet is made of.
+/// What the membrane is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sheet {
-    /// Thickness d [m].
+pub struct MembraneMaterial {
+    /// Thickness d (m).
     pub thickness: Real,
-    /// Young's modulus E [Pa].
+    /// Young's modulus E (Pa).
     pub youngs_modulus: Real,
-    /// Density ρ [kg/m³].
+    /// Density ρ (kg/m³).
     pub density: Real,
     /// Damping ratio γ of the springs.
     pub spring_damping: Real,
-    /// Elastic bending constant k_el of the hinges [N m]; the plate stiffness is k_el/4.
+    /// Elastic bending constant k_el of the hinges (N m); the plate stiffness is k_el/4.
     pub bending_stiffness: Real,
-    /// Dissipative bending constant k_diss of the hinges [N s].
+    /// Dissipative bending constant k_diss of the hinges (N s).
     pub bending_damping: Real,
 }
 
-/// What of the sheet grains touch.
+/// What of the membrane grains touch.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum SheetContact {
+pub enum MembraneContact {
     /// Its triangles: a closed surface without thickness.
     Triangles,
     /// Spheres around its vertices, the classic mass-spring membrane. They do not touch each other.
     Spheres {
-        /// Radius of each sphere [m].
+        /// Radius of each sphere (m).
         radius: Real,
     },
 }
@@ -65,7 +67,7 @@ pub const FREE: u32 = u32::MAX;
 /// The first wall as a holder.
 pub const CARRIER_ID: u32 = 0;
 
-impl Sheet {
+impl MembraneMaterial {
     /// That of a scene.
     pub fn of(membrane: &scene::Membrane) -> Self {
         Self {
@@ -84,19 +86,21 @@ impl Sheet {
 pub struct MembraneModel {
     /// Who neighbours whom, and the reference shape.
     pub mesh: Mesh,
-    /// What the sheet is made of.
-    pub sheet: Sheet,
-    /// Mass of each vertex: ρ d times a third of the areas at it [kg].
+    /// What the membrane is made of; of several parts, the first.
+    pub material: MembraneMaterial,
+    /// Mass of each vertex: ρ d times a third of the areas at it (kg).
     pub masses: Vec<Real>,
     /// Which wall holds each vertex, `FREE` for none. Forces on held vertices are computed like all
-    /// others: they are what the sheet exerts on the wall.
+    /// others: they are what the membrane exerts on the wall.
     pub holders: Vec<u32>,
     /// What of it grains touch.
-    pub contact: SheetContact,
+    pub contact: MembraneContact,
     /// Springs and hinges, numbered like the edges.
     links: Vec<Link>,
-    /// Twice the reference areas at each hinge [m²] if these are to be taken; else empty.
+    /// Twice the reference areas at each hinge (m²) if these are to be taken; else empty.
     first_areas: [Vec<Real>; 2],
+    /// Elastic (N m) and dissipative (N s) bending constant of each hinge if parts differ; else empty.
+    bending: [Vec<Real>; 2],
 }
 
 /// An edge with all that its forces need, in one place in memory.
@@ -121,9 +125,9 @@ struct LinkLaw {
 /// The membrane as it moves.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MembraneState {
-    /// Position of each vertex [m]. Written by `integrate`.
+    /// Position of each vertex (m). Written by `integrate`.
     pub positions: Vec<Vec3>,
-    /// Velocity of each vertex [m/s]. Written by `integrate`.
+    /// Velocity of each vertex (m/s). Written by `integrate`.
     pub velocities: Vec<Vec3>,
 }
 
@@ -131,9 +135,9 @@ pub struct MembraneState {
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub struct Facet {
-    /// Outward normal, as long as twice the area [m²].
+    /// Outward normal, as long as twice the area (m²).
     pub area_normal: Vec3,
-    /// One over that length [1/m²].
+    /// One over that length (1/m²).
     pub inverse_norm: Real,
 }
 
@@ -155,9 +159,9 @@ impl Facet {
 /// Orientations of triangles, one in each lane.
 #[derive(Clone, Copy, Debug)]
 pub struct Side<L> {
-    /// Outward normal, as long as twice the area [m²].
+    /// Outward normal, as long as twice the area (m²).
     pub area_normal: Vector<L>,
-    /// One over that length [1/m²].
+    /// One over that length (1/m²).
     pub inverse_norm: L,
 }
 
@@ -176,38 +180,52 @@ impl From<&Facet> for Side<Real> {
     }
 }
 
-/// Position [m] and velocity [m/s] of a vertex, each with a fourth number without meaning.
+/// Position (m) and velocity (m/s) of a vertex, each with a fourth number without meaning.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C, align(64))]
 pub struct VertexRow {
-    /// Position [m].
+    /// Position (m).
     pub place: [Real; 4],
-    /// Velocity [m/s].
+    /// Velocity (m/s).
     pub velocity: [Real; 4],
 }
 
-/// What `forces` computes anew in every substep.
+/// What `forces` computes in every substep.
 #[derive(Clone, Debug)]
 pub struct MembraneScratch {
     /// Orientation of each triangle. Written by `forces`.
     pub facets: Vec<Facet>,
     /// What laws need of each vertex. Written by `forces`.
     pub vertices: Vec<VertexRow>,
-    /// Forces of each link on its first two vertices [N], four numbers each. Written by `forces`.
+    /// Forces of each link on its first two vertices (N), four numbers each. Written by `forces`.
     wing_forces: Vec<[Real; 8]>,
     /// The same for the ends of its edge.
     end_forces: Vec<[Real; 8]>,
-    /// Force of springs, hinges and pressure on each vertex [N]. Written by `forces`.
+    /// Force of springs, hinges and pressure on each vertex (N). Written by `forces`.
     pub forces: Vec<Vec3>,
 }
 
 impl MembraneModel {
-    /// Makes `sheet` in the shape of `mesh`, free of stress there; the carrier holds its rims, and
+    /// No membrane.
+    pub fn none() -> Self {
+        let mesh = Mesh::new(Vec::new(), Vec::new()).expect("an empty mesh has no fault");
+        let material = MembraneMaterial {
+            thickness: 0.0,
+            youngs_modulus: 0.0,
+            density: 0.0,
+            spring_damping: 0.0,
+            bending_stiffness: 0.0,
+            bending_damping: 0.0,
+        };
+        Self::new(mesh, material)
+    }
+
+    /// A membrane of `material` in the shape of `mesh`, free of stress there; the carrier holds its rims, and
     /// grains touch its triangles.
-    pub fn new(mesh: Mesh, sheet: Sheet) -> Self {
-        let mass_per_area = sheet.density * sheet.thickness;
+    pub fn new(mesh: Mesh, material: MembraneMaterial) -> Self {
+        let mass_per_area = material.density * material.thickness;
         let masses: Vec<Real> = mesh.vertex_areas().iter().map(|a| a * mass_per_area).collect();
-        let inner = stretch::stiffness(sheet.youngs_modulus, sheet.thickness);
+        let inner = stretch::stiffness(material.youngs_modulus, material.thickness);
         let mut links = Vec::with_capacity(mesh.edges.len());
         for (e, ends) in mesh.edges.iter().enumerate() {
             let [a, b] = ends.map(|v| v as usize);
@@ -218,7 +236,7 @@ impl MembraneModel {
                 vertices: [ends[0], ends[1], ends[0], ends[1]],
                 triangles: [0; 2],
                 law: LinkLaw {
-                    spring: Spring::new(length, stiffness, sheet.spring_damping, masses),
+                    spring: Spring::new(length, stiffness, material.spring_damping, masses),
                     rest_half_sine: 0.0,
                 },
             };
@@ -238,10 +256,11 @@ impl MembraneModel {
         Self {
             masses,
             holders,
-            contact: SheetContact::Triangles,
+            contact: MembraneContact::Triangles,
             links,
             first_areas: [Vec::new(), Vec::new()],
-            sheet,
+            bending: [Vec::new(), Vec::new()],
+            material,
             mesh,
         }
     }
@@ -278,7 +297,7 @@ impl MembraneModel {
         }
     }
 
-    /// Mass of the whole sheet [kg].
+    /// Mass of the whole membrane (kg).
     pub fn mass(&self) -> Real {
         self.masses.iter().sum()
     }

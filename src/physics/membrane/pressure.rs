@@ -1,12 +1,12 @@
-//! The air's load on the sheet, and the volume it encloses.
+//! The air's load on the membrane, and the volume it encloses.
 //!
 //! ```text
 //! F_i = Σ_a p A_a n̂_a / 3        over the triangles a at vertex i
-//! V   = 1/6 Σ_a r_a · (r_b × r_c)  over the triangles of sheet and lid
+//! V   = 1/6 Σ_a r_a · (r_b × r_c)  over the triangles of membrane and lid
 //! dV  = Σ_i g_i · dr_i,   so the load p g_i has the power p dV/dt
 //!
-//! p   gauge pressure inside, negative under vacuum   [Pa]
-//! n̂_a outward unit normal                            [-]
+//! p   gauge pressure inside, negative under vacuum   (Pa)
+//! n̂_a outward unit normal
 //! ```
 //!
 //! Source: Götz (2024) eqs. 30, 31. The load follows the surface. Each rim is closed by a lid: a fan
@@ -16,7 +16,7 @@
 use super::mesh::{Mesh, area_normal};
 use crate::base::{Real, Vec3};
 
-/// Volume inside sheet and lids [m³].
+/// Volume inside membrane and lids (m³).
 pub fn volume(mesh: &Mesh, positions: &[Vec3]) -> Real {
     let origin = mesh.rims.first().map_or(positions[0], |rim| lid_centre(rim, positions));
     let mut six_volumes = 0.0;
@@ -31,7 +31,7 @@ pub fn volume(mesh: &Mesh, positions: &[Vec3]) -> Real {
     six_volumes / 6.0
 }
 
-/// Derivative of the volume with respect to each vertex [m²]. Inside the sheet it is the load per
+/// Derivative of the volume with respect to each vertex (m²). Inside the membrane it is the load per
 /// unit pressure; at a rim it has the lid's share as well.
 pub fn volume_gradient(mesh: &Mesh, positions: &[Vec3]) -> Vec<Vec3> {
     let mut gradient = vec![Vec3::zeros(); positions.len()];
@@ -55,12 +55,12 @@ pub fn volume_gradient(mesh: &Mesh, positions: &[Vec3]) -> Vec<Vec3> {
     gradient
 }
 
-/// Area of the sheet without its lids [m²].
+/// Area of the membrane without its lids (m²).
 pub fn area(mesh: &Mesh, positions: &[Vec3]) -> Real {
     mesh.triangles.iter().map(|triangle| 0.5 * area_normal(positions, triangle).norm()).sum()
 }
 
-/// Area vector of the lid on a rim, outward [m²]: times the gauge pressure, the air's force on it.
+/// Area vector of the lid on a rim, outward (m²): times the gauge pressure, the air's force on it.
 pub fn lid_area_vector(rim: &[u32], positions: &[Vec3]) -> Vec3 {
     let centre = lid_centre(rim, positions);
     let mut twice = Vec3::zeros();
@@ -70,7 +70,7 @@ pub fn lid_area_vector(rim: &[u32], positions: &[Vec3]) -> Vec3 {
     0.5 * twice
 }
 
-/// Mean of a rim's vertices [m].
+/// Mean of a rim's vertices (m).
 pub fn lid_centre(rim: &[u32], positions: &[Vec3]) -> Vec3 {
     let sum: Vec3 = rim.iter().map(|&v| positions[v as usize]).sum();
     sum / rim.len() as Real

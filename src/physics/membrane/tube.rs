@@ -17,7 +17,7 @@ use super::mesh::{Mesh, MeshFault, index};
 use crate::base::{Real, Vec3};
 
 impl Mesh {
-    /// A tube of `radius` and `height` [m] around the z axis, centred on the origin, with `n_rows`
+    /// A tube of `radius` and `height` (m) around the z axis, centred on the origin, with `n_rows`
     /// rows of `n_around` vertices. Both ends are open.
     ///
     /// # Errors

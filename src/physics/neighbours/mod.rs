@@ -15,7 +15,7 @@ mod wall_list;
 
 use super::{
     Controls, Model, Scratch, State,
-    membrane::SheetContact,
+    membrane::MembraneContact,
     scratch::{Neighbours, PatchForces},
     state::Patches,
 };
@@ -50,11 +50,11 @@ fn refresh_grains(model: &Model, state: &mut State, scratch: &mut Scratch) {
     let grid = cell_grid::CellGrid::new(&positions, 2.0 * model.radius_max + lists.skin);
     verlet_list::build(model, &grid, &positions, state, lists);
     match model.membrane.contact {
-        SheetContact::Triangles => {
+        MembraneContact::Triangles => {
             triangle_list::build(model, &grid, state, lists);
             sphere_list::clear(state, lists);
         }
-        SheetContact::Spheres { radius } => {
+        MembraneContact::Spheres { radius } => {
             triangle_list::clear(state, lists);
             sphere_list::build(model, radius, &grid, state, lists);
             scratch.leaked = scratch.leaked.or_else(|| crossings::first(model, &grid, state));

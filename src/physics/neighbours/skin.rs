@@ -50,14 +50,16 @@ pub(super) fn is_too_thick(model: &Model, lists: &Neighbours, used: Real) -> boo
 mod tests {
     use super::*;
     use crate::{
-        physics::contact::law::{PairLaw, Surface},
+        physics::{SystemBuilder, contact::law::Surface},
         scene::Material,
     };
 
     fn model() -> Model {
         let material = Material { youngs_modulus: 1e8, poisson_ratio: 0.25, density: 2500.0 };
         let surface = Surface { friction: 0.5, dissipation_time: 0.0, tangential_damping: 0.0 };
-        Model::of_grains(PairLaw::between(&material, &material, surface), 1e-6, 2e-3, 2e-3)
+        let mut builder = SystemBuilder::of_material(&material, surface);
+        builder.substep(1e-6).radii_up_to(2e-3, 2e-3);
+        builder.build_model().unwrap()
     }
 
     fn lists(skin: Real, n_since_build: u64) -> Neighbours {

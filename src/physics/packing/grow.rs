@@ -3,10 +3,10 @@
 //! ```text
 //! R_i = s R_i,final,   d(ln s)/dt = g · clamp(1 − p/p_stop, −1, 1),   g ≤ 0.05 / √(m/(p_stop d))
 //!
-//! s       common factor                                       [-]
-//! p       pressure of the normal forces in the room           [Pa]
-//! p_stop  pressure at which nothing more fits                 [Pa]
-//! m, d    mean final mass and diameter of a grain             [kg], [m]
+//! s       common factor
+//! p       pressure of the normal forces in the room           (Pa)
+//! p_stop  pressure at which nothing more fits                 (Pa)
+//! m, d    mean final mass and diameter of a grain             (kg), (m)
 //! ```
 //!
 //! Source: Lubachevsky & Stillinger (1990) with soft grains, as Götz (2024), section 3.3.1, takes it:
@@ -53,7 +53,7 @@ pub struct Laws {
     pub walls: PairLaw,
     /// Between grains and membrane.
     pub membrane: PairLaw,
-    /// Length of a substep [s].
+    /// Length of a substep (s).
     pub substep: Real,
 }
 
@@ -83,11 +83,11 @@ impl Laws {
 pub struct Recipe {
     /// The laws while they grow.
     pub laws: Laws,
-    /// Volume of the room, by which forces become a pressure [m³].
+    /// Volume of the room, by which forces become a pressure (m³).
     pub volume: Real,
-    /// Pressure at which nothing more fits, p_stop [Pa].
+    /// Pressure at which nothing more fits, p_stop (Pa).
     pub pressure_stop: Real,
-    /// Growth rate g far from p_stop [1/s].
+    /// Growth rate g far from p_stop (1/s).
     pub rate: Real,
     /// Growth of ln s in ten relaxation times below which nothing gives way any more.
     pub stuck: Real,
@@ -97,7 +97,7 @@ pub struct Recipe {
 
 impl Recipe {
     /// Growth at the advised rate up to the final radii, with the laws of `model` without friction;
-    /// `mass` [kg] and `radius` [m] are those of a mean grain at the end.
+    /// `mass` (kg) and `radius` (m) are those of a mean grain at the end.
     pub fn new(model: &Model, volume: Real, pressure_stop: Real, mass: Real, radius: Real) -> Self {
         let relaxation = (mass / (pressure_stop * 2.0 * radius)).sqrt();
         Self {
@@ -122,28 +122,28 @@ pub enum Grown {
     Jammed,
 }
 
-/// How far growth is: with the `State` all that is needed to go on.
+/// Progress of growth. With the `State` it is all that growth resumes from.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Progress {
     /// Common factor s.
     pub scale: Real,
-    /// Pressure in the last substep [Pa].
+    /// Pressure in the last substep (Pa).
     pub pressure: Real,
     /// Substeps so far.
     pub n_substeps: u64,
-    /// Whether it goes on.
+    /// Whether it is over, and why.
     pub grown: Grown,
     /// Substeps in the present window.
     n_in_window: u64,
     /// Common factor at the begin of the window.
     window_scale: Real,
-    /// Sum of the pressures in the window [Pa].
+    /// Sum of the pressures in the window (Pa).
     window_pressure: Real,
     /// Windows spent at the last size.
     n_at_last: u32,
 }
 
-/// Grains that grow in a `System`; it is stepped by this and nobody else meanwhile.
+/// Grains that grow in a `System`; only this may step it meanwhile.
 #[derive(Clone, Debug)]
 pub struct Growth {
     recipe: Recipe,
@@ -160,7 +160,7 @@ struct Kept {
 }
 
 impl Growth {
-    /// Growth of the grains to `final_radii` [m], which are now `scale` times as large.
+    /// Growth of the grains to `final_radii` (m), which are now `scale` times as large.
     pub fn new(recipe: Recipe, final_radii: Vec<Real>, scale: Real) -> Self {
         let progress = Progress {
             scale,
@@ -175,7 +175,7 @@ impl Growth {
         Self::resumed(recipe, final_radii, progress)
     }
 
-    /// Growth that goes on from `progress` with the `State` that belongs to it.
+    /// Resumes growth at `progress` with the `State` that belongs to it.
     pub fn resumed(recipe: Recipe, final_radii: Vec<Real>, progress: Progress) -> Self {
         // Nothing is known about lists: the first substep builds them.
         Self { recipe, final_radii, progress, kept: None }
@@ -186,7 +186,7 @@ impl Growth {
         self.progress
     }
 
-    /// One substep; the model's own laws are back when it no longer says `Growing`.
+    /// One substep; the model's own laws are restored once the result is not `Growing`.
     pub fn step(&mut self, system: &mut System) -> Grown {
         if self.progress.grown != Grown::Growing {
             return self.progress.grown;
@@ -269,14 +269,14 @@ impl Growth {
     }
 }
 
-/// Makes all grains of `system` `scale` times as large as `final_radii` [m].
+/// Makes all grains of `system` `scale` times as large as `final_radii` (m).
 pub fn resize(system: &mut System, final_radii: &[Real], scale: Real) {
     let System { model, state, scratch, .. } = system;
     for (radius, last) in state.grains.radii.iter_mut().zip(final_radii) {
         *radius = scale * last;
         model.radius_max = model.radius_max.max(*radius);
     }
-    // The lists are told: they hold only as long as nobody has grown too far.
+    // The lists of neighbours stay complete only until a grain has grown too far.
     weigh_pairs(state, &mut scratch.neighbours);
 }
 
@@ -298,15 +298,12 @@ mod tests {
     use super::*;
     use crate::{
         base::{
-            Pose, Vec3,
+            Vec3,
             random::{Random, Stream},
-            real::Twist,
         },
         physics::{
-            boundary::{
-                body::BodyMotion,
-                wall::{WallModel, WallShape},
-            },
+            SystemBuilder,
+            builder::Wall,
             contact::law::Surface,
             measure::grain_volume,
             packing::{Room, first_scale, scatter, sphere_volume},
@@ -326,28 +323,20 @@ mod tests {
         let mut random = Random::new(11, Stream::Radius);
         let final_radii: Vec<Real> =
             (0..n_grains).map(|_| random.between(1.9e-3, 2.1e-3)).collect();
-        let mut model = Model::of_grains(law, 5e-6, 2.1e-3, 2e-3);
-        let corners = [Vec3::zeros(), Vec3::repeat(EDGE)];
-        let room = Room::Box { low: corners[0], high: corners[1] };
-        let mut walls = Vec::new();
-        for axis in 0..3 {
-            for (corner, sign) in corners.into_iter().zip([1.0, -1.0]) {
-                let normal = Vec3::ith(axis, sign);
-                model.walls.push(WallModel { shape: WallShape::Plane { normal }, law });
-                walls.push(BodyMotion {
-                    pose: Pose::from_parts(corner.into(), nalgebra::one()),
-                    twist: Twist::zero(),
-                });
-            }
-        }
+        let (low, high) = (Vec3::zeros(), Vec3::repeat(EDGE));
+        let room = Room::Box { low, high };
         let scale = first_scale(&final_radii, 0.15, room.volume());
         let small: Vec<Real> = final_radii.iter().map(|r| scale * r).collect();
         let mut random = Random::new(11, Stream::Position);
         let places = scatter(&small, None, &mut random, |it| room.place(2.1e-3, it)).unwrap();
         let masses: Vec<Real> = final_radii.iter().map(|&r| 2000.0 * sphere_volume(r)).collect();
-        let mut recipe = Recipe::new(&model, room.volume(), 500.0, masses[0], 2e-3);
+        let first_mass = masses[0];
+        let mut builder = SystemBuilder::new(law);
+        builder.substep(5e-6).radii_up_to(2.1e-3, 2e-3).walls(Wall::sides(low, high));
+        builder.grains(Grains::at_rest(places, small, masses));
+        let system = builder.build().unwrap();
+        let mut recipe = Recipe::new(&system.model, room.volume(), 500.0, first_mass, 2e-3);
         recipe.laws.grains.modulus = PairLaw::between(&soft, &soft, surface).modulus;
-        let system = System::at_rest(model, walls, Grains::at_rest(places, small, masses));
         (system, recipe, final_radii, scale)
     }
 

@@ -11,7 +11,7 @@
 //! while growth.step(&mut system) == Grown::Growing {}  // a slice at a time; check health between
 //! ```
 //!
-//! `growth.progress()` with the `State` is all that is needed to go on: `Growth::resumed`.
+//! `Growth::resumed` continues from `growth.progress()` and the `State`.
 
 pub mod grow;
 pub mod numbering; // neighbours in space, neighbours in memory
@@ -22,14 +22,14 @@ pub use scatter::{Room, scatter};
 
 use crate::base::Real;
 
-/// Share of their final radii at which grains have the solid fraction `thin` in `volume` [m³]; 0.9
+/// Share of their final radii at which grains have the solid fraction `thin` in `volume` (m³); 0.9
 /// if they have less than that when they are that large.
 pub fn first_scale(final_radii: &[Real], thin: Real, volume: Real) -> Real {
     let grains: Real = final_radii.iter().map(|&r| sphere_volume(r)).sum();
     (thin * volume / grains).cbrt().min(0.9)
 }
 
-/// Volume of a sphere [m³].
+/// Volume of a sphere (m³).
 pub fn sphere_volume(radius: Real) -> Real {
     4.0 / 3.0 * std::f64::consts::PI * radius.powi(3)
 }

@@ -5,10 +5,10 @@
 
 use crate::base::{Real, Vec3, real::whole};
 
-/// Cells along an edge that the curve can tell apart.
+/// Cells along an edge that the curve resolves.
 const N_CELLS: Real = 1024.0;
 
-/// The order in which grains at `positions` [m] are numbered, with cells of `cell` [m].
+/// The order in which grains at `positions` (m) are numbered, with cells of `cell` (m).
 pub fn along_curve(positions: &[Vec3], cell: Real) -> Vec<usize> {
     let low = positions.iter().fold(Vec3::repeat(Real::INFINITY), |low, it| low.inf(it));
     let code = |position: &Vec3| {

@@ -12,7 +12,7 @@ use crate::{
 /// Candidates for one grain before it is given up.
 const N_TRIES: usize = 100_000;
 
-/// There was no place left.
+/// No place is left.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("only {n_placed} of {n_grains} grains found a place; scatter them at smaller radii")]
 pub struct NoRoom {
@@ -27,36 +27,36 @@ pub struct NoRoom {
 pub enum Room {
     /// Between six planes.
     Box {
-        /// Lowest corner [m].
+        /// Lowest corner (m).
         low: Vec3,
-        /// Highest corner [m].
+        /// Highest corner (m).
         high: Vec3,
     },
     /// Around z, between two planes.
     Tube {
-        /// Radius [m].
+        /// Radius (m).
         radius: Real,
-        /// Height of the lower plane [m].
+        /// Height of the lower plane (m).
         bottom: Real,
-        /// Height of the upper plane [m].
+        /// Height of the upper plane (m).
         top: Real,
     },
     /// Between two spheres around the origin; a ball without the inner one.
     Shell {
-        /// Radius of the inner sphere, 0 without [m].
+        /// Radius of the inner sphere, 0 without (m).
         inner: Real,
-        /// Radius of the outer sphere [m].
+        /// Radius of the outer sphere (m).
         outer: Real,
     },
-    /// A box that goes on periodically from `[0, period)`.
+    /// A periodic box, `[0, period)` along each axis.
     Periodic {
-        /// Edges of the box [m].
+        /// Edges of the box (m).
         period: Vec3,
     },
 }
 
 impl Room {
-    /// Volume [m³].
+    /// Volume (m³).
     pub fn volume(&self) -> Real {
         use std::f64::consts::PI;
         match self {
@@ -67,7 +67,7 @@ impl Room {
         }
     }
 
-    /// Edges of the periodic box [m], if it is one.
+    /// Edges of the periodic box (m), if it is one.
     pub fn period(&self) -> Option<Vec3> {
         match self {
             Self::Periodic { period } => Some(*period),
@@ -75,7 +75,7 @@ impl Room {
         }
     }
 
-    /// A uniformly random point at least `margin` [m] away from the walls; `None` if the draw fell
+    /// A uniformly random point at least `margin` (m) away from the walls; `None` if the draw fell
     /// outside.
     pub fn place(&self, margin: Real, random: &mut Random) -> Option<Vec3> {
         let (low, high) = match self {
@@ -104,8 +104,8 @@ impl Room {
     }
 }
 
-/// Random places for spheres of `radii` [m], none of which touch; candidates come from `offer`, which
-/// gives `None` for those that are of no use. With a `period` [m] the images keep away as well.
+/// Random places for spheres of `radii` (m), none of which touch; candidates come from `offer`, which
+/// gives `None` for those that are of no use. With a `period` (m) the images keep away as well.
 ///
 /// # Errors
 /// If a sphere finds no place.
@@ -238,7 +238,7 @@ mod tests {
 
     /// Oracle: five spheres of radius 0.9 cannot be in a cube of edge 2.
     #[test]
-    fn a_full_room_is_told() {
+    fn a_full_room_is_an_error() {
         let room = Room::Box { low: Vec3::zeros(), high: Vec3::repeat(2.0) };
         let mut random = Random::new(5, Stream::Position);
         let refused = scatter(&[0.9; 5], None, &mut random, |it| room.place(0.9, it));

@@ -2,7 +2,7 @@
 
 use super::super::bridson_2003::{self, Fold};
 use super::super::mesh::Mesh;
-use super::super::{Facet, MembraneModel, MembraneState, Sheet};
+use super::super::{Facet, MembraneMaterial, MembraneModel, MembraneState};
 use super::{forces_on, model_of, rubber, shaken, totals};
 use crate::base::random::{Random, Stream};
 use crate::base::{Real, Vec3, lanes::Vector};
@@ -16,10 +16,10 @@ fn random_hinge(random: &mut Random) -> MembraneState {
     MembraneState { positions, velocities }
 }
 
-fn hinge_model(sheet: Sheet) -> MembraneModel {
+fn hinge_model(material: MembraneMaterial) -> MembraneModel {
     let corners = [[0.5, 1.0, 0.0], [0.5, -1.0, 0.0], [0.0, 0.0, 0.0], [1.0, 0.0, 0.0]];
     let mesh = Mesh::new(corners.map(Vec3::from).to_vec(), vec![[0, 2, 3], [1, 3, 2]]);
-    MembraneModel::new(mesh.unwrap(), sheet)
+    MembraneModel::new(mesh.unwrap(), material)
 }
 
 /// Fold of the only hinge, and its angle by the arctangent.
@@ -163,13 +163,13 @@ fn a_lattice_of_hinges_is_a_plate() {
     }
 }
 
-/// Oracle: eqs. 20 to 25 by dimensions. In a sheet made s times as large, |e|²/(|n1| + |n2|) · u goes with
+/// Oracle: eqs. 20 to 25 by dimensions. In a membrane made s times as large, |e|²/(|n1| + |n2|) · u goes with
 /// 1/s for areas that grow with it and with s³ for those it had: the forces differ by s⁴.
 #[test]
 fn first_areas_keep_a_squeezed_hinge_soft() {
     let scale: Real = 0.5;
-    let sheet = Sheet { youngs_modulus: 0.0, ..rubber(1e-3, 0.0) };
-    let current = model_of(Mesh::hexagonal_patch(4e-3, 2), sheet);
+    let material = MembraneMaterial { youngs_modulus: 0.0, ..rubber(1e-3, 0.0) };
+    let current = model_of(Mesh::hexagonal_patch(4e-3, 2), material);
     let mut first = current.clone();
     first.bend_by_first_areas();
     let mut state = shaken(&current, 4e-4, 0.0);

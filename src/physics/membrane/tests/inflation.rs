@@ -3,7 +3,7 @@
 use super::super::critical_step::critical_step;
 use super::super::mesh::Mesh;
 use super::super::{
-    MembraneModel, MembraneScratch, MembraneState, Sheet, forces, pressure, stretch,
+    MembraneMaterial, MembraneModel, MembraneScratch, MembraneState, forces, pressure, stretch,
 };
 use super::{forces_on, model_of, power, rubber, run, shaken, totals};
 use crate::base::{Real, Vec3};
@@ -39,16 +39,18 @@ fn the_volume_under_a_lid_has_its_gradient() {
     // Oracle: volume does not change under translation and rotation. Tolerance: rounding.
     assert!(force < 1e-13 * size && torque < 1e-13 * size);
     let mut scratch = MembraneScratch::new(&model);
-    let slack =
-        MembraneModel::new(model.mesh.clone(), Sheet { youngs_modulus: 0.0, ..rubber(0.0, 0.0) });
+    let slack = MembraneModel::new(
+        model.mesh.clone(),
+        MembraneMaterial { youngs_modulus: 0.0, ..rubber(0.0, 0.0) },
+    );
     forces(&slack, &state, p, &mut scratch);
     for v in (0..model.mesh.n_vertices()).filter(|&v| !model.mesh.is_on_rim[v]) {
-        // Oracle: inside the sheet, load = p · gradient. Tolerance: rounding.
+        // Oracle: inside the material, load = p · gradient. Tolerance: rounding.
         assert!((scratch.forces[v] - loads[v]).norm() < 1e-13 * loads[v].norm().max(1e-3));
     }
     let lid = pressure::lid_area_vector(&model.mesh.rims[0], &state.positions);
     let on_sheet: Vec3 = scratch.forces.iter().sum();
-    // Oracle: sheet and lid together are closed. Tolerance: rounding.
+    // Oracle: membrane and lid together are closed. Tolerance: rounding.
     assert!((on_sheet + lid * p).norm() < 1e-13 * on_sheet.norm());
 }
 
@@ -83,8 +85,8 @@ fn the_volume_of_the_whole_and_half_sphere_meet() {
 #[test]
 fn a_sphere_under_pressure_obeys_laplace() {
     let p = 10.0;
-    let sheet = Sheet { spring_damping: 0.5, ..rubber(0.0, 0.0) };
-    let model = model_of(Mesh::icosphere(0.04, 8), sheet);
+    let material = MembraneMaterial { spring_damping: 0.5, ..rubber(0.0, 0.0) };
+    let model = model_of(Mesh::icosphere(0.04, 8), material);
     let mut state = MembraneState::at_rest(&model.mesh);
     let dt = 0.5 * critical_step(&model, 0.0);
     let mut last = Real::INFINITY;
@@ -114,9 +116,9 @@ fn a_closed_cylinder_under_pressure_obeys_laplace() {
     let edge = 2.0 * radius * (std::f64::consts::PI / 40.0).sin();
     let n_rows = 17;
     let height = 16.0 * edge * 0.75_f64.sqrt();
-    let sheet = Sheet { spring_damping: 0.5, ..rubber(0.0, 0.0) };
-    let model = model_of(Mesh::tube(radius, height, n_around, n_rows), sheet);
-    let strain = p * radius / (sheet.youngs_modulus * sheet.thickness);
+    let material = MembraneMaterial { spring_damping: 0.5, ..rubber(0.0, 0.0) };
+    let model = model_of(Mesh::tube(radius, height, n_around, n_rows), material);
+    let strain = p * radius / (material.youngs_modulus * material.thickness);
     let (hoop, axial) = (strain * (1.0 - 1.0 / 6.0), strain * (0.5 - 1.0 / 3.0));
     let held = Vec3::new(1.0 + hoop, 1.0 + hoop, 1.0 + axial);
     let mut state = MembraneState::at_rest(&model.mesh);

@@ -82,7 +82,7 @@ fn neighbours_agree_with_each_other() {
 fn bad_triangles_are_named() {
     let square = || vec![Vec3::zeros(), Vec3::x(), Vec3::new(1.0, 1.0, 0.0), Vec3::y()];
     let fault = |triangles: Vec<[u32; 3]>| Mesh::new(square(), triangles).unwrap_err();
-    // Oracle: each list has exactly the fault that its name says.
+    // Oracle: the one fault of each list.
     assert!(matches!(fault(vec![[0, 1, 4]]), MeshFault::NoSuchVertex { vertex: 4, .. }));
     assert!(matches!(fault(vec![[0, 1, 1]]), MeshFault::NoArea { triangle: 0 }));
     assert!(matches!(fault(vec![[0, 1, 2]]), MeshFault::Unused { vertex: 3 }));

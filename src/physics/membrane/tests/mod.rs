@@ -1,4 +1,4 @@
-//! The sheet against lattice elasticity, plate theory, Laplace's law and conservation laws.
+//! The membrane against lattice elasticity, plate theory, Laplace's law and conservation laws.
 
 mod mesh;
 mod stretching;
@@ -7,13 +7,13 @@ mod inflation;
 mod motion;
 
 use super::mesh::{Mesh, MeshFault};
-use super::{FREE, MembraneModel, MembraneScratch, MembraneState, Sheet, forces};
+use super::{FREE, MembraneMaterial, MembraneModel, MembraneScratch, MembraneState, forces};
 use crate::base::random::{Random, Stream};
 use crate::base::{Real, Vec3};
 
 /// Material of the seeds' gripper; bending can be switched off by 0.
-fn rubber(bending_stiffness: Real, bending_damping: Real) -> Sheet {
-    Sheet {
+fn rubber(bending_stiffness: Real, bending_damping: Real) -> MembraneMaterial {
+    MembraneMaterial {
         thickness: 0.3e-3,
         youngs_modulus: 1.25e6,
         density: 2000.0,
@@ -23,8 +23,8 @@ fn rubber(bending_stiffness: Real, bending_damping: Real) -> Sheet {
     }
 }
 
-fn model_of(mesh: Result<Mesh, MeshFault>, sheet: Sheet) -> MembraneModel {
-    MembraneModel::new(mesh.unwrap(), sheet)
+fn model_of(mesh: Result<Mesh, MeshFault>, material: MembraneMaterial) -> MembraneModel {
+    MembraneModel::new(mesh.unwrap(), material)
 }
 
 fn shaken(model: &MembraneModel, distance: Real, speed: Real) -> MembraneState {

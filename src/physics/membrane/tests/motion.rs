@@ -1,16 +1,16 @@
-//! The whole sheet: conservation, dissipation, threads, and the longest stable step.
+//! The whole material: conservation, dissipation, threads, and the longest stable step.
 
 use super::super::critical_step::{critical_step, critical_step_at};
 use super::super::mesh::Mesh;
-use super::super::{Sheet, stretch};
+use super::super::{MembraneMaterial, stretch};
 use super::{forces_on, model_of, power, rubber, run, shaken, totals};
 use crate::base::{Real, Vec3, parallel};
 
 #[test]
 fn damping_takes_energy_and_internal_forces_keep_momentum() {
-    let sheet = rubber(1e-3, 1e-4);
+    let material = rubber(1e-3, 1e-4);
     for mesh in [Mesh::half_icosphere(0.04, 6), Mesh::hexagonal_patch(3e-3, 4)] {
-        let model = model_of(mesh, sheet);
+        let model = model_of(mesh, material);
         for speed in [0.01, 1.0] {
             let mut state = shaken(&model, 5e-4, speed);
             let moving = forces_on(&model, &state, 0.0);
@@ -43,8 +43,8 @@ fn the_bits_do_not_depend_on_the_number_of_threads() {
 
 #[test]
 fn the_critical_step_of_a_lattice_is_known() {
-    let sheet = Sheet { spring_damping: 0.0, ..rubber(0.0, 0.0) };
-    let model = model_of(Mesh::hexagonal_patch(3e-3, 12), sheet);
+    let material = MembraneMaterial { spring_damping: 0.0, ..rubber(0.0, 0.0) };
+    let model = model_of(Mesh::hexagonal_patch(3e-3, 12), material);
     let inner = model.masses.iter().copied().fold(0.0, Real::max);
     let found = critical_step(&model, 0.0);
     let oracle = 2.0 / (6.0 * stretch::stiffness(1.25e6, 0.3e-3) / inner).sqrt();
@@ -55,14 +55,14 @@ fn the_critical_step_of_a_lattice_is_known() {
 
 #[test]
 fn the_critical_step_separates_rest_from_blow_up() {
-    for sheet in [
-        Sheet { spring_damping: 0.0, ..rubber(0.0, 0.0) },
+    for material in [
+        MembraneMaterial { spring_damping: 0.0, ..rubber(0.0, 0.0) },
         rubber(0.0, 0.0),
-        Sheet { spring_damping: 0.0, ..rubber(1e-3, 0.0) },
+        MembraneMaterial { spring_damping: 0.0, ..rubber(1e-3, 0.0) },
         rubber(1e-3, 1e-5),
         rubber(1e-3, 1e-4),
     ] {
-        let model = model_of(Mesh::half_icosphere(0.04, 8), sheet);
+        let model = model_of(Mesh::half_icosphere(0.04, 8), material);
         let limit = critical_step(&model, 0.0);
         let speed_after = |share: Real| {
             let mut state = shaken(&model, 1e-8, 0.0);
@@ -73,15 +73,15 @@ fn the_critical_step_separates_rest_from_blow_up() {
         // Oracle: definition of the limit. A displacement of 10⁻⁸ m at ω ~ 10⁵/s cannot pass
         // 10⁻² m/s while the scheme is stable; beyond, the stiffest mode grows in every step.
         // 5 %: power iteration's margin of 1 % in the step, and 3000 steps to be seen.
-        assert!(stable < 1e-2, "{sheet:?} at 0.98: {stable} m/s");
-        assert!(unstable.is_nan() || unstable > 1.0, "{sheet:?} at 1.05: {unstable} m/s");
+        assert!(stable < 1e-2, "{material:?} at 0.98: {stable} m/s");
+        assert!(unstable.is_nan() || unstable > 1.0, "{material:?} at 1.05: {unstable} m/s");
     }
 }
 
 #[test]
 fn a_stretched_sheet_with_first_areas_bears_a_shorter_step() {
     let stretch = 1.3;
-    // Flat and without bending stiffness: only damping knows of motion across the sheet.
+    // Flat and without bending stiffness: only damping knows of motion across the material.
     let mut model = model_of(Mesh::hexagonal_patch(3e-3, 8), rubber(0.0, 1e-2));
     model.bend_by_first_areas();
     let stretched: Vec<Vec3> = model.mesh.positions.iter().map(|r| r * stretch).collect();

@@ -22,7 +22,7 @@ fn a_patch_has_the_modulus_and_poisson_ratio_of_the_lattice() {
             let pull =
                 along * along.transpose() * strain - across * across.transpose() * (strain / 3.0);
             let stress = stress_at(&model, &(Mat3::identity() + pull), area);
-            // Oracle: uniaxial tension of an isotropic sheet with E d = 2/√3 k, ν = 1/3: the strain
+            // Oracle: uniaxial tension of an isotropic membrane with E d = 2/√3 k, ν = 1/3: the strain
             // (ε, −ε/3) makes the stress (E d ε, 0). Tolerance: second order in ε, and rounding of
             // lengths over the strain, 10⁻¹⁰.
             let modulus = stress.dot_along(&along) / strain;
@@ -50,7 +50,7 @@ impl Along for Mat3 {
     }
 }
 
-/// Mean stress [N/m] of a patch under an affine deformation: the virial −Σ r ⊗ F / A.
+/// Mean stress (N/m) of a patch under an affine deformation: the virial −Σ r ⊗ F / A.
 fn stress_at(model: &MembraneModel, deformation: &Mat3, area: Real) -> Mat3 {
     let mut state = MembraneState::at_rest(&model.mesh);
     for position in &mut state.positions {
