@@ -390,7 +390,7 @@ impl Session {
         self.tick
     }
 
-    /// Simulated time [ns].
+    /// Simulated time (ns).
     pub fn time_ns(&self) -> u64 {
         self.tick.time_ns(self.scene.time.tick_ns)
     }
@@ -400,7 +400,7 @@ impl Session {
         self.run_tick
     }
 
-    /// Time of the run [ns]: that of its ticks together.
+    /// Time of the run (ns): that of its ticks together.
     pub fn run_time_ns(&self) -> u64 {
         self.run_tick.time_ns(self.scene.time.tick_ns)
     }
@@ -449,7 +449,7 @@ impl Session {
         &self.processor
     }
 
-    /// Sum of normal force magnitudes on each grain at the end of the last tick [N].
+    /// Sum of normal force magnitudes on each grain at the end of the last tick (N).
     pub fn normal_forces(&self) -> &[f64] {
         &self.normal_forces
     }

@@ -30,9 +30,9 @@ pub(crate) struct Client {
     options: Options,
     clients: BTreeMap<String, RosClient>,
     clock: Subscription<Clock>,
-    /// Simulated times heard since they were last looked at [ns], repetitions left out.
+    /// Simulated times heard since they were last looked at (ns), repetitions left out.
     times_ns: Vec<i64>,
-    /// The last simulated time heard [ns].
+    /// The last simulated time heard (ns).
     last_ns: Option<i64>,
 }
 
@@ -138,13 +138,13 @@ impl Client {
         }
     }
 
-    /// New simulated times since the last call [ns].
+    /// New simulated times since the last call (ns).
     pub(crate) fn take_times(&mut self) -> Vec<i64> {
         self.listen();
         std::mem::take(&mut self.times_ns)
     }
 
-    /// The last simulated time heard [ns]; waits for one.
+    /// The last simulated time heard (ns); waits for one.
     pub(crate) fn time_ns(&mut self) -> Result<i64, String> {
         let deadline = now() + self.options.patience;
         loop {

@@ -197,7 +197,7 @@ pub(crate) fn named_poses(client: &mut Client) -> Result<(), String> {
     must_be("bounds of no pose", &answer.result, SimResult::RESULT_NOT_FOUND)
 }
 
-/// Corners of a regular tetrahedron [m], and its faces seen from outside.
+/// Corners of a regular tetrahedron (m), and its faces seen from outside.
 const TETRAHEDRON: ([[f64; 3]; 4], [[usize; 3]; 4]) = (
     [[0.02, 0.02, 0.02], [0.02, -0.02, -0.02], [-0.02, 0.02, -0.02], [-0.02, -0.02, 0.02]],
     [[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]],

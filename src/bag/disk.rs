@@ -14,7 +14,7 @@ use std::{
     },
 };
 
-/// Room for the last chunk and the index of a long recording [bytes].
+/// Room for the last chunk and the index of a long recording (bytes).
 pub const RESERVE: usize = 4 << 20;
 
 /// Tells how long the file is, and whether the disk has become full.

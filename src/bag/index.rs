@@ -76,7 +76,7 @@ impl Index {
         is_complete.then_some(Self { chunks, attachments: attachments?, channels, schemas })
     }
 
-    /// Time of the last message [ns].
+    /// Time of the last message (ns).
     pub fn last_ns(&self) -> u64 {
         self.chunks.iter().map(|it| it.message_end_time).max().unwrap_or(0)
     }

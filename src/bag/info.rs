@@ -39,11 +39,11 @@ pub struct Info {
 pub struct FileInfo {
     /// Where it is.
     pub path: PathBuf,
-    /// Its length [bytes].
+    /// Its length (bytes).
     pub n_bytes: u64,
     /// Its messages on each topic.
     pub counts: BTreeMap<String, u64>,
-    /// Time of its first and its last message [ns].
+    /// Time of its first and its last message (ns).
     pub times: Option<(u64, u64)>,
     /// What is wrong with it.
     pub damages: Vec<Damage>,
@@ -149,7 +149,7 @@ impl Info {
         }
     }
 
-    /// Time of the first and of the last message [ns].
+    /// Time of the first and of the last message (ns).
     pub fn times(&self) -> Option<(u64, u64)> {
         let first = self.files.iter().filter_map(|it| Some(it.times?.0)).min()?;
         let last = self.files.iter().filter_map(|it| Some(it.times?.1)).max()?;

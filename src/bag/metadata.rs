@@ -9,7 +9,7 @@ pub struct Contents {
     pub file: String,
     /// Messages of each topic, in the order of the topics.
     pub counts: Vec<u64>,
-    /// Time of the first and of the last message [ns].
+    /// Time of the first and of the last message (ns).
     pub times: Option<(u64, u64)>,
 }
 

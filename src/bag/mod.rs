@@ -55,9 +55,9 @@ pub struct Subject {
 pub struct Format {
     /// How messages are compressed.
     pub compression: BagCompression,
-    /// A file as long as this is followed by another [bytes].
+    /// A file as long as this is followed by another (bytes).
     pub split_bytes: Option<u64>,
-    /// The same for the simulated time in it [ns].
+    /// The same for the simulated time in it (ns).
     pub split_ns: Option<u64>,
 }
 

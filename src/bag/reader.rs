@@ -24,7 +24,7 @@ use super::{index::Index, writer::text};
 
 /// First and last bytes of every file.
 pub const MAGIC: &[u8; 8] = b"\x89MCAP0\r\n";
-/// Opcode and length before every record [bytes].
+/// Opcode and length before every record (bytes).
 const RECORD_HEAD: usize = 9;
 
 /// A kind of message on a topic.
@@ -69,9 +69,9 @@ pub struct Recorded {
     pub channel: Arc<Channel>,
     /// Its number on the topic, as the writer counted.
     pub sequence: u32,
-    /// When it was recorded [ns].
+    /// When it was recorded (ns).
     pub log_time: u64,
-    /// When it was published [ns].
+    /// When it was published (ns).
     pub publish_time: u64,
     /// The bytes with their header.
     pub data: Vec<u8>,
@@ -105,7 +105,7 @@ pub struct Attachment {
     pub name: String,
     /// What it is.
     pub media_type: String,
-    /// Times of recording and making [ns].
+    /// Times of recording and making (ns).
     pub times: (u64, u64),
     /// Its bytes.
     pub data: Vec<u8>,

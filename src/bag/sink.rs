@@ -69,7 +69,7 @@ pub enum BagError {
     DiskFull {
         /// The folder.
         folder: PathBuf,
-        /// Simulated time of the last message [ns].
+        /// Simulated time of the last message (ns).
         recorded_ns: u64,
     },
     /// The disk does not do what it should.
@@ -85,7 +85,7 @@ pub enum BagError {
         path: PathBuf,
         /// What the system says.
         fault: String,
-        /// Simulated time of the last message [ns].
+        /// Simulated time of the last message (ns).
         recorded_ns: u64,
     },
 }

@@ -20,7 +20,7 @@ use crate::{
     wire::topics::{Message, Topic},
 };
 
-/// Messages are compressed together up to this length [bytes].
+/// Messages are compressed together up to this length (bytes).
 const CHUNK: u64 = 768 << 10;
 /// Names the encoding of a message: CDR, little endian.
 pub const CDR_HEADER: [u8; 4] = [0, 1, 0, 0];

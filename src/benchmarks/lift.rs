@@ -33,13 +33,13 @@ const SCENE: (&str, &str) =
 /// One session from its first tick to its last.
 struct Repetition {
     session: Session,
-    /// Time on the clock [s].
+    /// Time on the clock (s).
     wall_s: Real,
-    /// Processor time for it [s], if the system tells it.
+    /// Processor time for it (s), if the system tells it.
     processor_s: Option<Real>,
-    /// Of commands, ticks and snapshots [s].
+    /// Of commands, ticks and snapshots (s).
     parts: [Real; 3],
-    /// Wall and simulated time of each phase [s].
+    /// Wall and simulated time of each phase (s).
     phases: BTreeMap<String, [Real; 2]>,
     /// What came of it.
     lift_monitor: LiftMonitor,

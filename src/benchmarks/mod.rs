@@ -38,7 +38,7 @@ use crate::{
 pub struct Options {
     /// Solver threads.
     pub n_threads: usize,
-    /// Time on the clock for which laps are repeated [s]; there are always a few.
+    /// Time on the clock for which laps are repeated (s); there are always a few.
     pub seconds: f64,
     /// Where states to start from are kept.
     pub cache: Cache,

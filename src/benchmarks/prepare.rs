@@ -44,7 +44,7 @@ pub(super) enum Moment {
     Shearing,
 }
 
-/// Half of the grip's pressure [Pa].
+/// Half of the grip's pressure (Pa).
 const HALF_VACUUM: Real = -45e3;
 /// Slices of shearing until the plates have come to their speed.
 const N_SHEARING: usize = 20;

@@ -11,7 +11,7 @@ pub(super) fn forget_peak() {
     drop(fs::write("/proc/self/clear_refs", "5"));
 }
 
-/// Largest resident set since the last `forget_peak` [bytes].
+/// Largest resident set since the last `forget_peak` (bytes).
 pub(super) fn peak() -> Option<u64> {
     let status = fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
@@ -19,7 +19,7 @@ pub(super) fn peak() -> Option<u64> {
     Some(kibibytes * 1024)
 }
 
-/// Processor time of all threads that there are [s].
+/// Processor time of all threads that there are (s).
 pub(super) fn processor_s() -> Option<Real> {
     let mut sum = 0;
     for thread in fs::read_dir("/proc/self/task").ok()? {

@@ -36,9 +36,9 @@ pub(super) struct Work {
 /// One lap.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Repetition {
-    /// Time on the clock for the measured substeps [s].
+    /// Time on the clock for the measured substeps (s).
     pub(super) wall_s: Real,
-    /// Processor time of all threads for them [s], if the system tells it.
+    /// Processor time of all threads for them (s), if the system tells it.
     pub(super) processor_s: Option<Real>,
     /// Contacts between grains, the mean of before and after.
     pub(super) n_contacts: Real,

@@ -35,7 +35,7 @@ pub struct Figures {
     pub threads: usize,
     /// Numbers computed side by side, at most.
     pub lanes: u8,
-    /// Length of a substep [s].
+    /// Length of a substep (s).
     pub substep_s: Real,
     /// Substeps per second, the median of all laps.
     pub steps_per_s: Real,
@@ -48,7 +48,7 @@ pub struct Figures {
     pub processor_share: Option<Real>,
     /// Contacts between grains times substeps per second and thread.
     pub contact_steps_per_s_per_core: Real,
-    /// Its inverse [ns].
+    /// Its inverse (ns).
     pub ns_per_contact_step: Real,
     /// Simulated over wall time.
     pub real_time_factor: Real,
@@ -74,13 +74,13 @@ pub struct Figures {
     pub n_membrane_contacts: usize,
     /// Of the membrane with bodies.
     pub n_body_contacts: usize,
-    /// Largest overlap of two grains [m].
+    /// Largest overlap of two grains (m).
     pub overlap_max_m: Real,
     /// The same over the mean radius.
     pub overlap_ratio_max: Real,
-    /// Kinetic energy [J].
+    /// Kinetic energy (J).
     pub kinetic_energy_j: Real,
-    /// Largest resident set while the laps were run [bytes]; null where the system does not tell.
+    /// Largest resident set while the laps were run (bytes); null where the system does not tell.
     pub peak_rss_bytes: Option<u64>,
     /// Where the time of a substep goes.
     pub stages: Vec<Stage>,
@@ -102,7 +102,7 @@ pub struct Stage {
     pub name: String,
     /// Share of the whole.
     pub share: Real,
-    /// Time in each substep [ns].
+    /// Time in each substep (ns).
     pub ns_per_step: Real,
 }
 
@@ -273,7 +273,7 @@ fn or_unknown<T>(value: Option<T>, text: impl FnOnce(T) -> String) -> String {
     value.map_or_else(|| "unknown".to_owned(), text)
 }
 
-/// Processor time over wall time [s] and threads.
+/// Processor time over wall time (s) and threads.
 pub(super) fn processor_share(
     repetitions: impl Iterator<Item = (Real, Option<Real>)>,
     n_threads: usize,

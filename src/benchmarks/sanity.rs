@@ -18,13 +18,13 @@ pub(super) struct Seen {
     pub(super) n_wall_contacts: usize,
     pub(super) n_membrane_contacts: usize,
     pub(super) n_body_contacts: usize,
-    /// Largest overlap between grains [m].
+    /// Largest overlap between grains (m).
     pub(super) overlap_max: Real,
     /// The same over the mean radius.
     pub(super) overlap_ratio_max: Real,
-    /// Of grains and membrane [J].
+    /// Of grains and membrane (J).
     pub(super) kinetic_energy: Real,
-    /// Root of the mean of the grains' v² by mass, from the kinetic energy [m/s].
+    /// Root of the mean of the grains' v² by mass, from the kinetic energy (m/s).
     pub(super) speed: Real,
 }
 
@@ -35,7 +35,7 @@ pub(super) struct Limits {
     pub(super) contacts_per_grain: Real,
     /// Largest overlap over the mean radius.
     overlap_ratio: Real,
-    /// Speed of the grains, from and to [m/s].
+    /// Speed of the grains, from and to (m/s).
     speed: [Real; 2],
     /// Contacts with walls, with the membrane and of the membrane with bodies, at least.
     others: [usize; 3],

@@ -56,7 +56,7 @@ pub struct Record {
     pub digest: u64,
     /// Substeps of each stage.
     pub n_substeps: BTreeMap<String, u64>,
-    /// Time on the clock of each stage, on one thread [s]. Written by whoever runs the case.
+    /// Time on the clock of each stage, on one thread (s). Written by whoever runs the case.
     pub wall_s: BTreeMap<String, f64>,
 }
 

@@ -14,7 +14,7 @@ const WINDOW: Duration = Duration::from_secs(1);
 /// Measures wall time against the time of the run, which counts on when simulated time is reset.
 pub struct Pacer {
     start: Instant,
-    /// Simulated time at the start [ns].
+    /// Simulated time at the start (ns).
     origin_ns: u64,
     /// When time last went on.
     last: Instant,
@@ -60,7 +60,7 @@ impl Pacer {
         self.stood += stood;
     }
 
-    /// Wall time for which time has stood still since it last went on [s].
+    /// Wall time for which time has stood still since it last went on (s).
     pub fn stood_s(&self) -> f64 {
         self.stood.as_secs_f64()
     }
@@ -95,7 +95,7 @@ impl Pacer {
         }
     }
 
-    /// Wall time since the start [s].
+    /// Wall time since the start (s).
     pub fn wall_time_s(&self) -> f64 {
         self.start.elapsed().as_secs_f64()
     }
@@ -126,7 +126,7 @@ impl Playhead {
         Self { anchor: Instant::now(), time_ns, rate, is_paused: false }
     }
 
-    /// Recorded time now [ns].
+    /// Recorded time now (ns).
     pub fn now_ns(&self) -> u64 {
         if self.is_paused {
             return self.time_ns;
@@ -188,12 +188,12 @@ impl Stopwatch {
         Self { start, lap: start }
     }
 
-    /// Wall time since the start [s].
+    /// Wall time since the start (s).
     pub fn total_s(&self) -> f64 {
         self.start.elapsed().as_secs_f64()
     }
 
-    /// Wall time since the last lap [s]; a new lap begins.
+    /// Wall time since the last lap (s); a new lap begins.
     pub fn lap_s(&mut self) -> f64 {
         let now = Instant::now();
         let lap = now - self.lap;
@@ -207,7 +207,7 @@ fn ratio(time_ns: u64, wall: Duration) -> f64 {
     if wall == 0.0 { 0.0 } else { Duration::from_nanos(time_ns).as_secs_f64() / wall }
 }
 
-/// Wall time since 1970 [ns], the same for all processes of this host.
+/// Wall time since 1970 (ns), the same for all processes of this host.
 pub fn wall_ns() -> u64 {
     let since_epoch = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
     u64::try_from(since_epoch.as_nanos()).unwrap_or(u64::MAX)

@@ -39,7 +39,7 @@ pub trait Plant: Subject {
         None
     }
 
-    /// Length of a substep [s].
+    /// Length of a substep (s).
     fn substep_s(&self) -> f64 {
         0.0
     }

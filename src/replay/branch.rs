@@ -20,7 +20,7 @@ use crate::{
 
 /// Where a run branches off, and how.
 pub struct Branch {
-    /// Simulated time of the last recorded tick that is kept [ns].
+    /// Simulated time of the last recorded tick that is kept (ns).
     pub from_ns: u64,
     /// Changes of the scene, as `key=value`, the outputs of the new run among them.
     pub overrides: Vec<String>,
@@ -52,11 +52,11 @@ pub enum BranchError {
          choose a time between"
     )]
     OutOfRange {
-        /// Asked for [s].
+        /// Asked for (s).
         from_s: f64,
-        /// First tick [s].
+        /// First tick (s).
         first_s: f64,
-        /// Last tick [s].
+        /// Last tick (s).
         last_s: f64,
     },
     /// The run did not come to the recorded state again.
@@ -83,7 +83,7 @@ pub enum BranchError {
          repeat; end before with --end {at_s}s, or choose a later time for --from"
     )]
     Changed {
-        /// When, in time of the run [s].
+        /// When, in time of the run (s).
         at_s: f64,
         /// What was done.
         what: String,

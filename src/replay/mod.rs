@@ -15,7 +15,7 @@ pub mod segment; // from one checkpoint to the next
 pub mod verify; // compares the digest of every tick
 pub mod workers; // segments in parallel
 
-/// A time for people [s].
+/// A time for people (s).
 fn seconds(time_ns: u64) -> f64 {
     std::time::Duration::from_nanos(time_ns).as_secs_f64()
 }

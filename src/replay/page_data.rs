@@ -29,7 +29,7 @@ pub(super) struct Course {
     node: Option<String>,
     /// Curves by picture and label.
     curves: BTreeMap<(Picture, String), Vec<[f64; 2]>>,
-    /// What happened: simulated time [s] and what.
+    /// What happened: simulated time (s) and what.
     pub(super) events: Vec<(f64, String)>,
     /// What is wrong with the recording.
     pub(super) damages: Vec<String>,

@@ -46,9 +46,9 @@ pub trait PlayerOutput {
 pub struct Options {
     /// How many times as fast as recorded.
     pub rate: f64,
-    /// Where to begin, from the first message on [ns].
+    /// Where to begin, from the first message on (ns).
     pub start_ns: u64,
-    /// Where to end, from the first message on [ns].
+    /// Where to end, from the first message on (ns).
     pub end_ns: Option<u64>,
     /// True stands still at first.
     pub is_paused: bool,
@@ -60,7 +60,7 @@ pub struct Options {
     pub exclude: Vec<String>,
     /// Time between announcing the topics and the first message, for readers to find them.
     pub delay: Duration,
-    /// Publish recorded time this often in wall time, in place of the recorded clock [Hz].
+    /// Publish recorded time this often in wall time, in place of the recorded clock (Hz).
     pub clock_rate: Option<f64>,
 }
 
@@ -137,11 +137,11 @@ struct Player<'a> {
     cues: &'a Receiver<Asked>,
     shutdown: &'a Shutdown,
     head: Option<Playhead>,
-    /// Time of the recording's first message [ns].
+    /// Time of the recording's first message (ns).
     first_ns: u64,
     /// Of each file, once it was looked for.
     indexes: Vec<Option<Option<Index>>>,
-    /// Recorded time last told to the stage [ns].
+    /// Recorded time last told to the stage (ns).
     clock_ns: Option<u64>,
     /// Messages to play although it stands still.
     bursts: VecDeque<Burst>,
@@ -343,7 +343,7 @@ impl Player<'_> {
         }
     }
 
-    /// Time of the recording's last message [ns], if all files have an index.
+    /// Time of the recording's last message (ns), if all files have an index.
     fn last_ns(&mut self) -> Option<u64> {
         let files = self.files.iter().zip(&mut self.indexes);
         let ends = files.map(|(file, index)| {

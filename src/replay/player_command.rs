@@ -16,9 +16,9 @@ pub enum PlayerCommand {
     /// Play so many messages at once and stand still again; all that are left for zero. Only while it
     /// stands still.
     Burst(u64),
-    /// Go to this place, from the first message on [ns].
+    /// Go to this place, from the first message on (ns).
     Seek(u64),
-    /// Go to this time of the recording [ns].
+    /// Go to this time of the recording (ns).
     SeekTo(u64),
     /// Play so many times as fast as recorded.
     Rate(f64),

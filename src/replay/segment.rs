@@ -14,7 +14,7 @@ use crate::{
     session::Session,
 };
 
-/// Shorter parts are simulated with the one before [ticks]: to begin one costs as much as a tick.
+/// Shorter parts are simulated with the one before (ticks): to begin one costs as much as a tick.
 const SHORTEST: u64 = 100;
 
 /// Something that did not come out as recorded.

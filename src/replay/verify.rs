@@ -24,9 +24,9 @@ pub struct Options<'a> {
     pub hands: CpuBudget,
     /// True fills the bag anew from scene and seed; false takes the start that was recorded.
     pub settles: bool,
-    /// Simulated time from which on to verify [ns]; from the last checkpoint before it.
+    /// Simulated time from which on to verify (ns); from the last checkpoint before it.
     pub from_ns: u64,
-    /// Simulated time at which to end [ns].
+    /// Simulated time at which to end (ns).
     pub to_ns: Option<u64>,
     /// Where settled start states are kept, for recordings without checkpoints.
     pub cache: Cache,

@@ -134,7 +134,7 @@ impl RosClock {
         Ok(Self { time_ns, stop, listener: Some(listener), _node: Arc::clone(node) })
     }
 
-    /// Its time, as it goes on [ns].
+    /// Its time, as it goes on (ns).
     pub fn time_ns(&self) -> Arc<AtomicU64> {
         Arc::clone(&self.time_ns)
     }

@@ -15,7 +15,7 @@ use crate::{
     host::{clock::Stopwatch, shutdown::Shutdown},
 };
 
-/// Wall time between two saves [s]: what a kill costs at most.
+/// Wall time between two saves (s): what a kill costs at most.
 const SAVE_EVERY_S: f64 = 60.0;
 /// Under this name the time is counted that a case takes to be set up.
 const SETTING_UP: &str = "setting_up";

@@ -34,18 +34,18 @@ pub struct Forecast {
 
 impl Forecast {
     /// Cases in the order in which they are begun: their group, and how long they are expected to
-    /// take [s].
+    /// take (s).
     pub fn new(n_threads: usize, cases: impl Iterator<Item = (usize, Option<f64>)>) -> Self {
         let case = |(group, expected_s)| Case { group, expected_s, stage: Stage::Waiting };
         Self { n_threads: n_threads.max(1), cases: cases.map(case).collect() }
     }
 
-    /// Case `i` runs: its share when it was begun now, its share now, and the time between [s].
+    /// Case `i` runs: its share when it was begun now, its share now, and the time between (s).
     pub fn running(&mut self, i: usize, share_at_start: f64, share: f64, wall_s: f64) {
         self.cases[i].stage = Stage::Running { share_at_start, share, wall_s };
     }
 
-    /// Case `i` has ended; how long it took as a whole [s], if it ran to its end.
+    /// Case `i` has ended; how long it took as a whole (s), if it ran to its end.
     pub fn ended(&mut self, i: usize, took_s: Option<f64>) {
         self.cases[i].stage = Stage::Ended(took_s);
     }
@@ -71,7 +71,7 @@ impl Forecast {
         if all == 0.0 { 1.0 } else { done / all }
     }
 
-    /// Time until case `i` is done [s], if that can be told yet.
+    /// Time until case `i` is done (s), if that can be told yet.
     pub fn left_of(&self, i: usize) -> Option<f64> {
         let case = &self.cases[i];
         match case.stage {
@@ -81,7 +81,7 @@ impl Forecast {
         }
     }
 
-    /// Time until all are done [s], if that can be told yet: waiting cases go to the thread that
+    /// Time until all are done (s), if that can be told yet: waiting cases go to the thread that
     /// is free first.
     pub fn left_s(&self) -> Option<f64> {
         let is = |wanted: bool, case: &Case| matches!(case.stage, Stage::Waiting) == wanted;
@@ -97,7 +97,7 @@ impl Forecast {
         threads.into_iter().reduce(f64::max)
     }
 
-    /// How long a case takes as a whole [s]: by its own pace, else as expected, else like the
+    /// How long a case takes as a whole (s): by its own pace, else as expected, else like the
     /// others of its group, else like all others.
     fn whole_s(&self, case: &Case) -> Option<f64> {
         let known = |group: Option<usize>| {
@@ -113,7 +113,7 @@ impl Forecast {
     }
 }
 
-/// Time for a whole case at the pace seen [s].
+/// Time for a whole case at the pace seen (s).
 fn pace_s(stage: Stage) -> Option<f64> {
     match stage {
         Stage::Waiting => None,

@@ -54,7 +54,7 @@ pub struct KeptCase {
 pub(super) struct SavedCase {
     /// Share of the work that is done.
     pub(super) share: f64,
-    /// Time on the clock so far, stage by stage [s].
+    /// Time on the clock so far, stage by stage (s).
     pub(super) wall_s: BTreeMap<String, f64>,
     /// Digests of the program files that ran it.
     pub(super) programs: Vec<String>,

@@ -40,7 +40,7 @@ pub struct Outcome {
     pub cases: Vec<CaseFacts>,
     /// Digest of all cases together.
     pub digest: String,
-    /// Time on the clock, summed over all cases, each on one thread [s].
+    /// Time on the clock, summed over all cases, each on one thread (s).
     pub wall_s: f64,
     /// The program.
     pub build: Build,
@@ -76,7 +76,7 @@ pub struct CaseFacts {
     pub digest: String,
     /// Substeps of each stage.
     pub n_substeps: BTreeMap<String, u64>,
-    /// Time on the clock of each stage, on one thread [s].
+    /// Time on the clock of each stage, on one thread (s).
     pub wall_s: BTreeMap<String, f64>,
     /// How far it kept within the validity of the model.
     pub validity: Validity,

@@ -18,7 +18,7 @@ use crate::{report::format, runner::eta::Forecast};
 
 /// Steps of a bar.
 const STEPS: u64 = 1000;
-/// Wall time between two lines where there is no terminal [s].
+/// Wall time between two lines where there is no terminal (s).
 const LINE_EVERY_S: f64 = 60.0;
 
 /// The lines on standard error.

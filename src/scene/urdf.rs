@@ -13,7 +13,7 @@ use super::{
 };
 use crate::base::{Real, Vec3};
 
-/// Mean density over that of water that no solid has [-]; beyond it a mass is a mistake.
+/// Mean density over that of water that no solid has (-); beyond it a mass is a mistake.
 const DENSITY_RATIO_MAX: Real = 25.0;
 
 /// The object in a URDF text; `blank` gives what URDF does not say.
@@ -87,7 +87,7 @@ fn mesh(filename: &str, unit: Real, folder: &Path) -> Result<Shape, ResourceFaul
     Ok(Shape::Mesh { file, unit, vertices, triangles })
 }
 
-/// Volume of a shape [m³].
+/// Volume of a shape (m³).
 fn volume(shape: &Shape) -> Real {
     use std::f64::consts::PI;
     match shape {

@@ -18,7 +18,7 @@ use iceoryx2::prelude::ZeroCopySend;
 pub struct StateRow {
     /// The tick that ended.
     pub tick: u64,
-    /// Simulated time at its end [ns].
+    /// Simulated time at its end (ns).
     pub time_ns: u64,
     /// Digest of the whole state.
     pub digest: u64,
@@ -30,25 +30,25 @@ pub struct StateRow {
     pub flange: BodyRow,
     /// The object to be gripped: the first of the scene.
     pub object: BodyRow,
-    /// Total contact force on the object (membrane and table), gravity excluded [N].
+    /// Total contact force on the object (membrane and table), gravity excluded (N).
     pub object_contact_force: [f64; 3],
-    /// Total contact torque on the object about its centre of mass [N m].
+    /// Total contact torque on the object about its centre of mass (N m).
     pub object_contact_torque: [f64; 3],
-    /// Contact force of the objects on the gripper, flange axes [N].
+    /// Contact force of the objects on the gripper, flange axes (N).
     pub contact_force: [f64; 3],
-    /// Contact torque of the objects on the gripper about the flange's origin, flange axes [N m].
+    /// Contact torque of the objects on the gripper about the flange's origin, flange axes (N m).
     pub contact_torque: [f64; 3],
-    /// Force of the whole gripper on its mount, flange axes [N].
+    /// Force of the whole gripper on its mount, flange axes (N).
     pub mount_force: [f64; 3],
-    /// Torque of the whole gripper on its mount about the flange's origin, flange axes [N m].
+    /// Torque of the whole gripper on its mount about the flange's origin, flange axes (N m).
     pub mount_torque: [f64; 3],
-    /// Commanded gauge pressure after limits [Pa].
+    /// Commanded gauge pressure after limits (Pa).
     pub gauge_setpoint: f64,
-    /// Actual gauge pressure, negative under vacuum [Pa].
+    /// Actual gauge pressure, negative under vacuum (Pa).
     pub gauge: f64,
-    /// Ambient pressure, absolute [Pa].
+    /// Ambient pressure, absolute (Pa).
     pub ambient: f64,
-    /// Volume enclosed by membrane and flange [m³].
+    /// Volume enclosed by membrane and flange (m³).
     pub volume: f64,
     /// Mean number of contacts per grain.
     pub coordination_number: f64,
@@ -63,13 +63,13 @@ pub struct StateRow {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "shm", derive(ZeroCopySend), type_name("jamgrip::BodyRow"))]
 pub struct BodyRow {
-    /// Position of the frame's origin x, y, z [m].
+    /// Position of the frame's origin x, y, z (m).
     pub position: [f64; 3],
     /// Orientation as a unit quaternion x, y, z, w.
     pub orientation: [f64; 4],
-    /// Velocity of the frame's origin [m/s].
+    /// Velocity of the frame's origin (m/s).
     pub linear_velocity: [f64; 3],
-    /// Angular velocity [rad/s].
+    /// Angular velocity (rad/s).
     pub angular_velocity: [f64; 3],
 }
 
@@ -80,7 +80,7 @@ pub struct BodyRow {
 pub struct RowsHeader {
     /// The tick that ended.
     pub tick: u64,
-    /// Simulated time at its end [ns].
+    /// Simulated time at its end (ns).
     pub time_ns: u64,
     /// Number of rows that follow.
     pub count: u64,
@@ -91,15 +91,15 @@ pub struct RowsHeader {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "shm", derive(ZeroCopySend), type_name("jamgrip::GrainRow"))]
 pub struct GrainRow {
-    /// Position x, y, z [m].
+    /// Position x, y, z (m).
     pub position: [f64; 3],
-    /// Velocity [m/s].
+    /// Velocity (m/s).
     pub velocity: [f64; 3],
-    /// Angular velocity [rad/s].
+    /// Angular velocity (rad/s).
     pub spin: [f64; 3],
-    /// Radius [m].
+    /// Radius (m).
     pub radius: f64,
-    /// Sum of normal force magnitudes [N].
+    /// Sum of normal force magnitudes (N).
     pub normal_force: f64,
 }
 
@@ -108,11 +108,11 @@ pub struct GrainRow {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "shm", derive(ZeroCopySend), type_name("jamgrip::VertexRow"))]
 pub struct VertexRow {
-    /// Position x, y, z [m].
+    /// Position x, y, z (m).
     pub position: [f64; 3],
-    /// Velocity [m/s].
+    /// Velocity (m/s).
     pub velocity: [f64; 3],
-    /// Contact force on it [N].
+    /// Contact force on it (N).
     pub contact_force: [f64; 3],
 }
 

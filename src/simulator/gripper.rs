@@ -1,7 +1,7 @@
 //! The gripper as drivers of vacuum grippers and MoveIt know theirs.
 //!
 //! A position is a share of the strongest vacuum: 0 is vented, 1 is all that the pump can. An effort
-//! is a pressure below the ambient one [Pa]; as a limit it bounds the vacuum. A goal has been reached
+//! is a pressure below the ambient one (Pa); as a limit it bounds the vacuum. A goal has been reached
 //! when the pressure is within 5 % of what was asked; it has `stalled` if the bag then holds
 //! something and can draw no further. A new goal aborts the one before, a cancelled one keeps the
 //! pressure that it has come to.
@@ -30,7 +30,7 @@ use crate::{
 
 /// How near the pressure must come, as a share of the strongest vacuum.
 const NEAR: f64 = 0.05;
-/// Simulated time after which a goal that is not reached is given up [ns].
+/// Simulated time after which a goal that is not reached is given up (ns).
 const PATIENCE_NS: u64 = 30_000_000_000;
 /// Ticks between two feedbacks.
 const FEEDBACK_EVERY: u64 = 20;
@@ -41,7 +41,7 @@ const JOINT: &str = crate::command::JOINTS[0];
 pub(super) struct Grip {
     goal: GoalId,
     action: Action,
-    /// What was asked for, after limits [Pa].
+    /// What was asked for, after limits (Pa).
     gauge: f64,
     since_ns: u64,
     n_ticks: u64,

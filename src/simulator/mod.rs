@@ -114,7 +114,7 @@ pub struct Simulator {
     loading: Option<Loading>,
     wanted: Option<Scene>,
     is_monotonic: bool,
-    /// Velocities at the ends of the last two ticks, with their times [ns].
+    /// Velocities at the ends of the last two ticks, with their times (ns).
     twists: [(u64, Vec<(String, Twist)>); 2],
     out: Vec<Outgoing>,
     commands: Vec<Command>,

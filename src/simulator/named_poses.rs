@@ -10,9 +10,9 @@ use crate::{
     },
 };
 
-/// Half of the edge of the free place on the table [m].
+/// Half of the edge of the free place on the table (m).
 const FREE_PLACE: f64 = 0.1;
-/// Distance of the free place from the middle of the table, where the gripper works [m].
+/// Distance of the free place from the middle of the table, where the gripper works (m).
 const FREE_PLACE_X: f64 = 0.5;
 
 /// A place, and how much room there is.

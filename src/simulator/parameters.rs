@@ -26,13 +26,13 @@ use crate::{
 enum Kind {
     /// A number of the world that may be changed.
     TunableParameter(TunableParameter),
-    /// A rate of topics, which may be changed [Hz].
+    /// A rate of topics, which may be changed (Hz).
     Rate(fn(&mut Outputs) -> &mut f64),
     /// Something that is told.
     SimResult(fn(&Scene) -> ParameterValue),
 }
 
-/// Slowest rate of a topic [Hz].
+/// Slowest rate of a topic (Hz).
 const RATE_MIN: f64 = 1e-3;
 
 /// A change that has been checked.

@@ -25,7 +25,7 @@ pub enum NotACommand {
         topic: String,
         /// Type of the topic.
         type_name: &'static str,
-        /// Length of the message's body [bytes].
+        /// Length of the message's body (bytes).
         n_bytes: usize,
         /// What the decoder says.
         fault: String,

@@ -70,7 +70,7 @@ impl Qos {
 pub struct Message {
     /// Index into the list of topics.
     pub topic: usize,
-    /// Simulated time [ns].
+    /// Simulated time (ns).
     pub time_ns: u64,
     /// The body in CDR, little endian, without the four bytes that name the encoding.
     pub cdr: Vec<u8>,

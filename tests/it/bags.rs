@@ -378,7 +378,7 @@ fn a_recording_becomes_a_page() {
     assert_eq!(page.matches("<figure>").count(), 6);
 }
 
-/// Processor time of this process's thread of that name [s].
+/// Processor time of this process's thread of that name (s).
 fn thread_time_s(name: &str) -> f64 {
     for task in fs::read_dir("/proc/self/task").unwrap().map(|it| it.unwrap().path()) {
         let read = |file: &str| fs::read_to_string(task.join(file)).unwrap_or_default();

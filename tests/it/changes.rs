@@ -22,7 +22,7 @@ fn run(session: &mut Session, n: u32) -> u64 {
     session.digest()
 }
 
-/// A ball of the scene's own material at `position` [m].
+/// A ball of the scene's own material at `position` (m).
 fn ball(session: &Session, name: &str, position: Vec3) -> Change {
     let own = session.scene().objects[0].clone();
     Change::Insert(Box::new(Object {

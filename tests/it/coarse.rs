@@ -88,7 +88,7 @@ pub(crate) fn coupled_of(compiled: Compiled) -> Coupled {
     Coupled::new(model, plan, state, world, limits)
 }
 
-/// The flange shall go to height `z` [m] over the origin.
+/// The flange shall go to height `z` (m) over the origin.
 pub(crate) fn flange_to(z: Real) -> Command {
     Command::FlangePose(pose(Vec3::new(0.0, 0.0, z)))
 }

@@ -16,7 +16,7 @@ fn codec() -> CommandCodec {
     synthetic::encoder().commands().clone()
 }
 
-/// Stamps as ROS can say them [ns].
+/// Stamps as ROS can say them (ns).
 fn stamps() -> impl Strategy<Value = i64> + Clone {
     i64::from(i32::MIN) * 1_000_000_000..=i64::from(i32::MAX) * 1_000_000_000
 }

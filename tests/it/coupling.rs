@@ -199,7 +199,7 @@ fn moment_of_weight(coupled: &Coupled) -> Vec3 {
     (of_grains + of_sheet).cross(&model.gravity)
 }
 
-/// Sum of the magnitudes of the membrane's torques on grains [N m].
+/// Sum of the magnitudes of the membrane's torques on grains (N m).
 fn spin_torque(state: &State, scratch: &Scratch) -> Real {
     assert_eq!(state.grains.len(), scratch.patch_forces.len());
     scratch.patch_forces.iter().filter(|p| p.n > 0).map(|p| p.torque.norm()).sum()
@@ -225,23 +225,23 @@ fn a_gripper_at_rest_hangs_on_its_mount_with_its_weight() {
 
 /// What was measured while the object hung at rest.
 struct Hanging {
-    /// Mean force of the object on the gripper, flange axes [N].
+    /// Mean force of the object on the gripper, flange axes (N).
     contact: Vec3,
-    /// Mean force of all contacts on the object, world axes [N].
+    /// Mean force of all contacts on the object, world axes (N).
     on_object: Vec3,
-    /// Mean force of the gripper on its mount, flange axes [N].
+    /// Mean force of the gripper on its mount, flange axes (N).
     mount: Vec3,
-    /// Weight of the object [N].
+    /// Weight of the object (N).
     weight: Real,
-    /// Force that the object's remaining swing took, from its velocities [N].
+    /// Force that the object's remaining swing took, from its velocities (N).
     swing: Vec3,
-    /// Weight of grains and sheet [N].
+    /// Weight of grains and sheet (N).
     own_weight: Real,
-    /// Kinetic energy of grains and sheet at the end [J].
+    /// Kinetic energy of grains and sheet at the end (J).
     energy: Real,
-    /// How far the object was lifted [m].
+    /// How far the object was lifted (m).
     lifted: Real,
-    /// Largest depth of the object in the table while it was pushed [m].
+    /// Largest depth of the object in the table while it was pushed (m).
     sunk: Real,
 }
 

@@ -24,7 +24,7 @@ fn resting_overlap(rig: &Rig) -> Real {
     (weight / hertz_constant(&rig.model.walls[0].law, RADIUS)).powf(2.0 / 3.0)
 }
 
-/// One grain that lies on the plate in equilibrium, `tilt` [rad] about y.
+/// One grain that lies on the plate in equilibrium, `tilt` (rad) about y.
 fn resting(surface: Surface, tilt: Real) -> Rig {
     let mut rig = Rig::on_plate(&GRAIN, surface, 1e-5);
     rig.model.gravity = Vec3::new(tilt.sin(), 0.0, -tilt.cos()) * G;

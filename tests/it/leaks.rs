@@ -21,16 +21,16 @@ use crate::{
     sheet::{alone, hexagon},
 };
 
-/// Radius of the grains that both membranes were made for: those of the triaxial test [m].
+/// Radius of the grains that both membranes were made for: those of the triaxial test (m).
 const RADIUS: Real = 2.5e-3;
-/// Distance of the spheres in the triaxial test, and their radius [m].
+/// Distance of the spheres in the triaxial test, and their radius (m).
 const SPACING: Real = 1.3e-3;
 const SPHERE: Real = 0.65e-3;
-/// Edge of the triangles there [m].
+/// Edge of the triangles there (m).
 const EDGE: Real = 4e-3;
-/// A tube around a bed of grains [m].
+/// A tube around a bed of grains (m).
 const TUBE: Real = 5e-3;
-/// Pressure of the triaxial test [Pa].
+/// Pressure of the triaxial test (Pa).
 const PRESSURE: Real = 100e3;
 
 const SPHERES: MembraneContact = MembraneContact::Spheres { radius: SPHERE };
@@ -117,7 +117,7 @@ fn a_bed_of_grains_of_a_fifth_stays_inside_at_100_kpa() {
     });
 }
 
-/// Load [N] under which one grain of `radius` comes through a held sheet at `place`.
+/// Load (N) under which one grain of `radius` comes through a held sheet at `place`.
 fn breakthrough(
     mesh: Mesh,
     contact: MembraneContact,
@@ -142,7 +142,7 @@ fn breakthrough(
     Real::INFINITY
 }
 
-/// What three held spheres around a hollow bear without friction at most [N]: the largest of
+/// What three held spheres around a hollow bear without friction at most (N): the largest of
 /// 3 F(ξ) cos θ over all heights of the grain.
 fn strength(rig: &Rig, radius: Real) -> Real {
     let shared = radius * SPHERE / (radius + SPHERE);

@@ -128,7 +128,7 @@ fn check_recording(bag: &Path, told: &Value) {
     assert_eq!(read["mcap"]["metadata"]["jamgrip_end"]["state_digest"], told["state_digest"]);
 }
 
-/// Weight of the scene's cylinder [N], from its dimensions.
+/// Weight of the scene's cylinder (N), from its dimensions.
 fn weight(scene: &Scene) -> f64 {
     let object = &scene.objects[0];
     let Shape::Cylinder { radius, height } = object.shape else { panic!("not a cylinder") };

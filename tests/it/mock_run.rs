@@ -24,7 +24,7 @@ const BAG_LENGTH: f64 = 0.04;
 const OBJECT_REST: f64 = 0.035;
 const OBJECT_TOP: f64 = 0.07;
 const STIFFNESS: f64 = 500.0;
-/// Weight of the toy's object [N].
+/// Weight of the toy's object (N).
 pub(crate) const WEIGHT: f64 = 2.4;
 const LAG: f64 = 0.05;
 const GAUGE_HOLDING: f64 = -50e3;
@@ -34,7 +34,7 @@ struct MockPlant {
     object_z: f64,
     gauge: f64,
     setpoint: f64,
-    /// Height of the flange over the object while it is gripped [m].
+    /// Height of the flange over the object while it is gripped (m).
     grip: Option<f64>,
 }
 
@@ -57,7 +57,7 @@ impl MockPlant {
         self.object_z = self.grip.map_or(OBJECT_REST, |it| OBJECT_REST.max(self.flange.z - it));
     }
 
-    /// Force of the object on the gripper [N].
+    /// Force of the object on the gripper (N).
     fn force(&self) -> f64 {
         if OBJECT_REST < self.object_z {
             return -WEIGHT;

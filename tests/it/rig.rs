@@ -123,7 +123,7 @@ pub(crate) fn elastic(friction: Real) -> Surface {
     Surface { friction, dissipation_time: 0.0, tangential_damping: 0.0 }
 }
 
-/// k of F = k ξ^(3/2) [N/m^(3/2)].
+/// k of F = k ξ^(3/2) (N/m^(3/2)).
 pub(crate) fn hertz_constant(law: &PairLaw, radius: Real) -> Real {
     4.0 / 3.0 * law.modulus * radius.sqrt()
 }

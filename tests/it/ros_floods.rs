@@ -31,7 +31,7 @@ use crate::{
     ros_program::{Client, Running, wait_until},
 };
 
-/// Commands that are asked for [Hz].
+/// Commands that are asked for (Hz).
 const RATE: f64 = 10_000.0;
 /// Ticks of an episode.
 const TICKS: u64 = 500;
@@ -42,7 +42,7 @@ fn now() -> Instant {
 }
 
 /// Senseless commands on three topics, one after the other, at `RATE` until `stopped`: how many, and in
-/// what time [s].
+/// what time (s).
 fn flood(node: &RosNode, stopped: &mpsc::Receiver<()>) -> (u32, f64) {
     let all = topics(&coarse::scene(&[]));
     let mut pose = PoseStamped::default();

@@ -96,7 +96,7 @@ fn grip(position: f64, max_effort: f64) -> GripperCommandGoal {
     GripperCommandGoal { command: GripperCommand { position, max_effort } }
 }
 
-/// The default scene's pump [Pa].
+/// The default scene's pump (Pa).
 const STRONGEST: f64 = 95e3;
 
 fn set_state(node: &RosNode, state: u8) {

@@ -168,7 +168,7 @@ fn friction_does_not_see_edges() {
     });
 }
 
-/// A grain under `pressure` [Pa] on its square, laid on the sheet at `place`; its substeps.
+/// A grain under `pressure` (Pa) on its square, laid on the sheet at `place`; its substeps.
 fn press(radius: Real, pressure: Real, place: Vec3) -> Result<Rig, health::Diverged> {
     let surface = Surface { friction: 0.25, dissipation_time: 1e-5, tangential_damping: 0.3 };
     let mut rig = Rig::on_sheet(&GRAIN, surface, hexagon(3, EDGE), 2e-7);

@@ -20,7 +20,7 @@ use jamgrip::{
     wire::to_ros::Encoder,
 };
 
-/// Length of a tick [ns].
+/// Length of a tick (ns).
 pub(crate) const TICK_NS: u64 = 1_000_000;
 /// Name of the only object.
 pub(crate) const OBJECT: &str = "cylinder";

@@ -22,7 +22,7 @@ use crate::{
     snapshot::{Parts, Snapshot, take, view::View},
 };
 
-/// Time for which all solver threads are at work in each tick [s].
+/// Time for which all solver threads are at work in each tick (s).
 const BUSY: Real = 7e-4;
 /// Grains of the solver's box: a substep of some ten microseconds.
 const BOX: Boxed = Boxed { n_grains: 300, n_tiles: [1; 3], phase: Phase::Rest };
@@ -34,9 +34,9 @@ pub(super) struct IdlePlant {
     tick_ns: u64,
     pool: rayon::ThreadPool,
     solver: System,
-    /// Number of each command, and when the first tick that has it began [ns].
+    /// Number of each command, and when the first tick that has it began (ns).
     used: Samples,
-    /// Each tick, and when it was given out [ns]. `Plant::view` only borrows.
+    /// Each tick, and when it was given out (ns). `Plant::view` only borrows.
     shown: RefCell<Samples>,
 }
 

@@ -22,16 +22,16 @@ use crate::{
     },
 };
 
-/// Marks, and when they were seen by the wall clock [ns].
+/// Marks, and when they were seen by the wall clock (ns).
 pub(super) type Samples = Vec<(u64, u64)>;
 
 /// Time between two commands: no multiple of a tick, so that they come at all times of it.
 const COMMAND_EVERY: Duration = Duration::from_micros(10_300);
 /// ROS 2 is asked for samples this often; the pause adds to what is measured.
 const POLL_EVERY: Duration = Duration::from_micros(20);
-/// How long the others may take to come [s].
+/// How long the others may take to come (s).
 const TIMEOUT: Real = 30.0;
-/// How much longer than the run it listens [s].
+/// How much longer than the run it listens (s).
 const LONGER: Real = 1.0;
 
 /// All that was heard and said.
@@ -45,7 +45,7 @@ pub(super) struct Heard {
     pub(super) commands: Samples,
 }
 
-/// The number of a command with this gauge pressure [Pa].
+/// The number of a command with this gauge pressure (Pa).
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
@@ -55,7 +55,7 @@ pub(super) fn number(gauge_pa: f64) -> u64 {
     (-gauge_pa).round().max(0.0) as u64
 }
 
-/// The gauge pressure of the command with this number [Pa].
+/// The gauge pressure of the command with this number (Pa).
 fn pressure(number: u32) -> f64 {
     -f64::from(number)
 }

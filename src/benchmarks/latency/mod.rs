@@ -45,7 +45,7 @@ pub use private_network::PrivateError;
 const OVERRIDES: [&str; 2] = ["controller=topics", "outputs.state_rate=1 kHz"];
 /// Ticks that are not counted: matching readers, filling caches.
 const N_FIRST: u64 = 200;
-/// Shortest time that is worth a percentile of 99.9 [s].
+/// Shortest time that is worth a percentile of 99.9 (s).
 const SECONDS_MIN: Real = 3.0;
 
 /// The loop's latencies cannot be measured.
@@ -81,13 +81,13 @@ pub struct Latency {
     pub n: usize,
     /// Samples that were sent, and not seen.
     pub n_lost: usize,
-    /// Half are below [us].
+    /// Half are below (us).
     pub p50_us: Real,
-    /// 99 % are below [us].
+    /// 99 % are below (us).
     pub p99_us: Real,
-    /// 99.9 % are below [us].
+    /// 99.9 % are below (us).
     pub p999_us: Real,
-    /// The largest [us].
+    /// The largest (us).
     pub max_us: Real,
 }
 
@@ -224,7 +224,7 @@ fn latency(
     Ok(percentiles(path, times, sent.len()))
 }
 
-/// The percentiles of `times` [us], of `n_sent` samples.
+/// The percentiles of `times` (us), of `n_sent` samples.
 fn percentiles(path: &str, mut times: Vec<Real>, n_sent: usize) -> Latency {
     times.sort_by(Real::total_cmp);
     let n = times.len();

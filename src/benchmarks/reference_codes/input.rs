@@ -12,7 +12,7 @@ use crate::{
     physics::System,
 };
 
-/// Distance beyond contact within which peers list neighbours [m].
+/// Distance beyond contact within which peers list neighbours (m).
 const SKIN: Real = 2e-4;
 
 /// The numbers of a case, by the names that the scripts use.

@@ -44,7 +44,7 @@ pub struct PeerFigures {
     pub spread: Real,
     /// Contacts at the end.
     pub n_contacts: Real,
-    /// Kinetic energy at the end [J], without spins.
+    /// Kinetic energy at the end (J), without spins.
     pub kinetic_energy_j: Real,
     /// Our contact-steps per second over its own.
     pub ratio: Real,

@@ -8,11 +8,11 @@ use crate::base::Real;
 pub(super) struct Repetition {
     /// What it says of its version.
     pub(super) version: String,
-    /// Time for the measured steps, by its own clock [s].
+    /// Time for the measured steps, by its own clock (s).
     pub(super) wall_s: Real,
     /// Before and after them.
     pub(super) n_contacts: [Real; 2],
-    /// At the end, without spins [J].
+    /// At the end, without spins (J).
     pub(super) kinetic_energy: Real,
 }
 

@@ -14,7 +14,7 @@ pub(super) struct Case {
     pub(super) name: String,
     /// Which filling; added to the scene's seed.
     pub(super) filling: usize,
-    /// Modulus of the grains [Pa].
+    /// Modulus of the grains (Pa).
     pub(super) modulus: Real,
     /// Number of grains.
     pub(super) count: usize,
@@ -36,11 +36,11 @@ pub(super) struct Grip {
 pub(super) enum Change {
     /// Nothing.
     Nothing,
-    /// Another gauge pressure [Pa].
+    /// Another gauge pressure (Pa).
     Pressure(Real),
     /// Another friction of the object.
     Friction(Real),
-    /// Another radius of the object [m].
+    /// Another radius of the object (m).
     Radius(Real),
     /// Another damping ratio of the membrane's springs.
     SpringDamping(Real),
@@ -142,11 +142,11 @@ fn over_modulus(scene: &GripperScene) -> Vec<Case> {
 /// What a grip of 4200 soft grains takes at ten times the source's speed, in seconds on one thread
 /// of a machine of 2026; the filling takes half of it.
 const GRIP_S: Real = 35.0;
-/// Modulus above which the grains and not the membrane limit the substep [Pa].
+/// Modulus above which the grains and not the membrane limit the substep (Pa).
 const HARD: Real = 3.2e7;
 
 impl Case {
-    /// About how long it takes on one thread [s].
+    /// About how long it takes on one thread (s).
     pub(super) fn expected_s(&self, scene: &GripperScene) -> Real {
         let size = real(self.count) / 4200.0;
         let hardness = (self.modulus / HARD).sqrt().max(1.0);
@@ -168,7 +168,7 @@ impl Grip {
     }
 }
 
-/// All moduli, the reference among them, rising [Pa].
+/// All moduli, the reference among them, rising (Pa).
 pub(super) fn moduli(scene: &GripperScene) -> Vec<Real> {
     let reference = scene.gripper.grains.material.youngs_modulus;
     let mut moduli: Vec<Real> = others(&scene.sweep.moduli, reference).collect();

@@ -93,7 +93,7 @@ impl View<'_> {
         points
     }
 
-    /// Holding force over vacuum, positive [Pa], [N].
+    /// Holding force over vacuum, positive (Pa), (N).
     pub(super) fn over_pressure(&self) -> Vec<[Real; 2]> {
         let own = self.scene.protocol.pressure;
         let varied = cases::others(&self.scene.sweep.pressures, own);
@@ -109,7 +109,7 @@ impl View<'_> {
         self.series(changes, own)
     }
 
-    /// Holding force over the object's radius [m], [N].
+    /// Holding force over the object's radius (m), (N).
     pub(super) fn over_radius(&self) -> Vec<[Real; 2]> {
         let own = self.scene.object_radius();
         let varied = cases::others(&self.scene.sweep.radii, own);

@@ -10,7 +10,7 @@ use crate::{
     experiments::findings::{Expected, Mean, Report},
 };
 
-/// Scatter below which the force is as good as constant [N].
+/// Scatter below which the force is as good as constant (N).
 const NOISE: Real = 1e-3;
 
 /// The force in one phase of the reference case.
@@ -23,7 +23,7 @@ fn last(view: &View<'_>, phase: Phase) -> Option<Real> {
     force(view, phase)?.last().copied()
 }
 
-/// The push where the penetration first reaches `share` of the whole [N].
+/// The push where the penetration first reaches `share` of the whole (N).
 fn push_at(view: &View<'_>, share: Real) -> Option<Real> {
     let record = view.record(&view.reference())?;
     let at = rows(record, 0, Phase::Insert, "penetration");
@@ -31,7 +31,7 @@ fn push_at(view: &View<'_>, share: Real) -> Option<Real> {
     force(view, Phase::Insert)?.get(reached).map(|it| -it)
 }
 
-/// The largest force while the object is still below the bag [N].
+/// The largest force while the object is still below the bag (N).
 fn before_contact(view: &View<'_>) -> Option<Real> {
     let record = view.record(&view.reference())?;
     let at = rows(record, 0, Phase::Insert, "penetration");

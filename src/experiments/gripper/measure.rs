@@ -42,19 +42,19 @@ pub(super) fn columns() -> Vec<Column> {
 /// When and where a tick was.
 #[derive(Clone, Copy)]
 pub(super) struct When {
-    /// Since the grip began [s].
+    /// Since the grip began (s).
     pub(super) time: Real,
     /// Number of the grip.
     pub(super) grip: usize,
     /// What was done.
     pub(super) phase: Phase,
-    /// How far the object's top is beyond the lowest point of the settled bag [m].
+    /// How far the object's top is beyond the lowest point of the settled bag (m).
     pub(super) penetration: Real,
-    /// Mean vertical force of the membrane on the object over the tick [N], upward positive.
+    /// Mean vertical force of the membrane on the object over the tick (N), upward positive.
     pub(super) force: Real,
 }
 
-/// Writes down a tick. Returns largest overlap over mean diameter, pressure in the grains [Pa], and
+/// Writes down a tick. Returns largest overlap over mean diameter, pressure in the grains (Pa), and
 /// the number of contacts with the object.
 pub(super) fn look(record: &mut Record, system: &System, when: When) -> (Real, Real, usize) {
     let System { model, state, scratch, .. } = system;
@@ -84,8 +84,8 @@ pub(super) fn look(record: &mut Record, system: &System, when: When) -> (Real, R
     (packing.overlap_max / (2.0 * model.radius_mean), pressure, packing.n_body_contacts)
 }
 
-/// Mean normal stress in the bag, p = Σ F_n l / 3 V over the branches l of all contacts [Pa], and
-/// the elastic energy of the normal contacts, Σ 2/5 F_n ξ [J].
+/// Mean normal stress in the bag, p = Σ F_n l / 3 V over the branches l of all contacts (Pa), and
+/// the elastic energy of the normal contacts, Σ 2/5 F_n ξ (J).
 fn contacts(system: &System, volume: Real) -> (Real, Real) {
     let System { state, scratch, .. } = system;
     let radii = &state.grains.radii;
@@ -110,11 +110,11 @@ fn contacts(system: &System, volume: Real) -> (Real, Real) {
 /// How the membrane lies on the object.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Grip {
-    /// Sum of all normal forces [N].
+    /// Sum of all normal forces (N).
     pub(super) normal_force: Real,
-    /// Polar angle from the top within which the membrane presses [rad].
+    /// Polar angle from the top within which the membrane presses (rad).
     pub(super) angle: Real,
-    /// Largest pull that Coulomb friction allows with these normal forces, Σ F_n (μ sin θ − cos θ) [N].
+    /// Largest pull that Coulomb friction allows with these normal forces, Σ F_n (μ sin θ − cos θ) (N).
     pub(super) coulomb_limit: Real,
 }
 
@@ -147,8 +147,8 @@ fn angle_from_top(arm: &Vec3) -> Real {
     arm.z.atan2(arm.x.hypot(arm.y)).mul_add(-1.0, FRAC_PI_2)
 }
 
-/// Force that holds a sphere of `radius` [m] on which `normal_force` [N] lies evenly from the top
-/// to the polar angle `angle` [rad], with friction `friction` fully used:
+/// Force that holds a sphere of `radius` (m) on which `normal_force` (N) lies evenly from the top
+/// to the polar angle `angle` (rad), with friction `friction` fully used:
 ///
 /// ```text
 /// F_h = 2 π R² p_n [ μ (θ/2 − sin 2θ / 4) − ½ sin² θ ],   p_n = Σ F_n / 2 π R² (1 − cos θ)
@@ -159,7 +159,7 @@ pub(super) fn pinch(normal_force: Real, angle: Real, friction: Real) -> Real {
 }
 
 /// Contact angle from which a sphere is held with `friction` under even pressure: where `pinch`
-/// changes its sign [rad].
+/// changes its sign (rad).
 pub(super) fn pinch_threshold(friction: Real) -> Real {
     let (mut low, mut high) = (1e-6, PI);
     for _ in 0..60 {

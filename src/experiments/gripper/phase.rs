@@ -45,26 +45,26 @@ impl Phase {
 /// A straight way from rest to rest.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Way {
-    /// Its length [m].
+    /// Its length (m).
     pub(super) length: Real,
-    /// The speed between the ramps [m/s].
+    /// The speed between the ramps (m/s).
     pub(super) speed: Real,
-    /// How long it takes to reach the speed, and to stop [s].
+    /// How long it takes to reach the speed, and to stop (s).
     pub(super) ramp: Real,
 }
 
 impl Way {
-    /// The ramp, shorter if the way is too short for it [s].
+    /// The ramp, shorter if the way is too short for it (s).
     fn ramp(&self) -> Real {
         self.ramp.min(self.length / self.speed)
     }
 
-    /// How long it takes [s].
+    /// How long it takes (s).
     pub(super) fn duration(&self) -> Real {
         self.length / self.speed + self.ramp()
     }
 
-    /// Distance from the beginning [m] and speed [m/s] at `time` [s].
+    /// Distance from the beginning (m) and speed (m/s) at `time` (s).
     pub(super) fn at(&self, time: Real) -> (Real, Real) {
         let (ramp, end) = (self.ramp(), self.duration());
         if end <= time {
@@ -83,8 +83,8 @@ impl Way {
     }
 }
 
-/// A set-point that goes from 0 to `goal` in `n_steps` equal steps, one each `step_time` [s], the
-/// first at once; its value at `time` [s].
+/// A set-point that goes from 0 to `goal` in `n_steps` equal steps, one each `step_time` (s), the
+/// first at once; its value at `time` (s).
 pub(super) fn staircase(goal: Real, n_steps: usize, step_time: Real, time: Real) -> Real {
     let n = crate::physics::measure::real(n_steps);
     goal * ((time / step_time).floor() + 1.0).clamp(1.0, n) / n

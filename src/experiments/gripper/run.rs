@@ -229,7 +229,7 @@ impl GripRun {
     }
 }
 
-/// Height of the lowest vertex [m].
+/// Height of the lowest vertex (m).
 fn lowest(state: &State) -> Real {
     state.membrane.positions.iter().map(|it| it.z).fold(Real::INFINITY, Real::min)
 }

@@ -29,25 +29,25 @@ pub(super) struct GripperScene {
 /// What is done in a grip.
 #[derive(Clone, Debug)]
 pub(super) struct Protocol {
-    /// Gap between the object and the settled bag at the start [m].
+    /// Gap between the object and the settled bag at the start (m).
     pub(super) clearance: Real,
-    /// Speed of the object on its way in [m/s].
+    /// Speed of the object on its way in (m/s).
     pub(super) insert_speed: Real,
-    /// How far its top goes beyond the lowest point of the settled bag [m].
+    /// How far its top goes beyond the lowest point of the settled bag (m).
     pub(super) penetration: Real,
-    /// Time to relax with the object inside [s].
+    /// Time to relax with the object inside (s).
     pub(super) relax_time: Real,
-    /// Gauge pressure of the grip [Pa].
+    /// Gauge pressure of the grip (Pa).
     pub(super) pressure: Real,
     /// Number of steps in which it is reached.
     pub(super) n_pressure_steps: usize,
-    /// Length of each of them [s].
+    /// Length of each of them (s).
     pub(super) step_time: Real,
-    /// Time at full vacuum before the object is pulled [s].
+    /// Time at full vacuum before the object is pulled (s).
     pub(super) hold_time: Real,
-    /// Speed of the object on its way out [m/s].
+    /// Speed of the object on its way out (m/s).
     pub(super) withdraw_speed: Real,
-    /// Time in which the object reaches a speed, and in which it stops [s].
+    /// Time in which the object reaches a speed, and in which it stops (s).
     pub(super) ramp_time: Real,
 }
 
@@ -60,7 +60,7 @@ pub(super) struct Accelerations {
     pub(super) withdraw_speed_factor: Real,
     /// Share of the largest force at which a grip ends; at 0 it ends when the object is free.
     pub(super) withdraw_until: Real,
-    /// Harder grains are filled in with this modulus and hardened in the closed bag [Pa].
+    /// Harder grains are filled in with this modulus and hardened in the closed bag (Pa).
     pub(super) filling_modulus: Option<Real>,
     /// True if friction, damping and slowness are varied from the relaxed state on, instead of
     /// from the settled bag.
@@ -72,13 +72,13 @@ pub(super) struct Accelerations {
 pub(super) struct Sweep {
     /// Fillings of each modulus; the seeds count on from the scene's.
     pub(super) n_fillings: usize,
-    /// Moduli of the grains [Pa].
+    /// Moduli of the grains (Pa).
     pub(super) moduli: Vec<Real>,
-    /// Gauge pressures of the grip [Pa].
+    /// Gauge pressures of the grip (Pa).
     pub(super) pressures: Vec<Real>,
     /// Friction of the object.
     pub(super) frictions: Vec<Real>,
-    /// Radii of the object [m].
+    /// Radii of the object (m).
     pub(super) radii: Vec<Real>,
     /// Numbers of grains.
     pub(super) counts: Vec<Real>,
@@ -131,7 +131,7 @@ impl GripperScene {
         }
     }
 
-    /// Radius of the object [m].
+    /// Radius of the object (m).
     pub(super) fn object_radius(&self) -> Real {
         match self.gripper.objects[0].shape {
             Shape::Sphere { radius } => radius,
@@ -139,7 +139,7 @@ impl GripperScene {
         }
     }
 
-    /// Makes the object a sphere of `radius` [m] far below the bag, where nothing touches it.
+    /// Makes the object a sphere of `radius` (m) far below the bag, where nothing touches it.
     pub(super) fn set_object_radius(&mut self, radius: Real) {
         let gripper = &mut self.gripper;
         gripper.objects[0].shape = Shape::Sphere { radius };

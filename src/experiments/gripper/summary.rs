@@ -7,7 +7,7 @@ use crate::{base::Real, experiments::record::Record, physics::measure::real};
 /// pushes the object out all the way.
 const NO_PULL_WITHIN: Real = 1.0 / 3.0;
 
-/// Way since the largest pull after which a lesser one is no mere tremble [m].
+/// Way since the largest pull after which a lesser one is no mere tremble (m).
 const PAST_AFTER: Real = 1e-3;
 
 /// True if the grip may end: so much of the largest pull is gone that it is past, or nothing was

@@ -8,7 +8,7 @@ use crate::base::Real;
 pub(super) struct Case {
     /// Its name.
     pub(super) name: String,
-    /// Young's modulus of the grains [Pa].
+    /// Young's modulus of the grains (Pa).
     pub(super) modulus: Real,
     /// How much heavier than real the grains are.
     pub(super) mass_factor: Real,

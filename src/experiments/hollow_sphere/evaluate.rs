@@ -75,7 +75,7 @@ fn groups<'a>(scene: &Scene, records: &'a [Record]) -> Vec<Group<'a>> {
 }
 
 impl Group<'_> {
-    /// Mean of the pressure on the object under full vacuum, and its standard deviation [Pa].
+    /// Mean of the pressure on the object under full vacuum, and its standard deviation (Pa).
     fn pressure(&self) -> (f64, f64) {
         self.of(|record| last(record, "object_pressure"))
     }

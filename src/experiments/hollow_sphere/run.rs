@@ -49,7 +49,7 @@ struct Progressed {
     /// Substeps in this stage.
     n_in_stage: usize,
     growth: grow::Progress,
-    /// Sum and number of the object's pressures in the present mean [Pa].
+    /// Sum and number of the object's pressures in the present mean (Pa).
     sum: Real,
     n_sum: usize,
     record: Record,
@@ -174,7 +174,7 @@ impl Shell {
         }
     }
 
-    /// Pressure of the membrane on the object: the sum of its radial forces over the surface [Pa].
+    /// Pressure of the membrane on the object: the sum of its radial forces over the surface (Pa).
     fn object_pressure(&self) -> Real {
         let radial: Real = (self.system.scratch.sample_forces.iter())
             .filter(|sample| sample.overlap > 0.0)
@@ -281,7 +281,7 @@ impl Run for Shell {
     }
 }
 
-/// Vacuum at a level [Pa].
+/// Vacuum at a level (Pa).
 fn gauge(protocol: &Protocol, level: Real) -> Real {
     protocol.vacuum * level / real(protocol.n_levels)
 }

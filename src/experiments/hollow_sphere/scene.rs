@@ -26,7 +26,7 @@ pub(super) struct Scene {
     pub(super) membrane: Membrane,
     /// Subdivision frequency of the inner membrane.
     pub(super) inner_frequency: usize,
-    /// How far the inner membrane's vertices are from the object [m].
+    /// How far the inner membrane's vertices are from the object (m).
     pub(super) inner_clearance: Real,
     pub(super) object: Object,
     pub(super) protocol: Protocol,
@@ -36,7 +36,7 @@ pub(super) struct Scene {
 /// The object in the middle.
 #[derive(Clone, Debug)]
 pub(super) struct Object {
-    /// Radius [m].
+    /// Radius (m).
     pub(super) radius: Real,
     pub(super) material: Material,
     /// With the membrane.
@@ -46,31 +46,31 @@ pub(super) struct Object {
 /// What is done.
 #[derive(Clone, Debug)]
 pub(super) struct Protocol {
-    /// [s]
+    /// (s)
     pub(super) close_time: Real,
-    /// [s]
+    /// (s)
     pub(super) rest_time: Real,
-    /// Last vacuum, positive [Pa].
+    /// Last vacuum, positive (Pa).
     pub(super) vacuum: Real,
     pub(super) n_levels: usize,
-    /// [s]
+    /// (s)
     pub(super) level_time: Real,
     /// Share of the critical step.
     pub(super) safety: Real,
-    /// Modulus above which grains are made heavier [Pa].
+    /// Modulus above which grains are made heavier (Pa).
     pub(super) mass_scaled_above: Real,
 }
 
 /// Which cases there are.
 #[derive(Clone, Debug)]
 pub(super) struct Sweep {
-    /// [Pa]
+    /// (Pa)
     pub(super) youngs_moduli: Vec<Real>,
-    /// [Pa]
+    /// (Pa)
     pub(super) frictionless: Vec<Real>,
-    /// [Pa]
+    /// (Pa)
     pub(super) unscaled: Vec<Real>,
-    /// [Pa]
+    /// (Pa)
     pub(super) stiff_contacts: Vec<Real>,
 }
 
@@ -149,7 +149,7 @@ impl Keys for Scene {
 }
 
 impl Protocol {
-    /// From the closing to the last level [s].
+    /// From the closing to the last level (s).
     pub(super) fn total_time(&self) -> Real {
         self.close_time + self.rest_time + real(self.n_levels) * self.level_time
     }

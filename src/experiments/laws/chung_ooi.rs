@@ -28,7 +28,7 @@ pub(super) struct ChungOoi;
 
 /// Restitutions of test 3.
 const RESTITUTIONS: [Real; 5] = [0.2, 0.4, 0.6, 0.8, 0.98];
-/// Test 4 with aluminium oxide: angle [deg] and e_t of a secant spring of 2/3 · 8 G* √(R* ξ), integrated
+/// Test 4 with aluminium oxide: angle (deg) and e_t of a secant spring of 2/3 · 8 G* √(R* ξ), integrated
 /// independently.
 const TEST_4: [[Real; 2]; 9] = [
     [5.0, 0.684],
@@ -43,11 +43,11 @@ const TEST_4: [[Real; 2]; 9] = [
 ];
 /// Tangential over μ times normal speed in test 5.
 const RATIOS: [Real; 9] = [0.5, 1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 20.0];
-/// Spins of test 6 [rad/s]. A rigid sphere slides throughout from 4.2 rad/s on; with a spring, which
+/// Spins of test 6 (rad/s). A rigid sphere slides throughout from 4.2 rad/s on; with a spring, which
 /// sticks for a moment, it takes somewhat more.
 const SPINS: [Real; 7] = [0.175, 1.0, 2.5, 4.5, 8.0, 15.0, 22.9];
 
-/// Spin from which on the closed form is expected to hold [rad/s].
+/// Spin from which on the closed form is expected to hold (rad/s).
 const SLIDES: Real = 6.0;
 
 /// Tests 1 to 8 of one pair of materials each; the points of the case.

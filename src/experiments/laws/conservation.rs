@@ -138,7 +138,7 @@ fn rigid_rotation(scene: &Scene, record: &mut Record) {
     record.set("U7.sheared_pair", (force[1] - force[0]).norm() / force[0].norm(), "1");
 }
 
-/// Tangential force at the start and after a whole turn [N], and the normal force.
+/// Tangential force at the start and after a whole turn (N), and the normal force.
 fn turn_pair(scene: &Scene, shear_over_overlap: Real) -> ([Vec3; 2], Real) {
     let grain = &scene.grain;
     let (radius, n_steps) = (grain.radius, 20_000);

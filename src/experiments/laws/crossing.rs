@@ -34,7 +34,7 @@ pub(super) struct Crossing;
 const N_HALVINGS: usize = 24;
 /// Change within a step from which on it is halved, over the force.
 const SUSPICIOUS: Real = 1e-4;
-/// Speed of a slide [m/s]: that of the sources' friction test.
+/// Speed of a slide (m/s): that of the sources' friction test.
 const SPEED: Real = 0.05;
 /// Rings of the patch.
 const RINGS: usize = 5;
@@ -109,7 +109,7 @@ struct Path {
     bench: Bench,
     from: Vec3,
     along: Vec3,
-    /// Height of the grain's centre at equal distances on the way [m].
+    /// Height of the grain's centre at equal distances on the way (m).
     heights: Vec<Real>,
     length: Real,
     edge: Real,
@@ -183,7 +183,7 @@ impl Path {
         patches.contacts[..patches.n].iter().map(|it| it.force).sum()
     }
 
-    /// Slides all the way in substeps of `dt` [s]; the largest change of force over the mean force.
+    /// Slides all the way in substeps of `dt` (s); the largest change of force over the mean force.
     fn slide(&mut self, speed: Real, dt: Real) -> Real {
         self.put(self.place(0.0));
         self.bench.system.model.substep = dt;

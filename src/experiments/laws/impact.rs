@@ -20,7 +20,7 @@ use crate::{
 
 pub(super) struct Impact;
 
-/// Young's modulus [Pa], radius [m], dissipation time [s], speed [m/s], restitution: Runge–Kutta
+/// Young's modulus (Pa), radius (m), dissipation time (s), speed (m/s), restitution: Runge–Kutta
 /// integration of the law for equal spheres, ν = 0.245, 2000 kg/m³.
 const TABLE: [[Real; 5]; 8] = [
     [1e8, 2.7e-3, 4.3e-6, 2.0, 0.875_83],

@@ -77,7 +77,7 @@ fn bag(scene: &Scene) -> MembraneMaterial {
     MembraneMaterial { bending_stiffness: 0.0, bending_damping: 0.0, spring_damping: 0.5, ..sheet }
 }
 
-/// Lets the free vertices come to rest under `pressure` [Pa] and the `pull` on each vertex [N].
+/// Lets the free vertices come to rest under `pressure` (Pa) and the `pull` on each vertex (N).
 ///
 /// Kinetic damping (Cundall 1976): all are stopped behind each peak of the kinetic energy, until what
 /// is left of the forces counts for nothing against the air's.
@@ -166,7 +166,7 @@ fn cylinder(scene: &Scene, record: &mut Record) {
     record.set("U13.cylinder_axial", axial / (unit / 6.0), "1");
 }
 
-/// The tube, and the height of its rows [m].
+/// The tube, and the height of its rows (m).
 fn tube(scene: &Scene, n_around: usize, n_rows: usize) -> (MembraneModel, Real) {
     let radius = scene.membrane.radius;
     let half_turn = std::f64::consts::PI / real(n_around);

@@ -20,7 +20,7 @@ use crate::{
 
 pub(super) struct Oblique;
 
-/// Angle [deg], e_t and R ω'/v of this law: integrated independently for ν = 0.245, μ = 0.25, A = 0,
+/// Angle (deg), e_t and R ω'/v of this law: integrated independently for ν = 0.245, μ = 0.25, A = 0,
 /// γ_t = 0.
 const TABLE: [[Real; 3]; 9] = [
     [5.0, 0.7474, 0.0550],

@@ -67,7 +67,7 @@ impl Law for Plate {
     }
 }
 
-/// D times the spacing of rows across a strip [N m²].
+/// D times the spacing of rows across a strip (N m²).
 fn edge_stiffness(scene: &Scene) -> Real {
     let row = 0.75_f64.sqrt() * scene.membrane.edge;
     0.25 * scene.membrane.sheet.bending_stiffness * row
@@ -163,7 +163,7 @@ impl Strip {
         self.scratch.forces.iter().zip(&self.is_free).map(held).collect()
     }
 
-    /// Heights under upward `load` [N], by conjugate gradients.
+    /// Heights under upward `load` (N), by conjugate gradients.
     fn deflection(&mut self, load: &[Real]) -> Vec<Real> {
         let dot = |a: &[Real], b: &[Real]| a.iter().zip(b).map(|(a, b)| a * b).sum::<Real>();
         let mut z = vec![0.0; load.len()];
@@ -199,7 +199,7 @@ impl Strip {
     }
 }
 
-/// E I [N m²] of a strip from its tips at two lengths: the cube root of F L³/(3 E I) grows by
+/// E I (N m²) of a strip from its tips at two lengths: the cube root of F L³/(3 E I) grows by
 /// (F/(3 E I))^(1/3) per length, wherever the strip is clamped.
 fn bending_stiffness(scene: &Scene, lengths: [usize; 2], n_wide: usize) -> Real {
     let [short, long] = lengths.map(|n| Strip::new(scene, n, n_wide).tip_under_unit_force().cbrt());

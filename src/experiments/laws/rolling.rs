@@ -48,7 +48,7 @@ impl Law for Rolling {
     }
 }
 
-/// One grain that lies on the plane in equilibrium, `tilt` [rad] about y.
+/// One grain that lies on the plane in equilibrium, `tilt` (rad) about y.
 fn resting(scene: &Scene, surface: Surface, tilt: Real) -> Bench {
     let grain = &scene.grain;
     let mut bench = Bench::on_plane(&grain.material, surface, scene.rolling.substep);

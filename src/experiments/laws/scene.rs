@@ -31,7 +31,7 @@ pub(super) struct Scene {
 /// The grain of the sources.
 #[derive(Clone, Debug)]
 pub(super) struct Grain {
-    /// Radius [m].
+    /// Radius (m).
     pub(super) radius: Real,
     pub(super) material: Material,
     pub(super) surface: law::Surface,
@@ -40,11 +40,11 @@ pub(super) struct Grain {
 /// Collisions over speed and modulus.
 #[derive(Clone, Debug)]
 pub(super) struct Restitution {
-    /// Young's moduli [Pa].
+    /// Young's moduli (Pa).
     pub(super) moduli: Vec3,
-    /// [m/s]
+    /// (m/s)
     pub(super) speed_min: Real,
-    /// [m/s]
+    /// (m/s)
     pub(super) speed_max: Real,
     pub(super) n_speeds: usize,
 }
@@ -52,33 +52,33 @@ pub(super) struct Restitution {
 /// The grain whose restitution is published.
 #[derive(Clone, Debug)]
 pub(super) struct BeamGrain {
-    /// [m]
+    /// (m)
     pub(super) radius: Real,
-    /// [Pa]
+    /// (Pa)
     pub(super) youngs_modulus: Real,
-    /// [s]
+    /// (s)
     pub(super) dissipation_time: Real,
-    /// [m/s]
+    /// (m/s)
     pub(super) speed: Real,
 }
 
 /// Oblique impact.
 #[derive(Clone, Debug)]
 pub(super) struct Oblique {
-    /// [Pa]
+    /// (Pa)
     pub(super) youngs_modulus: Real,
-    /// [m/s]
+    /// (m/s)
     pub(super) speed: Real,
-    /// [rad]
+    /// (rad)
     pub(super) angle_step: Real,
 }
 
 /// Sliding and rolling.
 #[derive(Clone, Debug)]
 pub(super) struct Rolling {
-    /// [m/s]
+    /// (m/s)
     pub(super) speed: Real,
-    /// [s]
+    /// (s)
     pub(super) substep: Real,
     pub(super) n_creep_steps: usize,
 }
@@ -87,9 +87,9 @@ pub(super) struct Rolling {
 #[derive(Clone, Debug)]
 pub(super) struct Membrane {
     pub(super) sheet: MembraneMaterial,
-    /// Edge of a flat patch [m].
+    /// Edge of a flat patch (m).
     pub(super) edge: Real,
-    /// Radius of a sphere [m].
+    /// Radius of a sphere (m).
     pub(super) radius: Real,
     pub(super) friction: Real,
 }
@@ -97,7 +97,7 @@ pub(super) struct Membrane {
 /// Spheres under pressure.
 #[derive(Clone, Debug)]
 pub(super) struct Laplace {
-    /// [Pa]
+    /// (Pa)
     pub(super) pressure_max: Real,
     pub(super) n_pressures: usize,
     pub(super) frequency: usize,
@@ -108,7 +108,7 @@ pub(super) struct Laplace {
 pub(super) struct Crossing {
     pub(super) overlap_over_radius: Real,
     pub(super) dent_over_edge: Real,
-    /// [m]
+    /// (m)
     pub(super) step: Real,
     pub(super) n_ways: usize,
 }

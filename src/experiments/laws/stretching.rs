@@ -23,7 +23,7 @@ pub(super) struct Stretching;
 
 /// Rings of the patches.
 const RINGS: [usize; 3] = [3, 6, 12];
-/// Directions of the pull [rad].
+/// Directions of the pull (rad).
 const DIRECTIONS: [Real; 5] = [0.0, 0.2, 0.5, 1.0, 1.4];
 const STRAIN: Real = 1e-6;
 
@@ -75,7 +75,7 @@ fn patch(scene: &Scene, rings: usize, record: &mut Record) {
     }
 }
 
-/// Mean stress [N/m] under a strain of this shape: the virial −Σ r ⊗ F / area.
+/// Mean stress (N/m) under a strain of this shape: the virial −Σ r ⊗ F / area.
 fn stress(model: &MembraneModel, shape: &Mat3) -> Mat3 {
     let mut state = MembraneState::at_rest(&model.mesh);
     for position in &mut state.positions {

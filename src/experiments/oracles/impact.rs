@@ -10,12 +10,12 @@
 //!
 //! slides throughout if tan θ ≥ 7/2 μ (1 + e):  e_t = 1 − μ (1 + e)/tan θ,  R ω' = 5/2 μ (1 + e) v_n
 //!
-//! ξ, T       overlap, duration of the impact                 [m], [s]
-//! E*, R*, m* effective modulus, radius, mass                 [Pa], [m], [kg]
-//! A          dissipation time                                [s]
-//! θ          angle of incidence from the normal              [rad]
+//! ξ, T       overlap, duration of the impact                 (m), (s)
+//! E*, R*, m* effective modulus, radius, mass                 (Pa), (m), (kg)
+//! A          dissipation time                                (s)
+//! θ          angle of incidence from the normal              (rad)
 //! e, e_t     restitution of the normal, of the tangential velocity of the centre
-//! ω'         spin after the impact of a body that had none   [rad/s]
+//! ω'         spin after the impact of a body that had none   (rad/s)
 //! ```
 //!
 //! Sources: Hertz (1881); Müller & Pöschel (2011) for the rational form with the end condition F ≥ 0
@@ -27,44 +27,44 @@ use crate::base::Real;
 /// A pair of bodies about to collide.
 #[derive(Clone, Copy, Debug)]
 pub struct Collision {
-    /// Effective Young's modulus E* [Pa].
+    /// Effective Young's modulus E* (Pa).
     pub modulus: Real,
-    /// Effective radius R* [m].
+    /// Effective radius R* (m).
     pub radius: Real,
-    /// Effective mass m* [kg].
+    /// Effective mass m* (kg).
     pub mass: Real,
-    /// Closing speed [m/s].
+    /// Closing speed (m/s).
     pub speed: Real,
 }
 
 impl Collision {
-    /// k of F = k ξ^(3/2) [N/m^(3/2)].
+    /// k of F = k ξ^(3/2) (N/m^(3/2)).
     pub fn stiffness(&self) -> Real {
         4.0 / 3.0 * self.modulus * self.radius.sqrt()
     }
 
-    /// Largest overlap without damping [m].
+    /// Largest overlap without damping (m).
     pub fn overlap_max(&self) -> Real {
         (1.25 * self.mass * self.speed * self.speed / self.stiffness()).powf(0.4)
     }
 
-    /// Largest force without damping [N].
+    /// Largest force without damping (N).
     pub fn force_max(&self) -> Real {
         self.stiffness() * self.overlap_max().powf(1.5)
     }
 
-    /// Duration without damping [s].
+    /// Duration without damping (s).
     pub fn duration(&self) -> Real {
         2.943_275 * self.overlap_max() / self.speed
     }
 
-    /// Coefficient of restitution for the dissipation time A [s].
+    /// Coefficient of restitution for the dissipation time A (s).
     pub fn restitution(&self, dissipation_time: Real) -> Real {
         let beta = 1.5 * dissipation_time * (self.stiffness() / self.mass).powf(0.4);
         restitution(beta.sqrt() * self.speed.powf(0.1))
     }
 
-    /// The dissipation time [s] that gives this restitution at this speed.
+    /// The dissipation time (s) that gives this restitution at this speed.
     pub fn dissipation_time_for(&self, restitution: Real) -> Real {
         let (mut less, mut more) = (0.0, 10.0 * self.duration());
         for _ in 0..100 {
@@ -97,7 +97,7 @@ pub struct Rebound {
     pub spin: Real,
 }
 
-/// Rebound at `angle` [rad] from the normal if the impact slides throughout; else `None`.
+/// Rebound at `angle` (rad) from the normal if the impact slides throughout; else `None`.
 pub fn sliding_rebound(friction: Real, normal_restitution: Real, angle: Real) -> Option<Rebound> {
     let impulse = friction * (1.0 + normal_restitution);
     (angle.tan() >= 3.5 * impulse).then(|| Rebound {

@@ -28,7 +28,7 @@ pub fn stiffness_ratio(poisson_ratio: Real) -> Real {
     2.0 * (1.0 - poisson_ratio) / (2.0 - poisson_ratio)
 }
 
-/// Rebound of a sphere without spin at `angle` [rad] from the normal; `ratio` is 4 G*/E*.
+/// Rebound of a sphere without spin at `angle` (rad) from the normal; `ratio` is 4 G*/E*.
 pub fn rebound(ratio: Real, friction: Real, angle: Real) -> Rebound {
     let approach = (16.0_f64 / 15.0).sqrt();
     let (mut z, mut falling) = (0.0, approach);

@@ -3,11 +3,11 @@
 //! ```text
 //! F_h = 2π R² p [ μ (θ_c/2 − sin 2θ_c /4) − sin² θ_c /2 ]
 //!
-//! F_h  force with which the sphere can be pulled, negative if it is pushed out   [N]
-//! θ_c  polar angle up to which the glove touches, from the pole it came from     [rad]
-//! R    radius of the sphere                                                      [m]
-//! p    normal pressure on it                                                     [Pa]
-//! μ    friction, everywhere at its limit                                         [-]
+//! F_h  force with which the sphere can be pulled, negative if it is pushed out   (N)
+//! θ_c  polar angle up to which the glove touches, from the pole it came from     (rad)
+//! R    radius of the sphere                                                      (m)
+//! p    normal pressure on it                                                     (Pa)
+//! μ    friction, everywhere at its limit                                         (-)
 //! ```
 //!
 //! It is the integral of (μ sin θ − cos θ) p over the sphere up to θ_c. Valid where the pressure is
@@ -17,8 +17,8 @@ use std::f64::consts::PI;
 
 use crate::base::Real;
 
-/// Force [N] with which a sphere of `radius` [m] can be pulled out of a glove that presses with
-/// `pressure` [Pa] up to the polar angle `contact_angle` [rad].
+/// Force (N) with which a sphere of `radius` (m) can be pulled out of a glove that presses with
+/// `pressure` (Pa) up to the polar angle `contact_angle` (rad).
 pub fn pinch_holding_force(
     friction: Real,
     contact_angle: Real,
@@ -28,7 +28,7 @@ pub fn pinch_holding_force(
     2.0 * PI * radius * radius * pressure * bracket(friction, contact_angle)
 }
 
-/// The contact angle [rad] from which on a glove holds.
+/// The contact angle (rad) from which on a glove holds.
 pub fn pinch_threshold(friction: Real) -> Real {
     let (mut fails, mut holds) = (1e-6, PI);
     for _ in 0..60 {

@@ -7,10 +7,10 @@
 //! as printed:                              q/p = (2−s³) (2ν−1) / (2 (1−2ν) + s³ (1+ν))
 //! elastic object, u(a) = −q a (1−2ν_o)/E_o
 //!
-//! q    pressure on the object: −σ_rr(a) less the p that the inner membrane carries   [Pa]
-//! p    vacuum between the membranes, positive                                       [Pa]
-//! a, b radii of object and gripper                                                  [m]
-//! E, ν modulus and Poisson's ratio of the shell; with index o, of the object        [Pa], [-]
+//! q    pressure on the object: −σ_rr(a) less the p that the inner membrane carries   (Pa)
+//! p    vacuum between the membranes, positive                                       (Pa)
+//! a, b radii of object and gripper                                                  (m)
+//! E, ν modulus and Poisson's ratio of the shell; with index o, of the object        (Pa), (-)
 //! ```
 //!
 //! Source: Lamé's hollow sphere; Götz (2024) eq. 33 prints (2 − s³) where the derivation gives

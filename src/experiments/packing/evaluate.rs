@@ -17,7 +17,7 @@ use crate::base::Real;
 
 /// Pressures from which the state without pressure is extrapolated.
 const N_LOWEST: usize = 3;
-/// The source's upper end of growth: a hundredth of its vacuum [Pa].
+/// The source's upper end of growth: a hundredth of its vacuum (Pa).
 const SOURCE_STOP: Real = 900.0;
 /// φ_J and z over friction after Silbert (2010), read from memory of its figures.
 pub(super) const SILBERT: [[Real; 3]; 5] =

@@ -42,9 +42,9 @@ const TABLE: &str = "moduli";
 /// A small strain that measures a modulus, and what was there before it.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) enum Probe {
-    /// Bulk modulus: pressure [Pa].
+    /// Bulk modulus: pressure (Pa).
     Bulk { strain: Real, pressure: Real },
-    /// Shear modulus: σ_xx − σ_yy [Pa].
+    /// Shear modulus: σ_xx − σ_yy (Pa).
     Shear { strain: Real, difference: Real },
 }
 

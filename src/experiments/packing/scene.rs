@@ -30,12 +30,12 @@ pub(super) struct Grains {
     pub(super) count: usize,
     /// Of smooth grains of one size.
     pub(super) count_smooth: usize,
-    /// [m]
+    /// (m)
     pub(super) radius_min: Real,
-    /// [m]
+    /// (m)
     pub(super) radius_max: Real,
     pub(super) material: Material,
-    /// [s]
+    /// (s)
     pub(super) dissipation_time: Real,
     pub(super) tangential_damping: Real,
 }
@@ -47,7 +47,7 @@ impl Grains {
         law::Surface { friction, dissipation_time, tangential_damping }
     }
 
-    /// Mean radius [m].
+    /// Mean radius (m).
     pub(super) fn radius_mean(&self) -> Real {
         0.5 * (self.radius_min + self.radius_max)
     }
@@ -56,25 +56,25 @@ impl Grains {
 /// How grains are made dense.
 #[derive(Clone, Debug)]
 pub(super) struct Compression {
-    /// [s]
+    /// (s)
     pub(super) substep: Real,
     /// Solid fraction at which they are scattered.
     pub(super) thin: Real,
-    /// Time in which velocities decay [s].
+    /// Time in which velocities decay (s).
     pub(super) drag_time: Real,
-    /// Where growth ends with friction [Pa].
+    /// Where growth ends with friction (Pa).
     pub(super) pressure_first: Real,
-    /// How far they are compressed with friction [Pa].
+    /// How far they are compressed with friction (Pa).
     pub(super) pressure_last: Real,
-    /// Where growth ends without friction [Pa].
+    /// Where growth ends without friction (Pa).
     pub(super) pressure_high: Real,
-    /// How far they are let go without friction [Pa].
+    /// How far they are let go without friction (Pa).
     pub(super) pressure_low: Real,
     /// Change of diameters in a step over the mean overlap.
     pub(super) share: Real,
-    /// Length of a step [s].
+    /// Length of a step (s).
     pub(super) ramp_time: Real,
-    /// Longest rest after a step [s].
+    /// Longest rest after a step (s).
     pub(super) rest_time_max: Real,
 }
 
@@ -82,7 +82,7 @@ pub(super) struct Compression {
 #[derive(Clone, Debug)]
 pub(super) struct Moduli {
     pub(super) friction: Real,
-    /// Where they are measured, rising [Pa].
+    /// Where they are measured, rising (Pa).
     pub(super) pressures: Vec<Real>,
     /// Strain of a measurement over the mean overlap of the contacts.
     pub(super) probe: Real,
@@ -93,18 +93,18 @@ pub(super) struct Moduli {
 pub(super) struct Confined {
     pub(super) count: usize,
     pub(super) friction: Real,
-    /// [Pa]
+    /// (Pa)
     pub(super) pressure: Real,
     pub(super) frequency: usize,
-    /// [m]
+    /// (m)
     pub(super) thickness: Real,
-    /// [Pa]
+    /// (Pa)
     pub(super) youngs_modulus: Real,
     pub(super) friction_membrane: Real,
     pub(super) spring_damping: Real,
-    /// [N m]
+    /// (N m)
     pub(super) bending_stiffness: Real,
-    /// [N s]
+    /// (N s)
     pub(super) bending_damping: Real,
 }
 

@@ -27,12 +27,12 @@ use crate::{
     physics::contact::law::PairLaw,
 };
 
-/// Overlap [m] of a Hertz contact of effective radius `radius` [m] under `load` [N].
+/// Overlap (m) of a Hertz contact of effective radius `radius` (m) under `load` (N).
 pub(super) fn overlap(law: &PairLaw, radius: Real, load: Real) -> Real {
     (0.75 * load / (law.modulus * radius.sqrt())).powf(2.0 / 3.0)
 }
 
-/// Slip [m] after which a contact under `load` [N] slides.
+/// Slip (m) after which a contact under `load` (N) slides.
 pub(super) fn stick_length(law: &PairLaw, radius: Real, load: Real) -> Real {
     let contact_radius = (radius * overlap(law, radius, load)).sqrt();
     law.friction * load / (2.0 / 3.0 * 8.0 * law.shear_modulus * contact_radius)
@@ -41,13 +41,13 @@ pub(super) fn stick_length(law: &PairLaw, radius: Real, load: Real) -> Real {
 /// Spheres that a ball is drawn over.
 pub(super) struct Bed<'a> {
     pub(super) law: PairLaw,
-    /// R + r [m].
+    /// R + r (m).
     pub(super) reach: Real,
-    /// R* [m].
+    /// R* (m).
     pub(super) shared_radius: Real,
-    /// Centres of the spheres, z = 0 [m].
+    /// Centres of the spheres, z = 0 (m).
     pub(super) centres: &'a [Vec3],
-    /// W [N].
+    /// W (N).
     pub(super) load: Real,
     /// d.
     pub(super) along: Vec3,
@@ -56,9 +56,9 @@ pub(super) struct Bed<'a> {
 /// Where the ball is, and what it feels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Rest {
-    /// z [m].
+    /// z (m).
     pub(super) height: Real,
-    /// F_R [N].
+    /// F_R (N).
     pub(super) friction: Real,
 }
 
@@ -68,7 +68,7 @@ const N_HALVINGS: usize = 60;
 const N_ROUNDS: usize = 4;
 
 impl Bed<'_> {
-    /// The ball at `n` places over `period` [m] from the origin.
+    /// The ball at `n` places over `period` (m) from the origin.
     pub(super) fn curve(&self, period: Real, n: usize) -> Vec<Rest> {
         let step = period / crate::physics::measure::real(n);
         let at = |k: usize| self.along * (step * crate::physics::measure::real(k));
@@ -113,12 +113,12 @@ impl Bed<'_> {
     }
 }
 
-/// How far a ball falls from the top of a sphere to a place at `distance` [m] from the next ones.
+/// How far a ball falls from the top of a sphere to a place at `distance` (m) from the next ones.
 pub(super) fn fall(reach: Real, distance: Real) -> Real {
     reach - (reach * reach - distance * distance).sqrt()
 }
 
-/// F_R / W of a ball alone on a hard sphere, at `behind` [m] after its top.
+/// F_R / W of a ball alone on a hard sphere, at `behind` (m) after its top.
 pub(super) fn friction_on_one(friction: Real, reach: Real, behind: Real) -> Real {
     (friction.atan() - (behind / reach).asin()).tan()
 }

@@ -90,7 +90,7 @@ impl<'a> Seen<'a> {
         Spread::of(values.into_iter()).mean
     }
 
-    /// Mean distance [m] between the places where the ball comes up to near its highest.
+    /// Mean distance (m) between the places where the ball comes up to near its highest.
     pub(super) fn ups(&self) -> Real {
         let heights = self.column("height");
         let distances = self.column("distance");

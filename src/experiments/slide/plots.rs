@@ -11,7 +11,7 @@ use crate::{
     experiments::findings::{Kind, Plot, Series},
 };
 
-/// Length of the ways that are drawn [m].
+/// Length of the ways that are drawn (m).
 const SHOWN: Real = 8e-3;
 
 /// Draws all pictures whose records are there.

@@ -33,18 +33,18 @@ pub(super) struct Case {
     pub(super) name: &'static str,
     pub(super) has_spheres: bool,
     pub(super) way: Way,
-    /// [N]
+    /// (N)
     pub(super) load: Real,
     /// Factor on the moduli of the contact.
     pub(super) stiffening: Real,
     pub(super) pull: Pull,
     /// True if only the edge of the sheet is held.
     pub(super) is_framed: bool,
-    /// Distance of neighbouring vertices [m].
+    /// Distance of neighbouring vertices (m).
     pub(super) edge: Real,
 }
 
-/// Gravity [m/s²].
+/// Gravity (m/s²).
 const GRAVITY: Real = 9.81;
 /// Substeps of a slice.
 const SLICE: u64 = 4000;
@@ -72,7 +72,7 @@ impl Case {
         law
     }
 
-    /// Load and weight [N].
+    /// Load and weight (N).
     pub(super) fn weight(&self, scene: &Scene) -> Real {
         self.load + mass(scene) * GRAVITY
     }
@@ -90,7 +90,7 @@ impl Case {
         }
     }
 
-    /// One period of the way [m].
+    /// One period of the way (m).
     pub(super) fn period(&self) -> Vec3 {
         self.way.period(self.edge)
     }
@@ -110,7 +110,7 @@ impl Case {
     }
 }
 
-/// Mass of the ball [kg].
+/// Mass of the ball (kg).
 fn mass(scene: &Scene) -> Real {
     4.0 / 3.0 * std::f64::consts::PI * scene.ball.radius.powi(3) * scene.ball.material.density
 }
@@ -119,7 +119,7 @@ fn mass(scene: &Scene) -> Real {
 pub(super) struct Ride {
     case: Case,
     system: System,
-    /// Where the ball starts [m].
+    /// Where the ball starts (m).
     start: Vec3,
     /// Of each vertex, the one that a period behind it; empty if the ball is not set back.
     behind: Vec<Option<u32>>,

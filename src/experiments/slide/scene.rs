@@ -17,12 +17,12 @@ use crate::{
 pub(super) struct Scene {
     pub(super) ball: Ball,
     pub(super) membrane: Membrane,
-    /// Force that presses the ball down besides its weight [N].
+    /// Force that presses the ball down besides its weight (N).
     pub(super) load: Real,
-    /// The same on a second run over triangles [N].
+    /// The same on a second run over triangles (N).
     pub(super) heavy_load: Real,
     pub(super) pull: Pull,
-    /// Distance between two records [m].
+    /// Distance between two records (m).
     pub(super) record_every: Real,
     pub(super) hard: Hard,
     pub(super) frame: Frame,
@@ -30,16 +30,16 @@ pub(super) struct Scene {
 
 #[derive(Clone, Debug)]
 pub(super) struct Ball {
-    /// [m]
+    /// (m)
     pub(super) radius: Real,
     pub(super) material: Material,
 }
 
 #[derive(Clone, Debug)]
 pub(super) struct Membrane {
-    /// Distance of neighbouring vertices [m].
+    /// Distance of neighbouring vertices (m).
     pub(super) edge: Real,
-    /// Radius of the vertex spheres [m].
+    /// Radius of the vertex spheres (m).
     pub(super) sphere_radius: Real,
     pub(super) material: Material,
     pub(super) surface: law::Surface,
@@ -49,11 +49,11 @@ pub(super) struct Membrane {
 /// How the ball is drawn.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pull {
-    /// [m/s]
+    /// (m/s)
     pub(super) speed: Real,
-    /// [m]
+    /// (m)
     pub(super) length: Real,
-    /// [s]
+    /// (s)
     pub(super) substep: Real,
 }
 
@@ -68,15 +68,15 @@ pub(super) struct Hard {
 /// A sheet whose edge is held.
 #[derive(Clone, Debug)]
 pub(super) struct Frame {
-    /// Along and across [m].
+    /// Along and across (m).
     pub(super) size: Real,
     /// Strain of the sheet at rest.
     pub(super) stretch: Real,
     /// True if it is tried with triangles of half the size too.
     pub(super) is_refined: bool,
-    /// Time before the ball is drawn [s].
+    /// Time before the ball is drawn (s).
     pub(super) settle: Real,
-    /// [m]
+    /// (m)
     pub(super) length: Real,
 }
 

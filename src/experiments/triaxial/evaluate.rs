@@ -21,7 +21,7 @@ const KINDS: [Kind; 2] = [Kind::Triangles, Kind::Spheres];
 const RISE: f64 = 0.005;
 /// Points over which a curve is smoothed before its largest value is taken.
 const SMOOTH: usize = 5;
-/// Time of the laboratory of table 4 [s].
+/// Time of the laboratory of table 4 (s).
 const TABLE_4_TIME: f64 = 0.02;
 /// Table 4: minutes that the source took for it with triangles and with spheres, sizes 1 and 2.
 const TABLE_4: [[f64; 2]; 2] = [[5.0, 32.0], [17.0, 96.0]];

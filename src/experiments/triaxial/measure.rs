@@ -21,7 +21,7 @@ use crate::{
     },
 };
 
-/// Forces of the grains on the lower and the upper plate, outward along the axis [N].
+/// Forces of the grains on the lower and the upper plate, outward along the axis (N).
 pub(super) fn plate_forces(system: &System) -> [Real; 2] {
     let n_grains = system.state.grains.len();
     let on = |wall: u32, sign: Real| {
@@ -33,18 +33,18 @@ pub(super) fn plate_forces(system: &System) -> [Real; 2] {
     [on(BOTTOM, 1.0), on(TOP, -1.0)]
 }
 
-/// Distance of the plates [m].
+/// Distance of the plates (m).
 pub(super) fn height(system: &System) -> Real {
     let z = |wall: u32| system.state.walls[wall as usize].pose.translation.z;
     z(TOP) - z(BOTTOM)
 }
 
-/// Volume inside membrane and plates [m³].
+/// Volume inside membrane and plates (m³).
 pub(super) fn volume(system: &System) -> Real {
     pressure::volume(&system.model.membrane.mesh, &system.state.membrane.positions)
 }
 
-/// Mean distance of the membrane from the axis in the middle half of the height and at the ends [m].
+/// Mean distance of the membrane from the axis in the middle half of the height and at the ends (m).
 pub(super) fn radii(system: &System) -> [Real; 2] {
     let mesh = &system.model.membrane.mesh;
     let top = mesh.positions.iter().map(|p| p.z).fold(0.0, Real::max);
@@ -61,7 +61,7 @@ pub(super) fn radii(system: &System) -> [Real; 2] {
     [mean(&|z| z <= 0.25), mean(&|z| z >= 0.75)]
 }
 
-/// What the springs of the membrane add to the confining pressure in the middle half [Pa]; below zero
+/// What the springs of the membrane add to the confining pressure in the middle half (Pa); below zero
 /// where the grains have drawn together. It is their lateral virial over twice the volume,
 /// Σ F (Δx² + Δy²)/L / 2V, from the means over edges around and across, of which there are twice as many.
 pub(super) fn hoop_pressure(system: &System) -> Real {
@@ -88,7 +88,7 @@ pub(super) fn hoop_pressure(system: &System) -> Real {
     n_vertices * (around + 2.0 * across) / (2.0 * volume)
 }
 
-/// Kinetic energy of the grains [J]. The membrane's is left out: here and there a vertex of some
+/// Kinetic energy of the grains (J). The membrane's is left out: here and there a vertex of some
 /// milligrams swings for ever between two patches, without anything else moving.
 pub(super) fn grain_energy(system: &System) -> Real {
     let grains = &system.state.grains;
@@ -103,9 +103,9 @@ pub(super) fn grain_energy(system: &System) -> Real {
 /// What the contacts carry.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Carried {
-    /// Axial and mean lateral stress of the grains in the middle half of the height [Pa].
+    /// Axial and mean lateral stress of the grains in the middle half of the height (Pa).
     pub(super) stress: [Real; 2],
-    /// Elastic energy of contacts between grains and with plates and membrane [J].
+    /// Elastic energy of contacts between grains and with plates and membrane (J).
     pub(super) elastic_energy: Real,
     /// Largest overlap of two grains over their mean diameter.
     pub(super) overlap_over_diameter: Real,
@@ -145,7 +145,7 @@ pub(super) fn carried(system: &System) -> Carried {
     }
 }
 
-/// Mean cross-section inside the membrane in the middle half of the height [m²].
+/// Mean cross-section inside the membrane in the middle half of the height (m²).
 fn middle_section(system: &System) -> Real {
     let mesh = &system.model.membrane.mesh;
     let top = mesh.positions.iter().map(|p| p.z).fold(0.0, Real::max);
@@ -163,12 +163,12 @@ fn middle_section(system: &System) -> Real {
 
 #[derive(Default)]
 struct Sum {
-    /// Height of the specimen's middle, and what above and below it belongs to its middle half [m].
+    /// Height of the specimen's middle, and what above and below it belongs to its middle half (m).
     centre: Real,
     reach: Real,
     axial: Real,
     lateral: Real,
-    /// Σ F ξ [J]; of a Hertz contact 2/5 of it are stored.
+    /// Σ F ξ (J); of a Hertz contact 2/5 of it are stored.
     normal_overlap: Real,
     overlap_over_diameter: Real,
     force: Real,
@@ -176,7 +176,7 @@ struct Sum {
 }
 
 impl Sum {
-    /// Adds a contact: its force on what is at `end` [m], its branch up to there, and F ξ.
+    /// Adds a contact: its force on what is at `end` (m), its branch up to there, and F ξ.
     fn add(&mut self, force: &Vec3, end: &Vec3, branch: &Vec3, normal_overlap: Real) {
         let share = self.share(end.z - branch.z, end.z);
         self.axial += share * force.z * branch.z;

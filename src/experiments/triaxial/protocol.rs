@@ -69,14 +69,14 @@ pub(super) struct Course {
     pub(super) stage: Stage,
     /// Substeps in this stage.
     pub(super) n_in_stage: u64,
-    /// Time in this stage [s].
+    /// Time in this stage (s).
     pub(super) time_in_stage: Real,
-    /// The present substep [s].
+    /// The present substep (s).
     pub(super) substep: Real,
     growth: Grow,
-    /// Cross-section when it was last measured [m²].
+    /// Cross-section when it was last measured (m²).
     area: Real,
-    /// Forces on the plates in the last substep [N].
+    /// Forces on the plates in the last substep (N).
     plate_forces: [Real; 2],
     /// What is recorded.
     pub(super) logbook: Logbook,
@@ -88,14 +88,14 @@ pub(super) struct Test {
     pub(super) system: System,
     growth: Growth,
     pub(super) course: Course,
-    /// Relative speed of the plates while shearing [m/s].
+    /// Relative speed of the plates while shearing (m/s).
     speed: Real,
     /// Strain at which shearing ends.
     strain: Real,
 }
 
 impl Test {
-    /// Before the grains grow; shearing goes at `speed` [m/s] to a strain in a number of points.
+    /// Before the grains grow; shearing goes at `speed` (m/s) to a strain in a number of points.
     pub(super) fn new(
         recipe: Recipe,
         mut system: System,
@@ -198,13 +198,13 @@ impl Test {
         (done / (0..times.len()).map(work).sum::<Real>()).min(0.999)
     }
 
-    /// About the time growth takes [s].
+    /// About the time growth takes (s).
     fn growth_time(&self) -> Real {
         let rate = growth_recipe(&self.recipe, &self.system).rate;
         self.recipe.first_scale.recip().ln() / rate + 1.5 / rate
     }
 
-    /// Time of shearing [s].
+    /// Time of shearing (s).
     fn shear_time(&self) -> Real {
         let way = self.recipe.size().height * (1.0 - (-self.strain).exp());
         way / self.speed + self.recipe.setup.shear.start_time
@@ -309,13 +309,13 @@ impl Test {
         keep_between_plates(&mut self.system);
     }
 
-    /// Mean pressure on both plates in the last substep [Pa].
+    /// Mean pressure on both plates in the last substep (Pa).
     fn plate_pressure(&self) -> Real {
         let [bottom, top] = self.course.plate_forces;
         0.5 * (bottom + top) / self.course.area
     }
 
-    /// Velocities of the lower and the upper plate along z [m/s].
+    /// Velocities of the lower and the upper plate along z (m/s).
     fn drive(&mut self, [bottom, top]: [Real; 2]) {
         for (wall, speed) in [(BOTTOM, bottom), (TOP, top)] {
             let linear = Vec3::new(0.0, 0.0, speed);
@@ -324,7 +324,7 @@ impl Test {
         }
     }
 
-    /// Lets all speeds decay at `rate` [1/s] for a substep.
+    /// Lets all speeds decay at `rate` (1/s) for a substep.
     fn damp(&mut self, rate: Real) {
         let left = 1.0 - rate * self.course.substep;
         let state = &mut self.system.state;

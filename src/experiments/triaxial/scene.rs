@@ -65,7 +65,7 @@ pub(super) struct Membrane {
 }
 
 impl Membrane {
-    /// What a mesh is made of whose hinges have a damping [N s].
+    /// What a mesh is made of whose hinges have a damping (N s).
     pub(super) fn sheet(&self, bending_damping: Real) -> MembraneMaterial {
         MembraneMaterial {
             thickness: self.thickness,
@@ -87,7 +87,7 @@ pub(super) struct Size {
     pub(super) triangles: Net,
     /// Mesh and grains of the model with spheres on the vertices.
     pub(super) spheres: Net,
-    /// Radius of those spheres [m].
+    /// Radius of those spheres (m).
     pub(super) sphere_radius: Real,
 }
 

@@ -42,12 +42,12 @@ pub(super) struct Logbook {
     pub(super) validity: Validity,
     /// Distance of two points.
     strain_step: Real,
-    /// Confining pressure [Pa].
+    /// Confining pressure (Pa).
     pressure: Real,
-    /// Distance of the plates and volume at the begin of shearing [m], [m³].
+    /// Distance of the plates and volume at the begin of shearing (m), (m³).
     height_0: Real,
     volume_0: Real,
-    /// Sums of the forces on both plates since the last point [N].
+    /// Sums of the forces on both plates since the last point (N).
     sums: [Real; 2],
     n_in_sums: u64,
 }
@@ -79,7 +79,7 @@ impl Logbook {
         *self.n_substeps.entry(stage.to_owned()).or_default() += n;
     }
 
-    /// The isotropic state: under `pressure` [Pa] the plates bear `forces` [N].
+    /// The isotropic state: under `pressure` (Pa) the plates bear `forces` (N).
     pub(super) fn start(&mut self, system: &System, pressure: Real, forces: [Real; 2]) {
         self.pressure = pressure;
         self.height_0 = measure::height(system);
@@ -91,8 +91,8 @@ impl Logbook {
         self.point(system);
     }
 
-    /// Looks at the specimen after a substep of shearing at a relative speed [m/s] to a last strain,
-    /// with grains of a density [kg/m³]; true at the last point.
+    /// Looks at the specimen after a substep of shearing at a relative speed (m/s) to a last strain,
+    /// with grains of a density (kg/m³); true at the last point.
     pub(super) fn look(
         &mut self,
         system: &System,

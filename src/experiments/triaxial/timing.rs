@@ -26,11 +26,11 @@ const READY: &str = "growing";
 pub(super) struct Timed {
     name: String,
     tests: [Test; 2],
-    /// Time each has gone on since its grains were grown [s].
+    /// Time each has gone on since its grains were grown (s).
     times: [Real; 2],
     /// Substeps in that time.
     n_substeps: [u64; 2],
-    /// Time each is to go on [s].
+    /// Time each is to go on (s).
     last: Real,
 }
 

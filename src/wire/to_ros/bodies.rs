@@ -29,9 +29,9 @@ pub(super) fn static_frames(time_ns: u64) -> TFMessage {
 /// The gripper as joints that a robot's tools understand.
 ///
 /// `vacuum`: position 0 is vented, 1 the strongest vacuum of the pump; effort is the gauge
-/// pressure [Pa]. `flange_x` … `flange_yaw`: the flange's pose in the world [m, rad] as three
+/// pressure (Pa). `flange_x` … `flange_yaw`: the flange's pose in the world (m, rad) as three
 /// sliding and three turning joints (turns about the fixed axes x, y, z); effort is what these
-/// joints hold against the gripper [N, N m].
+/// joints hold against the gripper (N, N m).
 pub(super) fn joint_states(snapshot: &Snapshot, chamber: &Chamber) -> JointState {
     let pose = &snapshot.flange.pose;
     let (roll, pitch, yaw) = pose.rotation.euler_angles();
@@ -65,7 +65,7 @@ fn share(gauge: Real, chamber: &Chamber) -> Real {
     if chamber.gauge_min < 0.0 { gauge / chamber.gauge_min } else { 0.0 }
 }
 
-/// Rate of `share` [1/s], by the law that the pressure follows: first-order lag, limited rate.
+/// Rate of `share` (1/s), by the law that the pressure follows: first-order lag, limited rate.
 fn vacuum_rate(air: &ChamberSnapshot, chamber: &Chamber) -> Real {
     let missing = air.gauge_setpoint - air.gauge;
     let rate = if 0.0 < chamber.lag { missing / chamber.lag } else { 0.0 };

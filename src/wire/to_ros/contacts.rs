@@ -14,7 +14,7 @@ use crate::{
 
 /// Most arrows at a time; the strongest contacts get them.
 const ARROWS_MAX: usize = 200;
-/// Length of an arrow per force [m/N].
+/// Length of an arrow per force (m/N).
 const ARROW_LENGTH: f64 = 0.02;
 
 /// All contacts.

@@ -33,9 +33,9 @@ pub const FLANGE: &str = "gripper_flange";
 /// The frame of the membrane at rest; it lies in the flange's.
 pub const MEMBRANE: &str = "membrane";
 
-/// Largest rate of the membrane's surface, which is there to be looked at [Hz].
+/// Largest rate of the membrane's surface, which is there to be looked at (Hz).
 const MARKER_RATE_MAX: f64 = 10.0;
-/// Rate of `/diagnostics` [Hz].
+/// Rate of `/diagnostics` (Hz).
 const DIAGNOSTICS_RATE: f64 = 1.0;
 
 /// Makes messages of snapshots.
@@ -51,7 +51,7 @@ pub struct Encoder {
 }
 
 impl Encoder {
-    /// For a scene and its membrane: vertex indices of each triangle, and the vertices [m] of the
+    /// For a scene and its membrane: vertex indices of each triangle, and the vertices (m) of the
     /// shape at rest in the flange's axes.
     pub fn new(scene: &Scene, triangles: &[[u32; 3]], vertices: &[Vec3]) -> Self {
         let topics = topics(scene);
@@ -104,7 +104,7 @@ impl Encoder {
         &self.topics
     }
 
-    /// Length of a tick [ns].
+    /// Length of a tick (ns).
     pub fn tick_ns(&self) -> u64 {
         self.scene.time.tick_ns
     }
