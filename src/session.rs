@@ -396,7 +396,7 @@ impl Session {
         self.tick
     }
 
-    /// Simulated time [ns].
+    /// Simulated time (ns).
     pub fn time_ns(&self) -> u64 {
         self.tick.time_ns(self.scene.time.tick_ns)
     }
@@ -455,7 +455,7 @@ impl Session {
         &self.processor
     }
 
-    /// Sum of normal force magnitudes on each grain at the end of the last tick [N].
+    /// Sum of normal force magnitudes on each grain at the end of the last tick (N).
     pub fn normal_forces(&self) -> &[f64] {
         &self.normal_forces
     }

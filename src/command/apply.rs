@@ -107,7 +107,7 @@ impl CommandProcessor {
         self.counts
     }
 
-    /// Set-point of the gauge pressure, within the pump's range [Pa].
+    /// Set-point of the gauge pressure, within the pump's range (Pa).
     pub fn gauge_setpoint(&self) -> Real {
         self.gauge_setpoint
     }

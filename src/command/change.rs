@@ -85,11 +85,11 @@ impl fmt::Display for Change {
 /// A property that may change while time goes on. New ones come last: recordings hold their places.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum TunableParameter {
-    /// Time constant of pump and line [s].
+    /// Time constant of pump and line (s).
     ChamberLag,
-    /// Largest rate of the pressure [Pa/s].
+    /// Largest rate of the pressure (Pa/s).
     ChamberRateMax,
-    /// Dissipation time of contacts between grains [s].
+    /// Dissipation time of contacts between grains (s).
     GrainDissipationTime,
     /// Friction between grains.
     GrainFriction,

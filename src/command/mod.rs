@@ -13,7 +13,7 @@ mod saved_setpoints; // setpoints as bytes
 pub enum Command {
     /// Set-point of the chamber's gauge pressure [Pa]: negative is vacuum, positive blows off.
     Vacuum {
-        /// Gauge pressure [Pa].
+        /// Gauge pressure (Pa).
         gauge_pa: f64,
     },
     /// Pose that the flange shall move to.
@@ -28,7 +28,7 @@ pub enum Command {
     /// Set-points of the gripper's joints, as `~/joint_states` names them; joints that are not named
     /// keep theirs.
     Joints {
-        /// Stamp of the message [ns].
+        /// Stamp of the message (ns).
         stamp_ns: i64,
         /// Names of the joints.
         names: Vec<String>,
@@ -47,7 +47,7 @@ pub const JOINTS: [&str; 7] =
     ["vacuum", "flange_x", "flange_y", "flange_z", "flange_roll", "flange_pitch", "flange_yaw"];
 
 impl Command {
-    /// Stamp of a command that has one [ns].
+    /// Stamp of a command that has one (ns).
     pub fn stamp_ns(&self) -> Option<i64> {
         match self {
             Self::FlangePose(pose) | Self::ObjectPose { pose, .. } => Some(pose.stamp_ns),
@@ -62,9 +62,9 @@ impl Command {
 pub struct PoseCommand {
     /// Frame the pose is given in; empty means `world`.
     pub frame_id: String,
-    /// Stamp of the message [ns]; recorded, not used.
+    /// Stamp of the message (ns); recorded, not used.
     pub stamp_ns: i64,
-    /// Position x, y, z [m].
+    /// Position x, y, z (m).
     pub position: [f64; 3],
     /// Orientation x, y, z, w.
     pub orientation: [f64; 4],
@@ -86,16 +86,16 @@ pub enum Outcome {
 pub enum Limit {
     /// The pressure was beyond the pump's range and was clamped.
     PumpRange {
-        /// Asked for [Pa].
+        /// Asked for (Pa).
         asked_pa: f64,
-        /// Set instead [Pa].
+        /// Set instead (Pa).
         set_pa: f64,
     },
     /// The pose is further away than one command period allows; it is approached at the limits.
     PoseJump {
-        /// Distance to the pose commanded before [m].
+        /// Distance to the pose commanded before (m).
         distance_m: f64,
-        /// Distance that the velocity limit allows in the time since then [m].
+        /// Distance that the velocity limit allows in the time since then (m).
         allowed_m: f64,
     },
 }

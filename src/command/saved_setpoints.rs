@@ -11,7 +11,7 @@ use crate::{
     cosim::saved_state::{SavedStateError, pose, pose_row, same_counts},
 };
 
-/// A pose and when it was commanded [ns].
+/// A pose and when it was commanded (ns).
 type SavedTarget = ([Real; 7], u64);
 
 /// All of a desk that evolves.

@@ -22,17 +22,17 @@ pub(super) struct MockPlant {
     gauge: Real,
     gauge_setpoint: Real,
     force: Real,
-    /// Height of the flange over the object while it is gripped [m].
+    /// Height of the flange over the object while it is gripped (m).
     grip: Option<Real>,
-    /// Speed at which a gripped object slips down [m/s].
+    /// Speed at which a gripped object slips down (m/s).
     pub(super) slip: Real,
-    /// Vacuum below which the grip holds [Pa].
+    /// Vacuum below which the grip holds (Pa).
     pub(super) gauge_holding: Real,
-    /// Greatest height that the object had over its place [m].
+    /// Greatest height that the object had over its place (m).
     pub(super) lifted_max: Real,
-    /// Greatest change of the flange's set-point in a tick [m].
+    /// Greatest change of the flange's set-point in a tick (m).
     pub(super) step_max: Real,
-    /// Greatest push force [N].
+    /// Greatest push force (N).
     pub(super) push_max: Real,
 }
 
@@ -64,7 +64,7 @@ impl MockPlant {
         }
     }
 
-    /// Height of the object over its place [m].
+    /// Height of the object over its place (m).
     pub(super) fn lifted(&self) -> Real {
         self.object.z - OBJECT_HEIGHT / 2.0
     }

@@ -2,17 +2,17 @@
 
 use crate::base::{Real, Vec3};
 
-/// Time in which the set-point reaches its full speed [s].
+/// Time in which the set-point reaches its full speed (s).
 const RAMP: Real = 0.1;
-/// Distance at which the goal counts as reached [m].
+/// Distance at which the goal counts as reached (m).
 const ARRIVED: Real = 1e-6;
 
 /// A moving set-point.
 #[derive(Clone, Debug)]
 pub(super) struct Path {
-    /// Where it is [m].
+    /// Where it is (m).
     pub(super) position: Vec3,
-    /// How fast it moves [m/s].
+    /// How fast it moves (m/s).
     speed: Real,
 }
 
@@ -27,7 +27,7 @@ impl Path {
         self.speed = 0.0;
     }
 
-    /// Walks towards `goal` for `dt` [s], at most at `speed_max` [m/s]. True on arrival.
+    /// Walks towards `goal` for `dt` (s), at most at `speed_max` (m/s). True on arrival.
     pub(super) fn walk(&mut self, goal: &Vec3, speed_max: Real, dt: Real) -> bool {
         let way = goal - self.position;
         let distance = way.norm();

@@ -11,29 +11,29 @@ use crate::{
     scene,
 };
 
-/// Time between two pose commands [s].
+/// Time between two pose commands (s).
 const PERIOD: Real = 0.01;
 /// Pose commands between two repetitions of the pressure command.
 const PRESSURE_EVERY: u64 = 10;
-/// How long to wait for the pressure before giving up [s].
+/// How long to wait for the pressure before giving up (s).
 const TIMEOUT: Real = 5.0;
-/// How much lower than it stood the object may be put, searching for the table [m].
+/// How much lower than it stood the object may be put, searching for the table (m).
 const SEARCH_DEPTH: Real = 0.003;
-/// Speed of that search [m/s].
+/// Speed of that search (m/s).
 const SEARCH_SPEED: Real = 0.025;
-/// Height over the table in which lowering is slow [m].
+/// Height over the table in which lowering is slow (m).
 const SLOW_HEIGHT: Real = 0.005;
 
 /// What the controller sees.
 #[derive(Clone, Copy, Debug)]
 pub struct Observation {
-    /// Simulated time [s].
+    /// Simulated time (s).
     pub time_s: Real,
     /// Pose of the flange.
     pub flange_pose: Pose,
-    /// Force of the object on the gripper, flange axes [N].
+    /// Force of the object on the gripper, flange axes (N).
     pub contact_force: Vec3,
-    /// Gauge pressure in the chamber [Pa].
+    /// Gauge pressure in the chamber (Pa).
     pub gauge_pa: Real,
     /// Pose of the object.
     pub object_pose: Pose,
@@ -90,9 +90,9 @@ impl Phase {
 pub struct PickAndLift {
     parameters: scene::PickAndLift,
     phase: Phase,
-    /// When the phase began [s].
+    /// When the phase began (s).
     since: Real,
-    /// Where the phase leads the flange [m].
+    /// Where the phase leads the flange (m).
     goal: Vec3,
     /// What has been seen and commanded; `None` before the first observation.
     run: Option<Run>,
@@ -101,15 +101,15 @@ pub struct PickAndLift {
 #[derive(Clone, Debug)]
 struct Run {
     path: Path,
-    /// Flange height at touch [m].
+    /// Flange height at touch (m).
     touch_height: Real,
-    /// Height of the object before it was lifted [m].
+    /// Height of the object before it was lifted (m).
     rest_height: Real,
-    /// When the pressure was reached [s].
+    /// When the pressure was reached (s).
     gripped_at: Option<Real>,
-    /// Gauge pressure asked for [Pa].
+    /// Gauge pressure asked for (Pa).
     pressure: Real,
-    /// When the last pose was commanded [s].
+    /// When the last pose was commanded (s).
     commanded_at: Real,
     n_commands: u64,
 }

@@ -20,7 +20,7 @@ use std::f64::consts::PI;
 
 use crate::base::{Real, Vec3};
 
-/// Volume [m³] of the sphere around `center` with `radius` in the box from `low` to `high` [m].
+/// Volume (m³) of the sphere around `center` with `radius` in the box from `low` to `high` (m).
 pub fn sphere_in_box(center: &Vec3, radius: Real, low: &Vec3, high: &Vec3) -> Real {
     let (from, to) = (low - center, high - center);
     if (from.max() <= -radius) && (radius <= to.min()) {

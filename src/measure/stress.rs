@@ -65,7 +65,7 @@ pub fn branches(model: &Model, state: &State, scratch: &Scratch) -> Vec<Branch> 
     branches
 }
 
-/// Mean stress [Pa] of all contact forces of the last substep in `volume` [m³].
+/// Mean stress (Pa) of all contact forces of the last substep in `volume` (m³).
 pub fn contact_stress(model: &Model, state: &State, scratch: &Scratch, volume: Real) -> Mat3 {
     mean_stress(&branches(model, state, scratch), volume)
 }

@@ -34,22 +34,22 @@ pub fn solid_fraction(positions: &[Vec3], radii: &[Real], low: &Vec3, high: &Vec
     solid / (high - low).product()
 }
 
-/// Distances are counted in bins of `width` [m], `n_bins` of them.
+/// Distances are counted in bins of `width` (m), `n_bins` of them.
 #[derive(Clone, Copy, Debug)]
 pub struct Bins {
-    /// Width of a bin [m].
+    /// Width of a bin (m).
     pub width: Real,
     /// How many there are.
     pub n_bins: usize,
 }
 
 impl Bins {
-    /// Middle of bin `k` [m].
+    /// Middle of bin `k` (m).
     pub fn middle(&self, k: usize) -> Real {
         (real(k) + 0.5) * self.width
     }
 
-    /// Largest distance that is counted [m].
+    /// Largest distance that is counted (m).
     pub fn reach(&self) -> Real {
         real(self.n_bins) * self.width
     }

@@ -46,7 +46,7 @@ pub(super) struct Connections<'a> {
     pub(super) encoder: &'a Arc<Encoder>,
     /// Where faults are said.
     pub(super) progress: &'a Progress,
-    /// Length of a substep [s].
+    /// Length of a substep (s).
     #[cfg_attr(not(feature = "bag"), expect(dead_code, reason = "only recordings tell it"))]
     pub(super) substep_s: f64,
     /// What the recording says of the run besides what it always says.
@@ -61,7 +61,7 @@ pub struct ExternalInputs {
     pub sources: Vec<Box<dyn Source>>,
     /// Those who ask.
     pub front: Option<SimulationServer>,
-    /// Another simulator's time [ns], if it is followed.
+    /// Another simulator's time (ns), if it is followed.
     pub clock: Option<Arc<AtomicU64>>,
 }
 

@@ -31,7 +31,7 @@ use crate::{
 pub struct Options {
     /// Solver threads; they do not change the result.
     pub n_threads: usize,
-    /// Simulated time after which the run ends [s].
+    /// Simulated time after which the run ends (s).
     pub duration: Option<f64>,
     /// The file that the scene is from.
     pub scene_file: PathBuf,
@@ -180,7 +180,7 @@ struct Known {
     start_time_s: f64,
 }
 
-/// The earlier of the scene's and the command line's end [ns].
+/// The earlier of the scene's and the command line's end (ns).
 fn end_ns(scene: &Scene, duration: Option<f64>) -> Option<u64> {
     let of_scene = match scene.controller {
         Controller::Topics { duration, .. } => duration,

@@ -3,13 +3,13 @@
 
 use crate::{base::Real, snapshot::Snapshot};
 
-/// The flange holds when it is slower than this [m/s] …
+/// The flange holds when it is slower than this (m/s) …
 const STILL_SPEED: Real = 1e-3;
-/// … for this time [s] …
+/// … for this time (s) …
 const STILL_TIME: Real = 0.1;
-/// … this far above the lowest place it has been [m] …
+/// … this far above the lowest place it has been (m) …
 const RAISED: Real = 0.02;
-/// … and the pump is asked for a vacuum beyond this [Pa].
+/// … and the pump is asked for a vacuum beyond this (Pa).
 const VACUUM: Real = -1e3;
 /// Share of the flange's rise that a held object has at least.
 const HELD_SHARE: Real = 0.9;
@@ -28,15 +28,15 @@ pub struct LiftMonitor {
 /// What came of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LiftMetrics {
-    /// Greatest height of the object over its lowest place before [m].
+    /// Greatest height of the object over its lowest place before (m).
     pub lift_height: Real,
-    /// Time for which the flange held still, raised and under vacuum [s].
+    /// Time for which the flange held still, raised and under vacuum (s).
     pub hold_time: Real,
     /// Smallest share of the flange's rise that the object had in that time.
     pub hold_share_min: Real,
-    /// Greatest upward force of the object on the gripper [N].
+    /// Greatest upward force of the object on the gripper (N).
     pub peak_push_force: Real,
-    /// Greatest downward force of the object on the gripper [N].
+    /// Greatest downward force of the object on the gripper (N).
     pub peak_pull_force: Real,
     /// Largest overlap between grains over the mean diameter.
     pub overlap_ratio_max: Real,

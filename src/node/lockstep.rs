@@ -21,7 +21,7 @@ pub struct Gate {
     left: u64,
     pending: Vec<Command>,
     has_missed: bool,
-    /// The other simulator's clock, and the length of a tick [ns].
+    /// The other simulator's clock, and the length of a tick (ns).
     clock: Option<(Arc<AtomicU64>, u64)>,
 }
 
@@ -42,7 +42,7 @@ impl Gate {
         Self { rules, left: 0, pending: Vec::new(), has_missed: false, clock: None }
     }
 
-    /// The same that follows a clock [ns], in ticks of `tick_ns`.
+    /// The same that follows a clock (ns), in ticks of `tick_ns`.
     pub fn following(self, clock: Option<Arc<AtomicU64>>, tick_ns: u64) -> Self {
         Self { clock: clock.map(|it| (it, tick_ns)), ..self }
     }

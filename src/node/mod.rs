@@ -83,9 +83,9 @@ pub struct RunContext {
     pub progress: Progress,
     /// Whether someone asked to end.
     pub shutdown: Shutdown,
-    /// Length of a tick [ns].
+    /// Length of a tick (ns).
     pub tick_ns: u64,
-    /// Time of the run at which it ends [ns].
+    /// Time of the run at which it ends (ns).
     pub end_ns: Option<u64>,
     /// True keeps to real time.
     pub is_real_time: bool,
@@ -105,7 +105,7 @@ pub struct Report<Fault> {
     pub ending: Result<Ending, Fault>,
     /// The system at the end of the last whole tick.
     pub last: Arc<Packet>,
-    /// Wall time of all ticks [s].
+    /// Wall time of all ticks (s).
     pub wall_time_s: f64,
     /// Simulated over wall time.
     pub real_time_factor: f64,

@@ -37,7 +37,7 @@ pub trait Plant: WorldAccess {
         None
     }
 
-    /// Length of a substep [s].
+    /// Length of a substep (s).
     fn substep_s(&self) -> f64 {
         0.0
     }

@@ -10,7 +10,7 @@ pub struct Schedule {
     grains: Interval,
     contacts: Interval,
     statistics: Interval,
-    /// Rate of checkpoints [Hz], and the length of a tick [ns].
+    /// Rate of checkpoints (Hz), and the length of a tick (ns).
     checkpoints: Option<(f64, u64)>,
 }
 

@@ -27,15 +27,15 @@ pub struct Summary {
     pub verdict: LiftMetrics,
     /// Simulated over wall time.
     pub real_time_factor: f64,
-    /// Wall time of all ticks [s].
+    /// Wall time of all ticks (s).
     pub wall_time_s: f64,
-    /// Wall time from the start of the program to the first tick [s].
+    /// Wall time from the start of the program to the first tick (s).
     pub start_time_s: f64,
     /// Where the settled grains came from.
     pub start_state: &'static str,
-    /// Simulated time [s].
+    /// Simulated time (s).
     pub sim_time_s: f64,
-    /// Length of a substep [s].
+    /// Length of a substep (s).
     pub substep_s: f64,
     /// Number of grains.
     pub n_grains: usize,

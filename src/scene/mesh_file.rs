@@ -7,7 +7,7 @@ use crate::base::{Real, Vec3};
 /// A closed surface.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Surface {
-    /// Vertices [m].
+    /// Vertices (m).
     pub vertices: Vec<Vec3>,
     /// Vertex indices of each triangle, counter-clockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
@@ -147,7 +147,7 @@ fn unmatched_edges(triangles: &[[u32; 3]]) -> usize {
     balance.values().filter(|it| **it != (1, 1)).count()
 }
 
-/// Enclosed volume [m³]; negative if the triangles face inward.
+/// Enclosed volume (m³); negative if the triangles face inward.
 fn volume(surface: &Surface) -> Real {
     let p = |index: u32| surface.vertices[index as usize];
     let six = |t: &[u32; 3]| p(t[0]).dot(&p(t[1]).cross(&p(t[2])));

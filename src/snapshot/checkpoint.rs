@@ -7,7 +7,7 @@ use crate::base::Tick;
 pub struct Checkpoint {
     /// The tick of the run that ended.
     pub tick: Tick,
-    /// Time of the run at its end [ns].
+    /// Time of the run at its end (ns).
     pub time_ns: u64,
     /// Digest of the whole state.
     pub digest: u64,

@@ -21,7 +21,7 @@ use crate::{
 pub struct Snapshot {
     /// The tick that ended.
     pub tick: Tick,
-    /// Simulated time at its end [ns].
+    /// Simulated time at its end (ns).
     pub time_ns: u64,
     /// Ticks since the start of the run. Other than `tick` it counts on when time is reset.
     pub run_tick: Tick,
@@ -88,13 +88,13 @@ pub struct ObjectSnapshot {
 /// The air in the membrane.
 #[derive(Clone, Copy, Debug)]
 pub struct ChamberSnapshot {
-    /// Commanded gauge pressure after limits [Pa].
+    /// Commanded gauge pressure after limits (Pa).
     pub gauge_setpoint: f64,
-    /// Actual gauge pressure [Pa], negative under vacuum.
+    /// Actual gauge pressure (Pa), negative under vacuum.
     pub gauge: f64,
-    /// Ambient pressure, absolute [Pa].
+    /// Ambient pressure, absolute (Pa).
     pub ambient: f64,
-    /// Volume enclosed by membrane and flange [m³].
+    /// Volume enclosed by membrane and flange (m³).
     pub volume: f64,
 }
 
@@ -115,7 +115,7 @@ pub struct JammingSnapshot {
     pub solid_fraction: f64,
     /// Share of sliding contacts among grain contacts.
     pub sliding_fraction: f64,
-    /// Kinetic energy of grains and membrane [J].
+    /// Kinetic energy of grains and membrane (J).
     pub kinetic_energy: f64,
     /// Largest overlap between grains over the mean grain diameter.
     pub overlap_ratio_max: f64,
@@ -126,11 +126,11 @@ pub struct JammingSnapshot {
 /// The membrane, vertex by vertex in mesh order.
 #[derive(Clone, Debug, Default)]
 pub struct MembraneSnapshot {
-    /// Positions [m].
+    /// Positions (m).
     pub positions: Vec<Vec3>,
     /// Unit normals, outward.
     pub normals: Vec<Vec3>,
-    /// Magnitude of the contact force on each vertex over its area [Pa].
+    /// Magnitude of the contact force on each vertex over its area (Pa).
     pub contact_pressures: Vec<f64>,
     /// Mean strain of the springs at each vertex.
     pub strains: Vec<f64>,
@@ -139,13 +139,13 @@ pub struct MembraneSnapshot {
 /// The grains, in order of their ids.
 #[derive(Clone, Debug, Default)]
 pub struct GrainsSnapshot {
-    /// Positions [m].
+    /// Positions (m).
     pub positions: Vec<Vec3>,
-    /// Radii [m].
+    /// Radii (m).
     pub radii: Vec<f64>,
-    /// Velocities [m/s].
+    /// Velocities (m/s).
     pub velocities: Vec<Vec3>,
-    /// Sum of normal force magnitudes on each grain [N].
+    /// Sum of normal force magnitudes on each grain (N).
     pub normal_forces: Vec<f64>,
 }
 
@@ -154,15 +154,15 @@ pub struct GrainsSnapshot {
 pub struct ContactSnapshot {
     /// Index of the object in the scene.
     pub object: usize,
-    /// Contact point [m].
+    /// Contact point (m).
     pub point: Vec3,
     /// Unit normal, from the object to the membrane.
     pub normal: Vec3,
-    /// Force on the object [N].
+    /// Force on the object (N).
     pub force: Vec3,
-    /// Normal force, at least zero [N].
+    /// Normal force, at least zero (N).
     pub normal_force: f64,
-    /// Overlap [m].
+    /// Overlap (m).
     pub overlap: f64,
 }
 

@@ -3,13 +3,13 @@
 /// How a run goes, seen from outside.
 #[derive(Clone, Debug, Default)]
 pub struct RunStatistics {
-    /// Wall time since the first tick [s].
+    /// Wall time since the first tick (s).
     pub wall_time_s: f64,
     /// Simulated over wall time, over the last second of wall time.
     pub real_time_factor: f64,
     /// Simulated over wall time, since the first tick.
     pub real_time_factor_mean: f64,
-    /// Length of a substep [s].
+    /// Length of a substep (s).
     pub substep_s: f64,
     /// Seed of the scene.
     pub seed: u64,

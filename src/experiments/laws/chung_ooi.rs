@@ -26,7 +26,7 @@ pub(super) struct ChungOoi;
 
 /// Restitutions of test 3.
 const RESTITUTIONS: [Real; 5] = [0.2, 0.4, 0.6, 0.8, 0.98];
-/// Test 4 with aluminium oxide: angle [deg] and e_t of a secant spring of 2/3 · 8 G* √(R* ξ),
+/// Test 4 with aluminium oxide: angle (deg) and e_t of a secant spring of 2/3 · 8 G* √(R* ξ),
 /// integrated independently.
 const TEST_4: [[Real; 2]; 9] = [
     [5.0, 0.684],
