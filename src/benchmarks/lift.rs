@@ -1,6 +1,6 @@
 //! A whole session: the default scene, commanded by its own controller, without anyone who listens.
 
-use std::{collections::BTreeMap, path::Path, sync::Arc};
+use std::{collections::BTreeMap, path::Path};
 
 use super::{
     BenchError, Case, Figures, Options, process,
@@ -23,7 +23,6 @@ use crate::{
     },
     scene::{self, Scene, SceneError},
     session::Session,
-    snapshot::take,
 };
 
 /// The default scene.
@@ -79,7 +78,7 @@ pub(super) fn scene(overrides: &[String]) -> Result<Scene, SceneError> {
 
 /// A session at its first tick.
 pub(super) fn session(scene: &Scene, options: &Options) -> Result<Session, BenchError> {
-    let pool = Arc::new(parallel::pool(options.n_threads)?);
+    let pool = parallel::ThreadPool::new(options.n_threads)?;
     let compiled = Compiled::new(scene, &pool).map_err(start::StartError::from)?;
     let progress = Progress::new(options.is_quiet);
     let started = start::start(compiled, &options.cache, &progress);
@@ -93,7 +92,7 @@ fn repetition(case: &Case, scene: &Scene, mut session: Session) -> Result<Repeti
     let mut command_sources = CommandSources::new(scene, Vec::new());
     let schedule = Schedule::new(&scene.outputs, scene.time.tick_ns);
     let tick_s = std::time::Duration::from_nanos(scene.time.tick_ns).as_secs_f64();
-    let mut seen = take::snapshot(&session, schedule.parts(0));
+    let mut seen = session.snapshot(schedule.parts(0));
     let (mut parts, mut phases) = ([0.0; 3], BTreeMap::<String, [Real; 2]>::new());
     let (mut lift_monitor, mut n_contact_ticks) = (LiftMonitor::default(), 0.0);
     let processor = process::processor_s();
@@ -106,7 +105,7 @@ fn repetition(case: &Case, scene: &Scene, mut session: Session) -> Result<Repeti
             .tick(&commands)
             .map_err(|fault| BenchError::Diverged { case: case.name.to_owned(), fault })?;
         let ticked = watch.lap_s();
-        seen = take::snapshot(&session, schedule.parts(seen.time_ns + scene.time.tick_ns));
+        seen = session.snapshot(schedule.parts(seen.time_ns + scene.time.tick_ns));
         lift_monitor.look(&seen, tick_s);
         n_contact_ticks += real(seen.jamming.n_grain_contacts);
         let taken = watch.lap_s();

@@ -129,7 +129,7 @@ pub enum BenchError {
     },
     /// The operating system gives no threads.
     #[error("solver threads: {0}; use fewer with --threads")]
-    Threads(#[from] rayon::ThreadPoolBuildError),
+    Threads(#[from] crate::base::parallel::ThreadPoolError),
 }
 
 impl BenchError {

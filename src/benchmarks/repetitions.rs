@@ -55,14 +55,14 @@ pub(super) struct Course<'a> {
     case: &'a Case,
     options: &'a Options,
     pub(super) subject: Subject,
-    pool: rayon::ThreadPool,
+    pool: parallel::ThreadPool,
     repetitions: Vec<Repetition>,
 }
 
 impl<'a> Course<'a> {
     /// Makes the state of `case` ready.
     pub(super) fn new(case: &'a Case, options: &'a Options) -> Result<Self, BenchError> {
-        let pool = parallel::pool(options.n_threads)?;
+        let pool = parallel::ThreadPool::new(options.n_threads)?;
         let subject = prepare::subject(case, options, &pool)?;
         process::forget_peak();
         Ok(Self { case, options, subject, pool, repetitions: Vec::new() })

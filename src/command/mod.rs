@@ -3,10 +3,12 @@
 //! A command holds the values exactly as they arrived, even senseless ones: what is refused is
 //! recorded too.
 
-pub mod apply;
+pub mod apply; // commands to setpoints
 pub mod change; // discontinuous changes between ticks
 mod saved_change; // changes as bytes
 mod saved_setpoints; // setpoints as bytes
+
+pub use apply::{FLANGE, WORLD, object_frame};
 
 /// One wish of the outside.
 #[derive(Clone, Debug, PartialEq)]

@@ -8,10 +8,14 @@ use std::{
     time::Duration,
 };
 
+#[cfg(feature = "cli")]
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
+#[cfg(not(feature = "cli"))]
+use super::no_terminal::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+use crate::host::clock::Pacer;
 use crate::snapshot::Snapshot;
-use crate::{host::clock::Pacer, node::lift_monitor::contact_force_world};
 
 /// Ticks between two new messages; the terminal does not show more anyway.
 const EVERY: u64 = 25;
@@ -72,7 +76,7 @@ impl Progress {
         let real_time_factor = pacer.real_time_factor();
         let time = Duration::from_nanos(seen.time_ns).as_secs_f64();
         let pressure = seen.chamber.gauge / 1e3;
-        let force = contact_force_world(seen).z;
+        let force = seen.contact_force_world().z;
         self.bar.set_position(seen.time_ns);
         self.bar.set_message(format!(
             "{time:7.3} s  {real_time_factor:5.2} x real time  {phase:<9} {pressure:6.1} kPa  \

@@ -6,6 +6,7 @@ use std::sync::{
 };
 
 /// Exit code of a process that was interrupted twice: 128 and the number of SIGINT.
+#[cfg(feature = "cli")]
 const INTERRUPTED: i32 = 130;
 
 /// Whether someone asked the run to end.
@@ -13,10 +14,11 @@ const INTERRUPTED: i32 = 130;
 pub struct Shutdown(Arc<AtomicBool>);
 
 impl Shutdown {
-    /// Listens to signals from now on. One process can listen once.
+    /// Handles signals from now on. A process can call this once.
     ///
     /// # Errors
-    /// If the process listens already or the operating system refuses.
+    /// If a handler is installed already or the operating system refuses it.
+    #[cfg(feature = "cli")]
     pub fn listen() -> Result<Self, ctrlc::Error> {
         let shutdown = Self::default();
         let asked = Arc::clone(&shutdown.0);

@@ -39,7 +39,9 @@ pub struct Options {
     pub cache: Cache,
     /// True shows no progress.
     pub is_quiet: bool,
-    /// What the recording says of the run besides what it always says.
+    /// Ends the run when requested.
+    pub shutdown: Shutdown,
+    /// Additional metadata for the recording.
     pub facts: Vec<(&'static str, String)>,
 }
 
@@ -64,9 +66,6 @@ pub enum RunError {
     #[cfg(feature = "bag")]
     #[error(transparent)]
     Replay(Box<dyn std::error::Error + Send + Sync>),
-    /// Signals cannot be listened to.
-    #[error("Ctrl-C cannot be listened to: {0}; run jamgrip as a process of its own")]
-    Signals(#[from] ctrlc::Error),
 }
 
 /// A finished run. There is a summary even if it ended in a fault.
@@ -121,9 +120,8 @@ pub fn launch_with(
     command: impl FnOnce(ExternalInputs) -> (CommandSources, Option<SimulationServer>),
 ) -> Result<Finished, RunError> {
     let since_start = Pacer::start(false);
-    let shutdown = Shutdown::listen()?;
     let progress = Progress::new(options.is_quiet);
-    let pool = Arc::new(parallel::pool(options.n_threads).map_err(StartError::from)?);
+    let pool = parallel::ThreadPool::new(options.n_threads).map_err(StartError::from)?;
     let compiled = Compiled::new(scene, &pool).map_err(StartError::from)?;
     let substep_s = compiled.model.substep;
     let mesh = &compiled.model.membrane.mesh;
@@ -156,7 +154,7 @@ pub fn launch_with(
         schedule: Schedule::new(&scene.outputs, scene.time.tick_ns),
         lift_monitor: LiftMonitor::default(),
         progress,
-        shutdown,
+        shutdown: options.shutdown.clone(),
         tick_ns: scene.time.tick_ns,
         end_ns,
         is_real_time: scene.outputs.real_time,

@@ -1,10 +1,7 @@
 //! What came of a run: how high the object was lifted, whether it was held, how hard it was
 //! pushed. Judged from snapshots alone, whoever gave the commands.
 
-use crate::{
-    base::{Real, Vec3},
-    snapshot::Snapshot,
-};
+use crate::{base::Real, snapshot::Snapshot};
 
 /// The flange holds when it is slower than this (m/s) …
 const STILL_SPEED: Real = 1e-3;
@@ -80,7 +77,7 @@ impl LiftMonitor {
     pub fn look(&mut self, seen: &Snapshot, tick: Real) {
         let time = std::time::Duration::from_nanos(seen.time_ns).as_secs_f64();
         let flange = seen.flange.pose.translation.vector.z;
-        let force = contact_force_world(seen);
+        let force = seen.contact_force_world();
         let verdict = &mut self.verdict;
         verdict.peak_push_force = verdict.peak_push_force.max(force.z);
         verdict.peak_pull_force = verdict.peak_pull_force.max(-force.z);
@@ -115,9 +112,4 @@ impl LiftMonitor {
     pub fn verdict(&self) -> LiftMetrics {
         self.verdict
     }
-}
-
-/// Force of the object on the gripper along the world's axes (N).
-pub fn contact_force_world(seen: &Snapshot) -> Vec3 {
-    seen.flange.pose.rotation * seen.contact_wrench.force
 }

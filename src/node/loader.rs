@@ -2,10 +2,7 @@
 //! that questions are answered meanwhile.
 
 use std::{
-    sync::{
-        Arc,
-        mpsc::{self, Receiver, TryRecvError},
-    },
+    sync::mpsc::{self, Receiver, TryRecvError},
     thread,
 };
 
@@ -59,7 +56,7 @@ impl Loader {
 
 fn settle(scene: &Scene, n_threads: usize, cache: &Cache) -> Result<Vec<u8>, StartError> {
     // Threads of its own: those of the run are busy with the run.
-    let compiled = Compiled::new(scene, &Arc::new(parallel::pool(n_threads)?))?;
+    let compiled = Compiled::new(scene, &parallel::ThreadPool::new(n_threads)?)?;
     // The terminal's line belongs to the run.
     let started = start::start(compiled, cache, &Progress::new(true))?;
     Ok(started.session.start_state())

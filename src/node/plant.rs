@@ -11,7 +11,7 @@ use crate::{
     physics::health::Diverged,
     session::Session,
     simulator::Subject,
-    snapshot::{Snapshot, checkpoint::Checkpoint, take, view::View},
+    snapshot::{Snapshot, checkpoint::Checkpoint, view::View},
     wire::to_ros::Encoder,
 };
 
@@ -56,7 +56,7 @@ impl Plant for Session {
     }
 
     fn snapshot(&self, parts: Parts) -> Snapshot {
-        take::snapshot(self, parts)
+        Self::snapshot(self, parts)
     }
 
     fn checkpoint(&self) -> Option<Checkpoint> {
@@ -74,13 +74,13 @@ impl Plant for Session {
     }
 
     fn view<'a>(&'a self, seen: &'a Snapshot) -> View<'a> {
-        take::view(self, seen)
+        Self::view(self, seen)
     }
 }
 
 impl Subject for Session {
     fn look(&self) -> Snapshot {
-        take::snapshot(self, Parts::ALL)
+        Self::snapshot(self, Parts::ALL)
     }
 
     fn change(&mut self, change: &Change) -> Result<(), ChangeRefused> {

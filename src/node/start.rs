@@ -1,7 +1,5 @@
 //! A session at its first tick: with a settled bag from the cache, or settled now and kept.
 
-use std::sync::Arc;
-
 use crate::host::{
     cache::{Cache, Found},
     progress_bar::Progress,
@@ -20,7 +18,7 @@ pub enum StartError {
     Compile(#[from] CompileError),
     /// The solver's threads could not be started.
     #[error("the solver's threads cannot be started: {0}; ask for fewer")]
-    Threads(#[from] rayon::ThreadPoolBuildError),
+    Threads(#[from] crate::base::parallel::ThreadPoolError),
     /// The bag could not be filled.
     #[error("filling the bag: {0}")]
     Settle(#[from] Diverged),
@@ -44,7 +42,7 @@ pub fn start(
     progress: &Progress,
 ) -> Result<Started, StartError> {
     let key = compiled.start_digest();
-    let (scene, pool) = (compiled.scene.clone(), Arc::clone(&compiled.pool));
+    let (scene, pool) = (compiled.scene.clone(), compiled.pool.clone());
     let compiled = match cache.load(key) {
         Found::Nothing => compiled,
         Found::Damaged(path) => {

@@ -2,7 +2,9 @@
 
 pub mod branch; // a new run from a recorded moment
 pub mod compatibility; // which releases changed results
+#[cfg(feature = "report")]
 pub mod page; // a recording as an HTML page
+#[cfg(feature = "report")]
 mod page_data; // what the page shows over time
 pub mod play; // publishes a recording with its original timing
 pub mod player_command; // pause, seek, rate

@@ -1,7 +1,5 @@
 //! Is every tick as it was recorded? The run is simulated again, and every digest compared.
 
-use std::sync::Arc;
-
 use super::{
     compatibility,
     recorded_run::{RecordedRun, ReplayError},
@@ -147,7 +145,7 @@ fn start<'a>(
         return Err(ReplayError::NoStart { path: again.path.clone(), tick: first });
     }
     let (_, n_threads) = options.hands.shared_out(1);
-    let pool = Arc::new(parallel::pool(n_threads).map_err(StartError::from)?);
+    let pool = parallel::ThreadPool::new(n_threads).map_err(StartError::from)?;
     let compiled = Compiled::new(&again.scene, &pool)?;
     let session = if options.settles {
         let on_progress = &mut |it: crate::physics::fill::Progress| {

@@ -70,7 +70,7 @@ pub enum RunnerError {
     },
     /// The operating system refuses threads.
     #[error("threads: {0}; ask for fewer with --threads")]
-    Threads(#[from] rayon::ThreadPoolBuildError),
+    Threads(#[from] crate::base::parallel::ThreadPoolError),
 }
 
 impl RunnerError {

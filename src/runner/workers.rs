@@ -41,9 +41,10 @@ pub(super) fn work(
     n_threads: usize,
     shutdown: &Shutdown,
     progress: &ProgressBoard,
-) -> Result<Vec<CaseEnd>, rayon::ThreadPoolBuildError> {
+) -> Result<Vec<CaseEnd>, parallel::ThreadPoolError> {
     let n_threads = n_threads.clamp(1, jobs.len().max(1));
-    let pools = (0..n_threads).map(|_| parallel::pool(1)).collect::<Result<Vec<_>, _>>()?;
+    let pools =
+        (0..n_threads).map(|_| parallel::ThreadPool::new(1)).collect::<Result<Vec<_>, _>>()?;
     let (queue, next) = (queue(jobs), AtomicUsize::new(0));
     let ends: Vec<Mutex<Option<CaseEnd>>> = jobs.iter().map(|_| Mutex::new(None)).collect();
     std::thread::scope(|scope| {

@@ -21,7 +21,7 @@ use jamgrip::{
     node::plant::Plant,
     scene::{Object, Shape},
     session::Session,
-    snapshot::{Parts, take},
+    snapshot::Parts,
     wire::to_ros::Encoder,
 };
 use serde_json::Value;
@@ -379,7 +379,7 @@ fn record_changes(folder: &Path, forgets: Option<u64>) {
     let scene_text = jamgrip::scene::to_yaml(&scene);
     let subject = Subject { scene_text, scene_files: vec![], facts, format: Format::default() };
     let mut bag = Bag::create(folder, encoder, subject).unwrap();
-    let packet = |session: &Session| Packet::new(take::snapshot(session, Parts::default()), None);
+    let packet = |session: &Session| Packet::new(session.snapshot(Parts::default()), None);
     for tick in 0..=130 {
         let is_due = tick % 20 == 0;
         let kept = is_due.then(|| session.checkpoint()).flatten().into_iter().collect();
