@@ -34,13 +34,13 @@ pub enum RecoverError {
     #[error(transparent)]
     NotABag(#[from] NotABag),
     /// There is something where the result shall be.
-    #[error("{}: is there already; choose another place with --output", path.display())]
+    #[error("{}: exists already; choose another output", path.display())]
     InUse {
         /// Where.
         path: PathBuf,
     },
     /// The result cannot be written.
-    #[error("{}: cannot be written ({fault}); choose another place with --output", path.display())]
+    #[error("{}: cannot be written ({fault}); choose another output", path.display())]
     CannotWrite {
         /// Where.
         path: PathBuf,

@@ -106,7 +106,7 @@ fn repetition(case: &Case, scene: &Scene, mut session: Session) -> Result<Repeti
             .map_err(|fault| BenchError::Diverged { case: case.name.to_owned(), fault })?;
         let ticked = watch.lap_s();
         seen = session.snapshot(schedule.parts(seen.time_ns + scene.time.tick_ns));
-        lift_monitor.look(&seen, tick_s);
+        lift_monitor.update(&seen, tick_s);
         n_contact_ticks += real(seen.jamming.n_grain_contacts);
         let taken = watch.lap_s();
         for (sum, time) in parts.iter_mut().zip([drained, ticked, taken]) {
@@ -139,7 +139,7 @@ fn figures(
     let coupled = last.session.coupled();
     let seen = Seen::of(&coupled.system.model, &coupled.system.state, &coupled.system.scratch);
     seen.check(&case.limits)
-        .and_then(|()| check_lift(&last.lift_monitor.verdict()))
+        .and_then(|()| check_lift(&last.lift_monitor.metrics()))
         .map_err(|fault| BenchError::Unsound { case: case.name.to_owned(), fault })?;
     let mut times: Vec<Real> = repetitions.iter().map(|repetition| repetition.wall_s).collect();
     times.sort_by(Real::total_cmp);

@@ -126,6 +126,11 @@ impl PickAndLift {
         }
     }
 
+    /// Name of the object to lift.
+    pub fn object(&self) -> &str {
+        &self.parameters.object
+    }
+
     /// What it is doing.
     pub fn phase(&self) -> Phase {
         self.phase

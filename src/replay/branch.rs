@@ -10,7 +10,7 @@ use crate::{
     cosim::compile::Compiled,
     host::progress_bar::Progress,
     node::{
-        command_sources::CommandSources,
+        Inputs,
         launch::{self, Finished, RunError},
         start::Started,
     },
@@ -37,8 +37,8 @@ pub enum BranchError {
     Scene(#[from] SceneError),
     /// A value cannot change after the start.
     #[error(
-        "--set {key}: cannot change after the start, because {reason}; \
-         run the scene anew with it, `jamgrip run`"
+        "`{key}` cannot change after the start, because {reason}; \
+         start a new run of the scene with it"
     )]
     Fixed {
         /// The key.
@@ -48,7 +48,7 @@ pub enum BranchError {
     },
     /// The recording is shorter, or its start is not kept.
     #[error(
-        "--from {from_s} s: the recording can be taken up from {first_s} s to {last_s} s; \
+        "cannot branch at {from_s} s: the recording can be resumed from {first_s} s to {last_s} s; \
          choose a time between"
     )]
     OutOfRange {
@@ -61,8 +61,8 @@ pub enum BranchError {
     },
     /// The run did not come to the recorded state again.
     #[error(
-        "tick {tick} came out otherwise than recorded, so there is nothing to branch off from; \
-         `jamgrip replay BAG --verify` says more"
+        "tick {tick} differs from the recording, so a run cannot branch from it; \
+         verify the recording for details"
     )]
     Differs {
         /// The tick.
@@ -71,7 +71,7 @@ pub enum BranchError {
     /// Objects were added or taken away before.
     #[error(
         "at tick {tick} there are other objects than the scene's: they were added or taken away \
-         while it was recorded; choose a time with the scene's own objects for --from"
+         while it was recorded; choose a time with the scene's own objects"
     )]
     OtherObjects {
         /// The tick.
@@ -132,9 +132,8 @@ pub fn branch(
     let mut options = launch::Options { duration: Some(duration), ..options.clone() };
     let origin = format!("{} after tick {tick}", again.path.display());
     options.facts.push(("branched_from", origin));
-    // Whoever is outside can only look: the commands are those of the recording.
-    let command = |_| (CommandSources::from_outside(vec![Box::new(script)]), None);
-    Ok(launch::launch_with(&scene, &options, begin, command)?)
+    // External inputs are read-only: the commands are those of the recording.
+    Ok(launch::launch_with(&scene, &options, begin, |_| Inputs::of_script(script))?)
 }
 
 /// Refuses to leave out what was done to the world from outside after `tick` and before `end_s`.

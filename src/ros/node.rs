@@ -44,12 +44,14 @@ pub const LOG_FILTER: &str = "rustdds=error,rustdds::network::udp_listener=off,r
 #[derive(Debug, thiserror::Error)]
 pub enum RosError {
     /// Discovery is switched off; there is no graph to join.
-    #[error("ROS_AUTOMATIC_DISCOVERY_RANGE=OFF leaves no one to talk to: unset it or use --no-ros")]
+    #[error(
+        "ROS_AUTOMATIC_DISCOVERY_RANGE=OFF disables ROS 2: unset it, or disable ROS 2 in the scene"
+    )]
     Off,
     /// The node could not be made.
     #[error(
         "the node could not join ROS 2 domain {domain_id}: {reason}; is there a network \
-         interface, and are there fewer than 120 participants in this domain? --no-ros runs without"
+         interface, and are there fewer than 120 participants in this domain?"
     )]
     Join {
         /// The domain.
@@ -58,7 +60,7 @@ pub enum RosError {
         reason: String,
     },
     /// The thread that listens could not be started.
-    #[error("no thread for ROS 2: {reason}; raise the limit on processes, or use --no-ros")]
+    #[error("no thread for ROS 2: {reason}; raise the process limit")]
     Thread {
         /// What the system says.
         reason: std::io::Error,

@@ -25,6 +25,7 @@ mod worlds; // loads and unloads worlds
 use std::{
     cell::RefCell,
     path::{Path, PathBuf},
+    sync::Arc,
 };
 
 use serde::{Serialize, de::DeserializeOwned};
@@ -39,7 +40,7 @@ use crate::{
     },
     io::server::{Outgoing, RequestId, ServiceRequest},
     physics::boundary::shape::Aabb,
-    scene::{Outputs, Scene, resource::Shelf},
+    scene::{Scene, resource::Shelf},
     snapshot::Snapshot,
     wire::{
         cdr::Cdr,
@@ -91,13 +92,11 @@ pub struct Changed {
     pub is_state_reset: bool,
     /// It is another scene.
     pub is_scene_loaded: bool,
-    /// What leaves the process, if other rates were asked for.
-    pub outputs: Option<Outputs>,
 }
 
 /// The simulator.
 pub struct Simulator {
-    scene: Scene,
+    scene: Arc<Scene>,
     /// Where it is from, and the folder that others are looked for in.
     resource: Resource,
     folder: PathBuf,
@@ -129,9 +128,9 @@ type Unreadable = cdr_encoding::Error;
 impl Simulator {
     /// A simulator of `scene` that is asked by `asked`, in the order of the services offered. If it is
     /// stopped, it stands still until a first command or until it is told to play.
-    pub fn new(scene: &Scene, asked: Vec<Endpoint>, is_stopped: bool) -> Self {
+    pub fn new(scene: &Arc<Scene>, asked: Vec<Endpoint>, is_stopped: bool) -> Self {
         Self {
-            scene: scene.clone(),
+            scene: Arc::clone(scene),
             resource: Resource::default(),
             folder: PathBuf::new(),
             version: Version::default(),
@@ -151,6 +150,11 @@ impl Simulator {
             changed: Changed::default(),
             bag: RefCell::new(None),
         }
+    }
+
+    /// The scene, with the parameters as they are now.
+    pub fn scene(&self) -> &Arc<Scene> {
+        &self.scene
     }
 
     /// Answers in this version.

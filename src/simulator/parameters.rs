@@ -4,6 +4,8 @@
 //! runs; they act from the next tick on and survive resets. The others are told only. What was changed
 //! is told on `/parameter_events`.
 
+use std::sync::Arc;
+
 use super::{Simulator, World, entities::stamp, services::parameter_events};
 use crate::{
     command::change::{Change, TunableParameter},
@@ -273,11 +275,10 @@ impl Simulator {
             Setting::TunableParameter(parameter) => {
                 let change = Change::SetParameter { parameter, value };
                 self.change(&change, world).map_err(|refusal| refusal.to_string())?;
-                parameter.set(&mut self.scene, value);
+                parameter.set(Arc::make_mut(&mut self.scene), value);
             }
             Setting::Rate(rate) => {
-                *rate(&mut self.scene.outputs) = value;
-                self.changed.outputs = Some(self.scene.outputs.clone());
+                *rate(&mut Arc::make_mut(&mut self.scene).outputs) = value;
             }
         }
         Ok(())

@@ -4,6 +4,8 @@
 //! none. What cannot be had leaves the present one as it was. Of a loaded scene all is taken but what
 //! belongs to the run: outputs, who commands, and the length of a tick.
 
+use std::sync::Arc;
+
 use super::{
     Simulator, Unreadable, Version, World, entity_info::Register, failed, named_poses::has_tags, ok,
 };
@@ -121,7 +123,7 @@ impl Simulator {
     /// Everything that is known goes by another scene now.
     fn enter(&mut self, scene: Scene, resource: Resource) {
         self.register = Register::new(&scene);
-        self.scene = scene;
+        self.scene = Arc::new(scene);
         self.resource = resource;
         self.spawnables = None;
         self.commands.clear();

@@ -374,7 +374,8 @@ fn record_changes(folder: &Path, forgets: Option<u64>) {
     let scene = coarse::scene(&[]);
     let mut session = coarse::session(1, &[]);
     let mesh = &session.coupled().system.model.membrane.mesh;
-    let encoder = Arc::new(Encoder::new(&scene, &mesh.triangles, &mesh.positions));
+    let encoder =
+        Arc::new(Encoder::new(&Arc::new(scene.clone()), &mesh.triangles, &mesh.positions));
     let facts = vec![("tick_ns", "1000000".to_owned())];
     let scene_text = jamgrip::scene::to_yaml(&scene);
     let subject = Subject { scene_text, scene_files: vec![], facts, format: Format::default() };

@@ -61,7 +61,7 @@ fn topic(name: &str) -> Topic {
 
 /// The encoder of the scene, with a membrane that has no triangles.
 fn encoder() -> Arc<Encoder> {
-    Arc::new(Encoder::new(&scene(), &[], &[]))
+    Arc::new(Encoder::new(&Arc::new(scene()), &[], &[]))
 }
 
 /// Oracle: the synthetic system's formula, message by message; and who comes late gets what is

@@ -188,7 +188,7 @@ proptest! {
         let (offers, what) = asked("/jamgrip", None);
         let n_channels = services::channels("/jamgrip", None).len();
         let scene = crate::by_tick::scene();
-        let mut simulator = Simulator::new(&scene, what, false).with_channels(n_channels);
+        let mut simulator = Simulator::new(&std::sync::Arc::new(scene), what, false).with_channels(n_channels);
         let system = Synthetic::new("cylinder");
         let seen = system.snapshot.clone();
         let mut world = World { subject: &mut Dummy(system), seen: &seen };

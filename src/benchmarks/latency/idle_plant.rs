@@ -86,7 +86,7 @@ impl Subject for IdlePlant {
 }
 
 impl Plant for IdlePlant {
-    type Fault = Diverged;
+    type Error = Diverged;
 
     fn tick(&mut self, commands: &[Command]) -> Result<(), Diverged> {
         let now = wall_ns();

@@ -11,6 +11,8 @@ mod contacts; // contacts and their arrows
 mod parts; // the small messages that others are made of
 mod run; // clock, statistics, diagnostics
 
+use std::sync::Arc;
+
 use super::{
     from_ros::CommandCodec,
     messages::{RosMessage, std_msgs::Bool},
@@ -18,7 +20,7 @@ use super::{
 };
 use crate::{
     base::Vec3,
-    scene::{Controller, Outputs, Scene},
+    scene::{Controller, Scene},
     snapshot::{
         Snapshot,
         due::{is_due, is_first_of},
@@ -41,7 +43,7 @@ const DIAGNOSTICS_RATE: f64 = 1.0;
 /// Makes messages of snapshots.
 #[derive(Clone, Debug)]
 pub struct Encoder {
-    scene: Scene,
+    scene: Arc<Scene>,
     /// Objects that have topics, and the first one of each.
     objects: Vec<(String, usize)>,
     triangles: Vec<[u32; 3]>,
@@ -53,11 +55,11 @@ pub struct Encoder {
 impl Encoder {
     /// For a scene and its membrane: vertex indices of each triangle, and the vertices (m) of the
     /// shape at rest in the flange's axes.
-    pub fn new(scene: &Scene, triangles: &[[u32; 3]], vertices: &[Vec3]) -> Self {
+    pub fn new(scene: &Arc<Scene>, triangles: &[[u32; 3]], vertices: &[Vec3]) -> Self {
         let topics = topics(scene);
         let objects: Vec<String> = scene.objects.iter().map(|it| it.name.clone()).collect();
         Self {
-            scene: scene.clone(),
+            scene: Arc::clone(scene),
             triangles: triangles.to_vec(),
             vertices: vertices.to_vec(),
             commands: CommandCodec::new(topics.clone(), objects.clone()),
@@ -82,16 +84,14 @@ impl Encoder {
         all
     }
 
-    /// For another scene in the same run: topics, and objects that have some, stay.
-    pub fn of_scene(&self, scene: &Scene, triangles: &[[u32; 3]], vertices: &[Vec3]) -> Self {
-        let (triangles, vertices) = (triangles.to_vec(), vertices.to_vec());
-        Self { scene: scene.clone(), triangles, vertices, ..self.clone() }
+    /// The same for another scene, or for the same scene with other values. Topics stay.
+    pub fn with_scene(self, scene: Arc<Scene>) -> Self {
+        Self { scene, ..self }
     }
 
-    /// The same at other rates.
-    pub fn at_rates(&self, outputs: &Outputs) -> Self {
-        let scene = Scene { outputs: outputs.clone(), ..self.scene.clone() };
-        Self { scene, ..self.clone() }
+    /// The same for another membrane; see `new`.
+    pub fn with_membrane(self, triangles: &[[u32; 3]], vertices: &[Vec3]) -> Self {
+        Self { triangles: triangles.to_vec(), vertices: vertices.to_vec(), ..self }
     }
 
     /// The scene that is told of.
