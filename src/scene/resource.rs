@@ -181,6 +181,7 @@ fn of_scene(text: &str, source: &str, folder: &Path) -> Result<Object, ResourceF
 }
 
 /// An object with all defaults.
+#[cfg(feature = "meshes")]
 fn blank() -> Result<Object, ResourceFault> {
     let text = "name: blank\nobject: { shape: { sphere: { radius: 10 mm } } }\n";
     of_scene(text, "the defaults", Path::new(""))

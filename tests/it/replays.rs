@@ -122,7 +122,7 @@ fn every_tick_comes_out_as_recorded_for_any_number_of_threads_and_lanes() {
         assert_eq!(
             (&verdict["ticks"], &verdict["compared"], &verdict["checkpoints"]),
             (&N_TICKS.into(), &(N_TICKS + 1).into(), &3.into()),
-            "{jobs} parts at a time, {threads} threads each"
+            "{jobs} segments in parallel, {threads} threads each"
         );
     }
     for lanes in ["1", "4", "8"] {
