@@ -34,13 +34,13 @@ pub enum RecoverError {
     #[error(transparent)]
     Open(#[from] OpenBagError),
     /// The output already exists.
-    #[error("{}: already exists; choose another output with --output", path.display())]
+    #[error("{}: already exists; choose another output", path.display())]
     InUse {
         /// The output.
         path: PathBuf,
     },
     /// The output cannot be written.
-    #[error("{}: cannot be written ({reason}); choose another output with --output", path.display())]
+    #[error("{}: cannot be written ({reason}); choose another output", path.display())]
     CannotWrite {
         /// The output.
         path: PathBuf,

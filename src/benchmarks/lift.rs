@@ -1,6 +1,6 @@
 //! A complete session: the default scene with the built-in controller, without outputs.
 
-use std::{collections::BTreeMap, path::Path, sync::Arc};
+use std::{collections::BTreeMap, path::Path};
 
 use super::{
     BenchError, BenchResult, Case, Options, process,
@@ -23,7 +23,6 @@ use crate::{
     physics::membrane::mesh::Mesh,
     scene::{self, Scene, SceneError},
     session::Session,
-    snapshot::take,
 };
 
 /// The default scene.
@@ -79,7 +78,7 @@ pub(super) fn scene(overrides: &[String]) -> Result<Scene, SceneError> {
 
 /// A session before its first tick.
 pub(super) fn session(scene: &Scene, options: &Options) -> Result<Session, BenchError> {
-    let pool = Arc::new(parallel::pool(options.n_threads)?);
+    let pool = parallel::ThreadPool::new(options.n_threads)?;
     let compiled = Compiled::new(scene, &pool).map_err(start::StartError::from)?;
     let progress = Progress::new(options.is_quiet);
     let started = start::start(compiled, &options.cache, &progress);
@@ -93,7 +92,7 @@ fn repetition(case: &Case, scene: &Scene, mut session: Session) -> Result<Repeti
     let mut command_sources = CommandSources::new(scene, Vec::new());
     let schedule = Schedule::new(&scene.outputs, scene.time.tick_ns);
     let tick_s = std::time::Duration::from_nanos(scene.time.tick_ns).as_secs_f64();
-    let mut snapshot = take::snapshot(&session, schedule.parts(0));
+    let mut snapshot = session.snapshot(schedule.parts(0));
     let (mut parts, mut phases) = ([0.0; 3], BTreeMap::<String, [Real; 2]>::new());
     let (mut lift_monitor, mut n_contact_ticks) = (LiftMonitor::default(), 0.0);
     let processor = process::processor_s();
@@ -106,8 +105,8 @@ fn repetition(case: &Case, scene: &Scene, mut session: Session) -> Result<Repeti
             .tick(&commands)
             .map_err(|error| BenchError::Diverged { case: case.name.to_owned(), error })?;
         let ticked = watch.lap_s();
-        snapshot = take::snapshot(&session, schedule.parts(snapshot.time_ns + scene.time.tick_ns));
-        lift_monitor.look(&snapshot, tick_s);
+        snapshot = session.snapshot(schedule.parts(snapshot.time_ns + scene.time.tick_ns));
+        lift_monitor.update(&snapshot, tick_s);
         n_contact_ticks += real(snapshot.jamming.n_grain_contacts);
         let taken = watch.lap_s();
         for (sum, time) in parts.iter_mut().zip([drained, ticked, taken]) {
@@ -142,7 +141,7 @@ fn result(
         StateSummary::of(&coupled.system.model, &coupled.system.state, &coupled.system.scratch);
     summary
         .check(&case.limits)
-        .and_then(|()| check_lift(&last.lift_monitor.verdict()))
+        .and_then(|()| check_lift(&last.lift_monitor.metrics()))
         .map_err(|error| BenchError::InvalidState { case: case.name.to_owned(), error })?;
     let mut times: Vec<Real> = repetitions.iter().map(|repetition| repetition.wall_s).collect();
     times.sort_by(Real::total_cmp);

@@ -130,7 +130,7 @@ pub enum BenchError {
     },
     /// The threads cannot be started.
     #[error("solver threads: {0}; use fewer with --threads")]
-    Threads(#[from] rayon::ThreadPoolBuildError),
+    Threads(#[from] crate::base::parallel::ThreadPoolError),
 }
 
 impl BenchError {

@@ -82,7 +82,7 @@ impl Moment {
 pub(super) fn subject(
     case: &Case,
     options: &Options,
-    pool: &rayon::ThreadPool,
+    pool: &parallel::ThreadPool,
 ) -> Result<PreparedSystem, BenchError> {
     let maker = Maker { case, options, pool };
     match &case.kind {
@@ -99,7 +99,7 @@ pub(super) fn subject(
 struct Maker<'a> {
     case: &'a Case,
     options: &'a Options,
-    pool: &'a rayon::ThreadPool,
+    pool: &'a parallel::ThreadPool,
 }
 
 impl Maker<'_> {

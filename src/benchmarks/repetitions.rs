@@ -56,14 +56,14 @@ pub(super) struct Measurement<'a> {
     case: &'a Case,
     options: &'a Options,
     pub(super) subject: PreparedSystem,
-    pool: rayon::ThreadPool,
+    pool: parallel::ThreadPool,
     repetitions: Vec<Repetition>,
 }
 
 impl<'a> Measurement<'a> {
     /// Prepares the start state of `case`.
     pub(super) fn new(case: &'a Case, options: &'a Options) -> Result<Self, BenchError> {
-        let pool = parallel::pool(options.n_threads)?;
+        let pool = parallel::ThreadPool::new(options.n_threads)?;
         let subject = prepare::subject(case, options, &pool)?;
         process::reset_peak();
         Ok(Self { case, options, subject, pool, repetitions: Vec::new() })

@@ -25,7 +25,7 @@ pub enum Lookup {
 /// The cache cannot be written. The run continues; the next start takes as long as this one.
 #[derive(Debug, thiserror::Error)]
 #[error(
-    "start state cache {}: cannot be written: {reason}; choose a writable folder with --cache",
+    "start state cache {}: cannot be written: {reason}; choose a writable folder",
     path.display()
 )]
 pub struct CacheError {
@@ -130,6 +130,6 @@ mod tests {
         let file = folder.path().join("file");
         fs::write(&file, b"").unwrap();
         let error = Cache::new(file.join("cache")).store(7, b"state").unwrap_err();
-        assert!(error.to_string().contains("--cache"), "{error}");
+        assert!(error.to_string().contains("writable folder"), "{error}");
     }
 }

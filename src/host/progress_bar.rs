@@ -8,8 +8,11 @@ use std::{
     time::Duration,
 };
 
+#[cfg(feature = "cli")]
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
+#[cfg(not(feature = "cli"))]
+use super::no_terminal::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use crate::{host::clock::Pacer, snapshot::Snapshot};
 
 /// Ticks between two updates of the line.

@@ -6,6 +6,7 @@ use std::sync::{
 };
 
 /// Exit code of a process that was interrupted twice: 128 plus the number of SIGINT.
+#[cfg(feature = "cli")]
 const INTERRUPTED: i32 = 130;
 
 /// A flag that is set when the user requests to stop.
@@ -17,6 +18,7 @@ impl Shutdown {
     ///
     /// # Errors
     /// If a handler is already installed, or the operating system rejects it.
+    #[cfg(feature = "cli")]
     pub fn listen() -> Result<Self, ctrlc::Error> {
         let shutdown = Self::default();
         let is_requested = Arc::clone(&shutdown.0);

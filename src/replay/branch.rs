@@ -10,7 +10,7 @@ use crate::{
     cosim::compile::Compiled,
     host::progress_bar::Progress,
     node::{
-        command_sources::CommandSources,
+        Inputs,
         launch::{self, Finished, RunError},
         start::Started,
     },
@@ -37,8 +37,8 @@ pub enum BranchError {
     Scene(#[from] SceneError),
     /// A value that cannot change after the start.
     #[error(
-        "--set {key}: cannot change after the start, because {reason}; \
-         start a new run with it, `jamgrip run`"
+        "`{key}` cannot change after the start, because {reason}; \
+         start a new run of the scene with it"
     )]
     Fixed {
         /// The key.
@@ -48,8 +48,8 @@ pub enum BranchError {
     },
     /// The time is outside the recording, or its start was not recorded.
     #[error(
-        "--from {from_s} s: the recording can be resumed from {first_s} s to {last_s} s; \
-         choose a time in this range"
+        "cannot branch at {from_s} s: the recording can be resumed from {first_s} s to {last_s} s; \
+         choose a time between"
     )]
     OutOfRange {
         /// The requested time (s).
@@ -61,8 +61,8 @@ pub enum BranchError {
     },
     /// The simulation did not reproduce the recorded state.
     #[error(
-        "the state after tick {tick} differs from the recording, so it cannot be branched; \
-         `jamgrip replay BAG --verify` shows the difference"
+        "tick {tick} differs from the recording, so a run cannot branch from it; \
+         verify the recording for details"
     )]
     Differs {
         /// The tick.
@@ -71,7 +71,7 @@ pub enum BranchError {
     /// Objects were spawned or deleted before.
     #[error(
         "at tick {tick} the objects are not those of the scene: some were spawned or deleted \
-         during the recording; choose a time with the scene's own objects for --from"
+         during the recording; choose a time with the scene's own objects"
     )]
     OtherObjects {
         /// The tick.
@@ -133,9 +133,8 @@ pub fn branch(
     let mut options = launch::Options { duration: Some(duration), ..options.clone() };
     let origin = format!("{} after tick {tick}", run.path.display());
     options.facts.push(("branched_from", origin));
-    // External inputs are read-only; the commands are those of the recording.
-    let command = |_| (CommandSources::from_outside(vec![Box::new(script)]), None);
-    Ok(launch::launch_with(&scene, &options, begin, command)?)
+    // External inputs are read-only: the commands are those of the recording.
+    Ok(launch::launch_with(&scene, &options, begin, |_| Inputs::of_script(script))?)
 }
 
 /// Rejects changes of the world after `tick` and before `end_s`, because a branch leaves them out.

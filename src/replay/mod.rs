@@ -2,7 +2,9 @@
 
 pub mod branch; // a new run from a recorded moment
 pub mod compatibility; // which releases changed results
+#[cfg(feature = "report")]
 pub mod page; // an HTML page about a recording
+#[cfg(feature = "report")]
 mod page_data; // time series and events for the page
 pub mod play; // publishes a recording with its original timing
 pub mod player_command; // pause, seek, rate

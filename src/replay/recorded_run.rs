@@ -4,7 +4,6 @@
 use std::{
     fs, io,
     path::{Path, PathBuf},
-    sync::Arc,
 };
 
 use crate::{
@@ -204,7 +203,7 @@ impl RecordedRun {
         scene: &Scene,
         n_threads: usize,
     ) -> Result<Session, ReplayError> {
-        let pool = Arc::new(parallel::pool(n_threads).map_err(StartError::from)?);
+        let pool = parallel::ThreadPool::new(n_threads).map_err(StartError::from)?;
         let session = Session::resume(Compiled::new(scene, &pool)?, bytes);
         session.map_err(|error| self.checkpoint_error(tick, error))
     }

@@ -1,7 +1,5 @@
 //! Verification: simulates a recorded run again and compares every digest.
 
-use std::sync::Arc;
-
 use super::{
     compatibility,
     recorded_run::{RecordedRun, ReplayError},
@@ -147,7 +145,7 @@ fn start<'a>(
         return Err(ReplayError::NoStart { path: run.path.clone(), tick: first });
     }
     let (_, n_threads) = options.cpu_budget.jobs_and_threads(1);
-    let pool = Arc::new(parallel::pool(n_threads).map_err(StartError::from)?);
+    let pool = parallel::ThreadPool::new(n_threads).map_err(StartError::from)?;
     let compiled = Compiled::new(&run.scene, &pool)?;
     let session = if options.settles {
         let on_progress = &mut |it: crate::physics::fill::Progress| {

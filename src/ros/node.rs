@@ -44,13 +44,14 @@ pub const LOG_FILTER: &str = "rustdds=error,rustdds::network::udp_listener=off,r
 #[derive(Debug, thiserror::Error)]
 pub enum RosError {
     /// Discovery is off, so there is no graph to join.
-    #[error("ROS_AUTOMATIC_DISCOVERY_RANGE=OFF disables ROS 2: unset it or use --no-ros")]
+    #[error(
+        "ROS_AUTOMATIC_DISCOVERY_RANGE=OFF disables ROS 2: unset it, or disable ROS 2 in the scene"
+    )]
     Off,
     /// The node could not be created.
     #[error(
         "the node could not join ROS 2 domain {domain_id}: {reason}; is there a network \
-        interface, and are there fewer than 120 participants in this domain? --no-ros disables \
-        ROS 2"
+        interface, and are there fewer than 120 participants in this domain?"
     )]
     Join {
         /// ID of the domain.
@@ -59,7 +60,7 @@ pub enum RosError {
         reason: String,
     },
     /// A thread could not be started.
-    #[error("no thread for ROS 2: {reason}; raise the process limit, or use --no-ros")]
+    #[error("no thread for ROS 2: {reason}; raise the process limit")]
     Thread {
         /// Reason given by the operating system.
         reason: std::io::Error,

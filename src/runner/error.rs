@@ -70,7 +70,7 @@ pub enum RunnerError {
     },
     /// The operating system cannot start the threads.
     #[error("threads: {0}; request fewer with --threads")]
-    Threads(#[from] rayon::ThreadPoolBuildError),
+    Threads(#[from] crate::base::parallel::ThreadPoolError),
 }
 
 impl RunnerError {

@@ -39,9 +39,10 @@ pub(super) fn run_all(
     n_threads: usize,
     shutdown: &Shutdown,
     progress: &ProgressDisplay,
-) -> Result<Vec<CaseEnd>, rayon::ThreadPoolBuildError> {
+) -> Result<Vec<CaseEnd>, parallel::ThreadPoolError> {
     let n_threads = n_threads.clamp(1, jobs.len().max(1));
-    let pools = (0..n_threads).map(|_| parallel::pool(1)).collect::<Result<Vec<_>, _>>()?;
+    let pools =
+        (0..n_threads).map(|_| parallel::ThreadPool::new(1)).collect::<Result<Vec<_>, _>>()?;
     let ends = run_jobs(n_threads, &queue(jobs), |thread, i| {
         let line = progress.begin(i);
         let end = parallel::lead(&pools[thread], || case::run_case(&jobs[i], shutdown, &line));

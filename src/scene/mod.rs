@@ -4,6 +4,7 @@
 //! `text` is the way from YAML to here: `yaml` makes a tree with places, `schema` walks its keys
 //! with their units and limits, `check` joins them; all faults come at once. `print` goes back.
 
+pub mod builder; // a base scene with changed keys
 pub mod error; // what can be wrong with a scene
 pub mod json; // YAML to JSON
 pub mod print; // scene to text
@@ -21,11 +22,13 @@ mod read;
 pub(crate) mod schema;
 mod schema_outputs;
 mod tree;
+#[cfg(feature = "meshes")]
 mod urdf;
 pub(crate) mod unset;
 pub(crate) mod visit;
 mod yaml;
 
+pub use builder::SceneBuilder;
 pub use error::SceneError;
 pub use print::to_yaml;
 pub use text::{load, parse};

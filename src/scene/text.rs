@@ -130,7 +130,7 @@ fn one_override(text: &str) -> Result<Node, SceneError> {
     if path.is_empty() || path.split('.').any(str::is_empty) {
         return Err(not_an_override());
     }
-    let source = format!("--set {text}");
+    let source = format!("override {text}");
     let mut node = yaml::parse(value, &source)?;
     if value.trim().is_empty() {
         node.value = Value::Null;
@@ -221,7 +221,7 @@ mod tests {
         let unknown = complaint(MINIMAL, &["object.fricton=0"]);
         assert_eq!(
             unknown,
-            "--set object.fricton=0: object.fricton: unknown key; did you mean `friction`?"
+            "override object.fricton=0: object.fricton: unknown key; did you mean `friction`?"
         );
         assert!(complaint(MINIMAL, &["seed"]).contains("not of the form key=value"));
     }

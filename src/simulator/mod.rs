@@ -26,6 +26,7 @@ mod worlds; // loads and unloads worlds
 use std::{
     cell::RefCell,
     path::{Path, PathBuf},
+    sync::Arc,
 };
 
 use serde::{Serialize, de::DeserializeOwned};
@@ -40,7 +41,7 @@ use crate::{
     cosim::refused::ChangeError,
     io::server::{Outgoing, RequestId, ServiceRequest},
     physics::boundary::shape::Aabb,
-    scene::{Outputs, Scene, resource::Shelf},
+    scene::{Scene, resource::Shelf},
     snapshot::Snapshot,
     wire::{
         cdr::Cdr,
@@ -92,13 +93,11 @@ pub struct Changed {
     pub is_state_reset: bool,
     /// True if another scene was loaded.
     pub is_scene_loaded: bool,
-    /// The new outputs, if rates of topics were changed.
-    pub outputs: Option<Outputs>,
 }
 
 /// The state of the simulator's services.
 pub struct Simulator {
-    scene: Scene,
+    scene: Arc<Scene>,
     /// Where the scene comes from, and the folder in which others are looked up.
     resource: Resource,
     folder: PathBuf,
@@ -130,9 +129,9 @@ type DecodeError = cdr_encoding::Error;
 impl Simulator {
     /// Creates a simulator of `scene` with these endpoints, in the order of the services offered.
     /// If `is_stopped`, it waits for a first command or a request to play.
-    pub fn new(scene: &Scene, endpoints: Vec<Endpoint>, is_stopped: bool) -> Self {
+    pub fn new(scene: &Arc<Scene>, endpoints: Vec<Endpoint>, is_stopped: bool) -> Self {
         Self {
-            scene: scene.clone(),
+            scene: Arc::clone(scene),
             resource: Resource::default(),
             folder: PathBuf::new(),
             version: Version::default(),
@@ -152,6 +151,11 @@ impl Simulator {
             changed: Changed::default(),
             membrane_extent: RefCell::new(None),
         }
+    }
+
+    /// The scene, with the present values of the parameters.
+    pub fn scene(&self) -> &Arc<Scene> {
+        &self.scene
     }
 
     /// Sets the version of responses.

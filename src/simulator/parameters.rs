@@ -4,6 +4,8 @@
 //! simulation runs; changes take effect with the next tick and survive resets. The other parameters
 //! are read-only. Changes are published on `/parameter_events`.
 
+use std::sync::Arc;
+
 use super::{Simulator, World, entities::stamp, services::parameter_events};
 use crate::{
     command::change::{Change, TunableParameter},
@@ -278,11 +280,10 @@ impl Simulator {
             Setting::Tunable(parameter) => {
                 let change = Change::SetParameter { parameter, value };
                 self.change(&change, world).map_err(|error| error.to_string())?;
-                parameter.set(&mut self.scene, value);
+                parameter.set(Arc::make_mut(&mut self.scene), value);
             }
             Setting::Rate(rate) => {
-                *rate(&mut self.scene.outputs) = value;
-                self.changed.outputs = Some(self.scene.outputs.clone());
+                *rate(&mut Arc::make_mut(&mut self.scene).outputs) = value;
             }
         }
         Ok(())

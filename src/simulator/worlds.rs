@@ -5,6 +5,8 @@
 //! replaces everything except what belongs to the run: outputs, the kind of controller, and the
 //! length of a tick.
 
+use std::sync::Arc;
+
 use super::{
     DecodeError, Simulator, Version, World, entity_info::EntityTable, failed,
     named_poses::has_tags, ok,
@@ -125,7 +127,7 @@ impl Simulator {
     /// Replaces the scene and everything derived from it.
     fn replace_scene(&mut self, scene: Scene, resource: Resource) {
         self.entity_table = EntityTable::new(&scene);
-        self.scene = scene;
+        self.scene = Arc::new(scene);
         self.resource = resource;
         self.spawnables = None;
         self.commands.clear();

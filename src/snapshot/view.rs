@@ -1,11 +1,11 @@
-//! A borrowed look at the whole state: what zero-copy streams write from.
+//! Borrowed results, the source of zero-copy streams.
 
 use super::Snapshot;
 use crate::base::{Real, Vec3};
 
-/// The state at the end of a tick, borrowed from the session. All slices are in order of ids.
+/// Results of a tick, borrowed from the session. All slices are in the order of ids.
 pub struct View<'a> {
-    /// The small parts; its lists are empty here.
+    /// The snapshot of the same tick.
     pub snapshot: &'a Snapshot,
     /// Positions of the grains (m).
     pub grain_positions: &'a [Vec3],

@@ -409,7 +409,7 @@ fn a_recording_keeps_up_with_real_time() {
     let mut scene = by_tick::scene();
     scene.outputs.state_rate = 1000.0;
     scene.outputs.pressure_rate = 1000.0;
-    let encoder = Arc::new(Encoder::new(&scene, &[], &[]));
+    let encoder = Arc::new(Encoder::new(&Arc::new(scene.clone()), &[], &[]));
     let mut noise = Random::new(1, Stream::Position);
     let mut vectors = |n: usize| -> Vec<Vec3> {
         (0..n).map(|_| Vec3::from_fn(|_, _| noise.between(-1.0, 1.0))).collect()

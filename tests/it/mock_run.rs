@@ -68,7 +68,7 @@ impl MockPlant {
 
 /// Runs until `is_over`; waits for a first command as a real run does.
 pub(crate) fn run(node: &Arc<RosNode>, mut is_over: impl FnMut() -> bool) {
-    let encoder = Arc::new(Encoder::new(&scene(), &[], &[]));
+    let encoder = Arc::new(Encoder::new(&Arc::new(scene()), &[], &[]));
     let mut sink = RosSink::new(node, &encoder).unwrap();
     let mut source = RosSource::new(node, &encoder).unwrap();
     let mut system = Synthetic::new("cylinder");

@@ -21,7 +21,7 @@ use jamgrip::{
     node::plant::Plant,
     scene::{Object, Shape},
     session::Session,
-    snapshot::{Parts, take},
+    snapshot::Parts,
     wire::to_ros::Encoder,
 };
 use serde_json::Value;
@@ -122,7 +122,7 @@ fn every_tick_is_verified_for_any_number_of_threads_and_lanes() {
         assert_eq!(
             (&report["ticks"], &report["compared"], &report["checkpoints"]),
             (&N_TICKS.into(), &(N_TICKS + 1).into(), &3.into()),
-            "{jobs} parts at a time, {threads} threads each"
+            "{jobs} segments in parallel, {threads} threads each"
         );
     }
     for lanes in ["1", "4", "8"] {
@@ -375,13 +375,14 @@ fn record_changes(folder: &Path, forgets: Option<u64>) {
     let scene = coarse::scene(&[]);
     let mut session = coarse::session(1, &[]);
     let mesh = &session.coupled().system.model.membrane.mesh;
-    let encoder = Arc::new(Encoder::new(&scene, &mesh.triangles, &mesh.positions));
+    let encoder =
+        Arc::new(Encoder::new(&Arc::new(scene.clone()), &mesh.triangles, &mesh.positions));
     let facts = vec![("tick_ns", "1000000".to_owned())];
     let scene_text = jamgrip::scene::to_yaml(&scene);
     let description =
         RunDescription { scene_text, scene_files: vec![], facts, format: Format::default() };
     let mut bag = Bag::create(folder, encoder, description).unwrap();
-    let packet = |session: &Session| Packet::new(take::snapshot(session, Parts::default()), None);
+    let packet = |session: &Session| Packet::new(session.snapshot(Parts::default()), None);
     for tick in 0..=130 {
         let is_due = tick % 20 == 0;
         let checkpoints = is_due.then(|| session.checkpoint()).flatten().into_iter().collect();

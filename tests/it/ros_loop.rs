@@ -62,7 +62,7 @@ fn topic(name: &str) -> Topic {
 
 /// The encoder of the scene, with a membrane that has no triangles.
 fn encoder() -> Arc<Encoder> {
-    Arc::new(Encoder::new(&scene(), &[], &[]))
+    Arc::new(Encoder::new(&Arc::new(scene()), &[], &[]))
 }
 
 /// Oracle: the formula of the synthetic system, message by message; a late joiner receives the

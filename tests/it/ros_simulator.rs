@@ -189,7 +189,8 @@ proptest! {
         let (specs, endpoints) = endpoints("/jamgrip", None);
         let n_topics = services::action_topics("/jamgrip", None).len();
         let scene = crate::by_tick::scene();
-        let mut simulator = Simulator::new(&scene, endpoints, false).with_n_topics(n_topics);
+        let mut simulator = Simulator::new(&std::sync::Arc::new(scene), endpoints, false)
+            .with_n_topics(n_topics);
         let system = Synthetic::new("cylinder");
         let result = system.snapshot.clone();
         let mut world = World { access: &mut Dummy(system), snapshot: &result };

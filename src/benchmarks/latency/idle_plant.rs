@@ -19,7 +19,7 @@ use crate::{
     physics::{System, health::Diverged},
     session::Session,
     simulator::WorldAccess,
-    snapshot::{Parts, Snapshot, take, view::View},
+    snapshot::{Parts, Snapshot, view::View},
 };
 
 /// Time for which all solver threads are busy in each tick (s).
@@ -32,7 +32,7 @@ pub(super) struct IdlePlant {
     session: Session,
     tick: u64,
     tick_ns: u64,
-    pool: rayon::ThreadPool,
+    pool: parallel::ThreadPool,
     solver: System,
     /// Number of each command, and the start time of the first tick that has it (ns).
     used: Samples,
@@ -47,7 +47,7 @@ impl IdlePlant {
         tick_ns: u64,
         options: &Options,
     ) -> Result<Self, BenchError> {
-        let pool = parallel::pool(options.n_threads)?;
+        let pool = parallel::ThreadPool::new(options.n_threads)?;
         let grown = parallel::lead(&pool, || BOX.grow())?;
         let solver = BOX.system(grown);
         let published = RefCell::default();
@@ -89,7 +89,7 @@ impl WorldAccess for IdlePlant {
 }
 
 impl Plant for IdlePlant {
-    type Fault = Diverged;
+    type Error = Diverged;
 
     fn tick(&mut self, commands: &[Command]) -> Result<(), Diverged> {
         let now = wall_ns();
@@ -112,7 +112,7 @@ impl Plant for IdlePlant {
     fn snapshot(&self, parts: Parts) -> Snapshot {
         let time_ns = self.tick * self.tick_ns;
         let (tick, run_tick) = (Tick(self.tick), Tick(self.tick));
-        Snapshot { tick, time_ns, run_tick, ..take::snapshot(&self.session, parts) }
+        Snapshot { tick, time_ns, run_tick, ..self.session.snapshot(parts) }
     }
 
     fn view<'a>(&'a self, snapshot: &'a Snapshot) -> View<'a> {
@@ -120,6 +120,6 @@ impl Plant for IdlePlant {
         if 0 < snapshot.time_ns {
             self.published.borrow_mut().push((snapshot.time_ns, wall_ns()));
         }
-        take::view(&self.session, snapshot)
+        self.session.view(snapshot)
     }
 }

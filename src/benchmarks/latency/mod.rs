@@ -24,10 +24,10 @@ use crate::{
         real::{real, real_of},
     },
     host::{progress_bar::Progress, shutdown::Shutdown},
-    io::{fanout::Delivery, sink::RunStatistics},
+    io::fanout::Delivery,
     node::{
-        RunContext, command_sources::CommandSources, lift_monitor::LiftMonitor, lockstep::Gate,
-        outputs::OutputSinks, schedule::Schedule,
+        Inputs, RunContext, Supervision, command_sources::CommandSources, lockstep::Gate,
+        outputs::OutputSinks,
     },
     ros::{
         discovery::{DiscoveryExtent, DiscoveryRange},
@@ -112,10 +112,11 @@ fn measure(case: &Case, options: &Options) -> Result<BenchResult, BenchError> {
     let mut plant = IdlePlant::new(session, scene.time.tick_ns, options)?;
     let prefix = format!("jamgrip_bench_{}", std::process::id());
     let mesh = &plant.session().coupled().system.model.membrane.mesh;
-    let encoder = Arc::new(Encoder::new(&scene, &mesh.triangles, &mesh.positions));
+    let encoder =
+        Arc::new(Encoder::new(&Arc::new(scene.clone()), &mesh.triangles, &mesh.positions));
     let mut context = context(&scene, &encoder, &prefix, &plant, seconds).map_err(latency)?;
     let child = spawn(&prefix, seconds).map_err(latency)?;
-    let shutdown = context.shutdown.clone();
+    let shutdown = context.shutdown().clone();
     let listener = std::thread::spawn(move || {
         let samples = samples_of(child);
         // Without the other process there are no commands, and the run would wait forever.
@@ -125,7 +126,7 @@ fn measure(case: &Case, options: &Options) -> Result<BenchResult, BenchError> {
     let report = crate::node::run(&mut plant, &mut context);
     report.ending.map_err(|error| BenchError::Diverged { case: case.name.to_owned(), error })?;
     let samples = listener.join().expect("a panic is a bug in this program").map_err(latency)?;
-    context.outputs.close();
+    context.close();
     let latencies = plant.latencies(&samples).map_err(latency)?;
     let state = &plant.session().coupled().system.state;
     Ok(BenchResult {
@@ -160,23 +161,17 @@ fn context(
     let stream = Stream::open(prefix, n_grains, n_vertices).map_err(|it| closed(&it))?;
     outputs.stream = Some(stream);
     let end = std::time::Duration::from_secs_f64(seconds).as_nanos();
-    Ok(RunContext {
-        command_sources: CommandSources::new(scene, vec![Box::new(source)]),
+    let mut scene = scene.clone();
+    scene.outputs.real_time = true;
+    let inputs = Inputs {
+        command_sources: CommandSources::new(&scene, vec![Box::new(source)]),
         gate: Gate::new(Lockstep::OFF),
-        front: None,
-        outputs,
-        schedule: Schedule::new(&scene.outputs, scene.time.tick_ns),
-        lift_monitor: LiftMonitor::default(),
-        progress: Progress::new(true),
-        shutdown: Shutdown::default(),
-        tick_ns: scene.time.tick_ns,
-        end_ns: Some(u64::try_from(end).unwrap_or(u64::MAX)),
-        is_real_time: true,
-        about: RunStatistics::default(),
-        n_packets: 0,
-        has_missed: false,
-        checkpoints: Vec::new(),
-    })
+        server: None,
+    };
+    let (progress, shutdown) = (Progress::new(true), Shutdown::default());
+    let end_ns = Some(u64::try_from(end).unwrap_or(u64::MAX));
+    let supervision = Supervision { progress, shutdown, end_ns };
+    Ok(RunContext::new(Arc::new(scene), inputs, outputs, supervision))
 }
 
 /// The network is private, so any domain will do.

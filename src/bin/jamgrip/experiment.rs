@@ -1,4 +1,4 @@
-//! Command line to experiments.
+//! The subcommands `experiment`, `validate` and `report`.
 
 use std::{
     error::Error,
@@ -20,13 +20,13 @@ use jamgrip::{
     },
 };
 
-use crate::args::{Experiment, Manner, Validate};
+use crate::args::{CommonArgs, Experiment, Validate};
 
-/// Something could not run.
+/// A case could not run.
 const FAILED: u8 = 1;
-/// Everything ran, and a row is red.
+/// All cases ran, and a row fails.
 const RED: u8 = 3;
-/// Someone asked it to end: 128 and the number of SIGINT.
+/// The user interrupted it: 128 plus the number of SIGINT.
 const INTERRUPTED: u8 = 130;
 
 pub(crate) fn experiment(args: &Experiment) -> Result<ExitCode, Box<dyn Error>> {
@@ -43,15 +43,15 @@ pub(crate) fn experiment(args: &Experiment) -> Result<ExitCode, Box<dyn Error>> 
     let out = args.out(name);
     let policy = Policy { is_fresh: args.fresh, allows_mixed_builds: args.mixed_builds };
     let tasks = [Task { request, out: Some(out.clone()) }];
-    let ending = run(&tasks, &args.manner, policy)?;
+    let ending = run(&tasks, &args.common, policy)?;
     let Ending::Finished(outcomes) = ending else { return interrupted(&ending, true) };
     let mut stdout = io::stdout().lock();
     for outcome in &outcomes {
-        if args.manner.json {
+        if args.common.json {
             writeln!(stdout, "{}", outcome.to_line())?;
         } else {
             write!(stdout, "{}", table::of_one(outcome, layout()))?;
-            writeln!(stdout, "results in {}, to be read: report.html", out.display())?;
+            writeln!(stdout, "results in {}; see report.html", out.display())?;
         }
     }
     Ok(verdict(&outcomes))
@@ -71,12 +71,12 @@ pub(crate) fn validate(args: &Validate) -> Result<ExitCode, Box<dyn Error>> {
     };
     let tasks: Vec<Task<'_>> = experiments.into_iter().map(task).collect();
     let policy = Policy { is_fresh: args.fresh, allows_mixed_builds: false };
-    let ending = run(&tasks, &args.manner, policy)?;
+    let ending = run(&tasks, &args.common, policy)?;
     let Ending::Finished(outcomes) = ending else {
         return interrupted(&ending, args.out.is_some());
     };
     let mut stdout = io::stdout().lock();
-    if args.manner.json {
+    if args.common.json {
         let rows = outcomes.iter().flat_map(Outcome::rows_as_json);
         let lines: Vec<String> = rows.map(|row| row.to_string()).collect();
         writeln!(stdout, "[\n{}\n]", lines.join(",\n"))?;
@@ -99,11 +99,11 @@ fn list() -> Result<ExitCode, Box<dyn Error>> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn run(tasks: &[Task<'_>], manner: &Manner, policy: Policy) -> Result<Ending, Box<dyn Error>> {
+fn run(tasks: &[Task<'_>], common: &CommonArgs, policy: Policy) -> Result<Ending, Box<dyn Error>> {
     let shutdown = Shutdown::listen()?;
     let options = Options {
-        n_threads: manner.n_threads(),
-        is_quiet: manner.json,
+        n_threads: common.n_threads(),
+        is_quiet: common.json,
         policy,
         shutdown: &shutdown,
     };
@@ -112,7 +112,7 @@ fn run(tasks: &[Task<'_>], manner: &Manner, policy: Policy) -> Result<Ending, Bo
 
 fn interrupted(ending: &Ending, is_saved: bool) -> Result<ExitCode, Box<dyn Error>> {
     if let Ending::Interrupted { n_done, n_cases } = ending {
-        let rest = if is_saved { "; the same command goes on from here" } else { "" };
+        let rest = if is_saved { "; the same command resumes the run" } else { "" };
         writeln!(io::stderr().lock(), "interrupted: {n_done} of {n_cases} cases done{rest}")?;
     }
     Ok(ExitCode::from(INTERRUPTED))
@@ -126,7 +126,7 @@ fn verdict(outcomes: &[Outcome]) -> ExitCode {
     if is_red { ExitCode::from(RED) } else { ExitCode::SUCCESS }
 }
 
-/// The terminal's width, where the shell tells it.
+/// Width of the terminal, if the shell exports it.
 fn layout() -> TableLayout {
     TableLayout::new(std::env::var("COLUMNS").ok().and_then(|columns| columns.parse().ok()))
 }

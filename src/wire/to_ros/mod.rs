@@ -11,6 +11,8 @@ mod contacts; // contacts and their arrows
 mod parts; // common parts of messages
 mod run; // clock, statistics, diagnostics
 
+use std::sync::Arc;
+
 use super::{
     from_ros::CommandCodec,
     messages::{RosMessage, std_msgs::Bool},
@@ -20,7 +22,7 @@ use super::{
 };
 use crate::{
     base::Vec3,
-    scene::{Controller, Outputs, Scene},
+    scene::{Controller, Scene},
     snapshot::{
         Snapshot,
         due::{is_due, is_first_of},
@@ -43,7 +45,7 @@ const DIAGNOSTICS_RATE: f64 = 1.0;
 /// Encodes snapshots as messages.
 #[derive(Clone, Debug)]
 pub struct Encoder {
-    scene: Scene,
+    scene: Arc<Scene>,
     /// Objects with topics, and the index of the first topic of each.
     objects: Vec<(String, usize)>,
     triangles: Vec<[u32; 3]>,
@@ -55,11 +57,11 @@ pub struct Encoder {
 impl Encoder {
     /// Creates an encoder for a scene and its membrane: vertex indices of each triangle, and the
     /// vertices (m) of the shape at rest, along the flange's axes.
-    pub fn new(scene: &Scene, triangles: &[[u32; 3]], vertices: &[Vec3]) -> Self {
+    pub fn new(scene: &Arc<Scene>, triangles: &[[u32; 3]], vertices: &[Vec3]) -> Self {
         let topics = topics(scene);
         let objects: Vec<String> = scene.objects.iter().map(|it| it.name.clone()).collect();
         Self {
-            scene: scene.clone(),
+            scene: Arc::clone(scene),
             triangles: triangles.to_vec(),
             vertices: vertices.to_vec(),
             commands: CommandCodec::new(topics.clone(), objects.clone()),
@@ -85,15 +87,13 @@ impl Encoder {
     }
 
     /// Sets another scene in the same run. Topics and objects with topics are kept.
-    pub fn with_scene(&self, scene: &Scene, triangles: &[[u32; 3]], vertices: &[Vec3]) -> Self {
-        let (triangles, vertices) = (triangles.to_vec(), vertices.to_vec());
-        Self { scene: scene.clone(), triangles, vertices, ..self.clone() }
+    pub fn with_scene(self, scene: Arc<Scene>) -> Self {
+        Self { scene, ..self }
     }
 
-    /// Sets other outputs, such as rates.
-    pub fn with_outputs(&self, outputs: &Outputs) -> Self {
-        let scene = Scene { outputs: outputs.clone(), ..self.scene.clone() };
-        Self { scene, ..self.clone() }
+    /// Sets another membrane; see `new`.
+    pub fn with_membrane(self, triangles: &[[u32; 3]], vertices: &[Vec3]) -> Self {
+        Self { triangles: triangles.to_vec(), vertices: vertices.to_vec(), ..self }
     }
 
     /// The scene.
