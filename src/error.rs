@@ -2,8 +2,7 @@
 
 use crate::{
     base::parallel::ThreadPoolError,
-    command::change::ChangeRefused,
-    cosim::{compile::CompileError, saved_state::SavedStateError},
+    cosim::{compile::CompileError, refused::ChangeError, saved_state::SavedStateError},
     physics::health::Diverged,
     scene::SceneError,
     session::SessionError,
@@ -26,7 +25,7 @@ pub enum Error {
     /// The simulation diverged.
     Diverged(#[from] Diverged),
     /// A change of the world was rejected.
-    Change(#[from] ChangeRefused),
+    Change(#[from] ChangeError),
     /// A saved state could not be read.
     SavedState(#[from] SavedStateError),
 }

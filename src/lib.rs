@@ -54,6 +54,7 @@
 pub mod base; // vectors, ticks, digests, random streams, threads, SIMD lanes
 pub mod scene; // text to checked numbers
 pub mod physics; // grains, membrane, chamber
+pub mod measure; // what a state shows
 pub mod cosim; // one tick of the coupled system
 pub mod command; // inputs of a session
 pub mod session; // one run in memory

@@ -335,6 +335,25 @@ pub fn for_parts_of_two<A: Send, B: Send>(
     });
 }
 
+/// `write(start, part of each)` for parts that cover four slices of the same length; they begin at
+/// multiples of `PART`.
+pub fn for_parts_of_four<A: Send, B: Send, C: Send, D: Send>(
+    (a, b, c, d): (&mut [A], &mut [B], &mut [C], &mut [D]),
+    write: impl Fn(usize, &mut [A], &mut [B], &mut [C], &mut [D]) + Sync,
+) {
+    let n = a.len();
+    assert!([b.len(), c.len(), d.len()] == [n; 3], "the slices belong together");
+    let (a, b, c, d) = (Shared::new(a), Shared::new(b), Shared::new(c), Shared::new(d));
+    split(n.div_ceil(PART), &|parts| {
+        let range = parts.start * PART..n.min(parts.end * PART);
+        #[expect(unsafe_code, reason = "see `Shared`")]
+        // SAFETY: `split` gives out each part once, while all are borrowed.
+        let (a, b, c, d) =
+            unsafe { (a.part(&range), b.part(&range), c.part(&range), d.part(&range)) };
+        write(range.start, a, b, c, d);
+    });
+}
+
 /// `write(i, &mut a[i], &mut b[i])` for every element of two slices of the same length.
 pub fn for_each_of_two<A: Send, B: Send>(
     a: &mut [A],

@@ -21,6 +21,18 @@ pub fn count(value: Real) -> usize {
     value.ceil().max(1.0) as usize
 }
 
+/// A number of substeps, or of anything that is counted for long, as a real number.
+#[expect(clippy::cast_precision_loss, reason = "counts stay far below 2^53")]
+pub fn real_of(count: u64) -> Real {
+    count as Real
+}
+
+/// A count as a real number.
+#[expect(clippy::cast_precision_loss, reason = "counts stay far below 2^53")]
+pub fn real(count: usize) -> Real {
+    count as Real
+}
+
 /// A number that is a small whole one as an index.
 #[expect(
     clippy::cast_possible_truncation,

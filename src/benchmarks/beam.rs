@@ -11,11 +11,8 @@ use crate::{
     physics::{
         System, SystemBuilder,
         builder::{BuildError, Membrane, Vertices, Wall},
-        contact::{
-            law::{PairLaw, Surface},
-            stiffness_at_vertex,
-        },
-        critical_step::critical_step,
+        critical_step::{critical_step, stiffness_at_vertex},
+        law::{PairLaw, Surface},
         membrane::{
             CARRIER_ID, FREE, MembraneMaterial, MembraneModel,
             bar::Bar,
@@ -166,6 +163,10 @@ fn held(mut membrane: MembraneModel, grains: Grains) -> Result<System, BuildErro
 /// Lets everything keep a share of its velocities.
 fn drag(system: &mut System, share: Real) {
     let State { grains, membrane, .. } = &mut system.state;
-    let all = grains.velocities.iter_mut().chain(&mut grains.spins).chain(&mut membrane.velocities);
+    let all = grains
+        .velocities
+        .iter_mut()
+        .chain(&mut grains.angular_velocities)
+        .chain(&mut membrane.velocities);
     all.for_each(|it| *it *= share);
 }

@@ -8,7 +8,10 @@ use super::{
     sanity::{Seen, check_lift},
 };
 use crate::{
-    base::{Real, lanes, parallel},
+    base::{
+        Real, lanes, parallel,
+        real::{real, real_of},
+    },
     cosim::compile::Compiled,
     host::{clock::Stopwatch, progress_bar::Progress},
     node::{
@@ -17,10 +20,7 @@ use crate::{
         schedule::Schedule,
         start::{self, Started},
     },
-    physics::{
-        measure::{real, real_of},
-        membrane::mesh::Mesh,
-    },
+    physics::membrane::mesh::Mesh,
     scene::{self, Scene, SceneError},
     session::Session,
 };

@@ -14,8 +14,8 @@ use crate::{
     physics::{
         System, SystemBuilder,
         builder::Wall,
-        contact::law::Surface,
-        neighbours::weigh_pairs,
+        law::Surface,
+        neighbours::update_pair_masses,
         packing::{
             Grown, Growth, Recipe, Room, first_scale, numbering::along_curve, scatter,
             scatter::NoRoom, sphere_volume,
@@ -115,7 +115,7 @@ impl Boxed {
     pub(super) fn size(&self) -> Vec3 {
         let edge = self.edge();
         let lid = if self.phase == Phase::Flow { OPENED } else { 1.0 };
-        let n = self.n_tiles.map(crate::physics::measure::real);
+        let n = self.n_tiles.map(crate::base::real::real);
         Vec3::new(n[0] * edge, n[1] * edge, n[2] * edge * lid)
     }
 
@@ -166,7 +166,7 @@ impl Boxed {
             drag(&mut system, DRAG[0]);
         }
         system.state.grains.masses = masses_of(&system.state.grains);
-        weigh_pairs(&system.state, &mut system.scratch.neighbours);
+        update_pair_masses(&system.state, &mut system.scratch.neighbours);
         come_to_rest(&mut system, N_REST[0]);
         Ok(system.state)
     }
@@ -199,7 +199,7 @@ impl Boxed {
     fn mirrored(&self, tile: &Grains) -> Grains {
         let (edge, [nx, ny, nz]) = (self.edge(), self.n_tiles);
         let along = |k: usize, x: Real| {
-            let from = crate::physics::measure::real(k) * edge;
+            let from = crate::base::real::real(k) * edge;
             if k.is_multiple_of(2) { from + x } else { from + edge - x }
         };
         let mut positions = Vec::with_capacity(tile.len() * nx * ny * nz);
@@ -250,13 +250,13 @@ fn come_to_rest(system: &mut System, n_steps: [u64; 2]) {
 /// Lets each grain keep a share of its velocities.
 fn drag(system: &mut System, share: Real) {
     let grains = &mut system.state.grains;
-    grains.velocities.iter_mut().chain(&mut grains.spins).for_each(|it| *it *= share);
+    grains.velocities.iter_mut().chain(&mut grains.angular_velocities).for_each(|it| *it *= share);
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::physics::measure::{normal_forces, rest::unbalanced_force};
+    use crate::measure::{normal_forces, rest::unbalanced_force};
 
     /// Oracle: the head of this file. Tolerance 1e-9: the overlap, a hundredth of the radius, is a
     /// difference of coordinates of 0.5 m, known to 1e-16 of that.

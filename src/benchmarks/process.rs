@@ -3,7 +3,7 @@
 
 use std::fs;
 
-use crate::{base::Real, physics::measure::real_of};
+use crate::base::{Real, real::real_of};
 
 /// Forgets the peak of memory so far: what comes next is then counted alone.
 pub(super) fn forget_peak() {

@@ -12,13 +12,14 @@ use super::{
     sanity::Seen,
 };
 use crate::{
-    base::{Real, digest::Digest, lanes, parallel},
-    host::clock::Stopwatch,
-    physics::{
-        System,
-        measure::{real, real_of},
-        substep::STAGES,
+    base::{
+        Real,
+        digest::Digest,
+        lanes, parallel,
+        real::{real, real_of},
     },
+    host::clock::Stopwatch,
+    physics::{System, substep::STAGES},
 };
 
 /// Laps that are run however long they take: a median needs three.

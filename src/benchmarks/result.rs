@@ -11,9 +11,9 @@ use super::{
     repetitions::{Repetition, Work},
     sanity::Seen,
 };
-use crate::{
-    base::Real,
-    physics::measure::{real, real_of},
+use crate::base::{
+    Real,
+    real::{real, real_of},
 };
 
 /// Stages below this share are not shown to people.

@@ -2,12 +2,10 @@
 //! very fast.
 
 use crate::{
-    base::Real,
+    base::{Real, real::real},
+    measure::{kinetic_energy, packing},
     node::lift_monitor::LiftMetrics,
-    physics::{
-        Model, Scratch, State,
-        measure::{kinetic_energy, packing, real},
-    },
+    physics::{Model, Scratch, State},
 };
 
 /// What a state is like.
@@ -114,7 +112,7 @@ impl Seen {
         Self {
             n_grains: state.grains.len(),
             n_grain_contacts: packing.n_grain_contacts,
-            n_wall_contacts: scratch.wall_forces.iter().filter(|wall| wall.normal > 0.0).count(),
+            n_wall_contacts: scratch.wall_forces.iter().filter(|wall| wall.flags.touches()).count(),
             n_membrane_contacts: packing.n_membrane_contacts,
             n_body_contacts: packing.n_body_contacts,
             overlap_max: packing.overlap_max,

@@ -9,15 +9,17 @@ use super::{
     rapier_world::RapierWorld,
 };
 use crate::{
-    base::{Pose, Real, Vec3, real::Twist},
-    command::change::ChangeRefused,
+    base::{
+        Pose, Real, Vec3,
+        real::{Twist, real},
+    },
+    cosim::refused::ChangeError,
     physics::{
         Model, Scratch, State, System,
         boundary::{
             body::BodyMotion,
             shape::{Bulk, Surface},
         },
-        measure::real,
         model::{BodyModel, BodySurface},
     },
     scene::{Object, Scene},
@@ -53,12 +55,12 @@ impl Coupled {
     ///
     /// # Errors
     /// If it cannot be simulated, or something is where it shall be.
-    pub fn insert(&mut self, scene: &Scene, object: &Object) -> Result<(), ChangeRefused> {
+    pub fn insert(&mut self, scene: &Scene, object: &Object) -> Result<(), ChangeError> {
         let (body, bulk) =
-            body(scene, object).map_err(|fault| ChangeRefused::Unusable(fault.to_string()))?;
+            body(scene, object).map_err(|fault| ChangeError::Unusable(fault.to_string()))?;
         let critical = critical_step_with(scene, &self.system.model, &body);
         if critical < self.system.model.substep {
-            return Err(ChangeRefused::Unusable(format!(
+            return Err(ChangeError::Unusable(format!(
                 "object `{}` needs a substep of {critical:.3e} s, this run has {:.3e} s: take a \
                  softer material, or a scene with a shorter time.substep",
                 object.name, self.system.model.substep
@@ -93,7 +95,7 @@ impl Coupled {
         scene: &Scene,
         i: usize,
         motion: &BodyMotion,
-    ) -> Result<(), ChangeRefused> {
+    ) -> Result<(), ChangeError> {
         let is_elsewhere = self.world.motion(i).pose != motion.pose;
         if is_elsewhere {
             let (name, body) = (&scene.objects[i].name, &self.system.model.bodies[i]);
@@ -111,7 +113,7 @@ impl Coupled {
     ///
     /// # Errors
     /// If the bag would be in the table or in an object there.
-    pub fn place_flange(&mut self, scene: &Scene, pose: &Pose) -> Result<(), ChangeRefused> {
+    pub fn place_flange(&mut self, scene: &Scene, pose: &Pose) -> Result<(), ChangeError> {
         let mut state = self.system.state.clone();
         carry(&mut state, pose);
         if let Some(other) = self.in_the_bags_way(&state) {
@@ -135,7 +137,7 @@ impl Coupled {
         name: &str,
         body: &BodyModel,
         (pose, except): (&Pose, Option<usize>),
-    ) -> Result<(), ChangeRefused> {
+    ) -> Result<(), ChangeError> {
         let BodySurface::Shape(surface) = &body.surface else { return Ok(()) };
         let other = if reaches_into(surface, pose, &self.system.state, &self.system.model) {
             Some(InTheWay::Bag)
@@ -163,13 +165,13 @@ impl Coupled {
     }
 }
 
-fn refused(scene: &Scene, what: &str, with: InTheWay) -> ChangeRefused {
+fn refused(scene: &Scene, what: &str, with: InTheWay) -> ChangeError {
     let with = match with {
         InTheWay::Table => "the table".to_owned(),
         InTheWay::Bag => "the gripper".to_owned(),
         InTheWay::Object(i) => format!("`{}`", scene.objects[i].name),
     };
-    ChangeRefused::Overlap { what: what.to_owned(), with }
+    ChangeError::Overlap { what: what.to_owned(), with }
 }
 
 /// True if a body would have a piece of the bag inside: a vertex, the middle of a facet, a grain, or
@@ -215,7 +217,7 @@ fn carry(state: &mut State, pose: &Pose) {
     let grains = &mut state.grains;
     for i in 0..grains.positions.len() {
         grains.velocities[i] = velocity(&grains.velocities[i], &grains.positions[i]);
-        grains.spins[i] = turn * (grains.spins[i] - flange.twist.angular);
+        grains.angular_velocities[i] = turn * (grains.angular_velocities[i] - flange.twist.angular);
         grains.positions[i] = place(&grains.positions[i]);
     }
     let membrane = &mut state.membrane;
@@ -224,8 +226,11 @@ fn carry(state: &mut State, pose: &Pose) {
         membrane.positions[i] = place(&membrane.positions[i]);
     }
     let springs = &mut state.springs;
-    for spring in
-        springs.pairs.iter_mut().chain(&mut springs.walls).chain(&mut springs.spheres.springs)
+    for spring in springs
+        .pairs
+        .iter_mut()
+        .chain(&mut springs.walls.springs)
+        .chain(&mut springs.spheres.springs)
     {
         *spring = turn * *spring;
     }

@@ -9,18 +9,18 @@ mod change; // what no body could do by moving
 pub mod compile;
 pub mod flange;
 pub mod rapier_world;
+pub mod refused; // why a change is rejected
 pub mod saved_state;
 pub mod volume; // whether places overlap
 
 use crate::{
     base::{
         Pose, Real, Vec3,
-        real::{Twist, Wrench},
+        real::{Twist, Wrench, real},
     },
     physics::{
         Controls, Model, State, System,
         boundary::{body::BodyMotion, wall::CARRIER},
-        measure::real,
     },
 };
 use flange::Limits;

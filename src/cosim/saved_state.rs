@@ -9,7 +9,7 @@ use crate::{
         State,
         boundary::{body::BodyMotion, motion::WallMemory},
         membrane::MembraneState,
-        state::{Grains, N_PATCHES, Patch, Patches, SphereSprings, Springs},
+        state::{Grains, ListedSprings, N_PATCHES, Patch, Patches, Springs},
     },
 };
 
@@ -55,6 +55,15 @@ struct Numbers {
     sphere_springs: Vec<[Real; 3]>,
 }
 
+/// What contacts remember besides their springs. It follows the other numbers where there is any.
+#[derive(Default, Serialize, Deserialize)]
+struct Memories {
+    pairs: Vec<Real>,
+    /// Contacts of walls with grains that are listed.
+    wall_ids: Vec<[u32; 2]>,
+    walls: Vec<Real>,
+}
+
 const DIGEST_BYTES: usize = 8;
 
 /// The bytes of `state`, all of it.
@@ -62,7 +71,7 @@ pub fn write(state: &State) -> Vec<u8> {
     let numbers = Numbers {
         grain_positions: arrays(&state.grains.positions),
         grain_velocities: arrays(&state.grains.velocities),
-        grain_spins: arrays(&state.grains.spins),
+        grain_spins: arrays(&state.grains.angular_velocities),
         radii: state.grains.radii.clone(),
         masses: state.grains.masses.clone(),
         vertex_positions: arrays(&state.membrane.positions),
@@ -70,7 +79,7 @@ pub fn write(state: &State) -> Vec<u8> {
         pair_ids: state.pair_ids.clone(),
         pair_springs: arrays(&state.springs.pairs),
         patches: state.springs.patches.iter().map(patch_rows).collect(),
-        wall_springs: arrays(&state.springs.walls),
+        wall_springs: wall_springs(state),
         body_springs: arrays(&state.springs.bodies),
         gauge: state.gauge,
         walls: state.walls.iter().map(motion_row).collect(),
@@ -78,41 +87,96 @@ pub fn write(state: &State) -> Vec<u8> {
         sphere_springs: arrays(&state.springs.spheres.springs),
     };
     let mut bytes = postcard::to_stdvec(&numbers).expect("a list of numbers always serialises");
-    // Left out where no wall needs it, which is what versions before it wrote.
-    if !state.wall_memory.is_empty() {
-        let memory: Vec<[Real; 2]> =
+    let memories = Memories {
+        pairs: state.springs.pair_memories.clone(),
+        wall_ids: state.springs.walls.ids.clone(),
+        walls: state.springs.walls.memories.clone(),
+    };
+    let is_cohesive = !memories.pairs.is_empty() || !memories.walls.is_empty();
+    let moves_by_itself = !state.wall_memory.is_empty();
+    // Only cohesive laws and walls that move by time or load have any: without them the bytes are
+    // those of earlier versions.
+    if is_cohesive || moves_by_itself {
+        let memories = if is_cohesive { memories } else { Memories::default() };
+        bytes = postcard::to_extend(&memories, bytes).expect("a list of numbers always serialises");
+    }
+    if moves_by_itself {
+        let walls: Vec<[Real; 2]> =
             state.wall_memory.iter().map(|it| [it.time, it.force]).collect();
-        let memory = postcard::to_stdvec(&memory).expect("a list of numbers always serialises");
-        bytes.extend(memory);
+        bytes = postcard::to_extend(&walls, bytes).expect("a list of numbers always serialises");
     }
     sealed(bytes)
 }
 
-/// What follows the numbers of a state: the memory of the walls, if any wall has one.
-fn wall_memory(rest: &[u8]) -> Option<Vec<WallMemory>> {
+/// What follows the numbers of a state: memories of contacts, then those of walls, if there are any.
+fn read_memories(rest: &[u8]) -> Result<(Memories, Vec<WallMemory>), postcard::Error> {
     if rest.is_empty() {
-        return Some(Vec::new());
+        return Ok((Memories::default(), Vec::new()));
     }
-    let memory: Vec<[Real; 2]> = postcard::from_bytes(rest).ok()?;
-    Some(memory.into_iter().map(|[time, force]| WallMemory { time, force }).collect())
+    let (memories, rest) = postcard::take_from_bytes(rest)?;
+    if rest.is_empty() {
+        return Ok((memories, Vec::new()));
+    }
+    let walls: Vec<[Real; 2]> = postcard::from_bytes(rest)?;
+    let walls = walls.into_iter().map(|[time, force]| WallMemory { time, force }).collect();
+    Ok((memories, walls))
 }
 
 /// True if both are the same to the bit. As in the digest, only loaded springs count: which empty
 /// pairs are listed depends on when the lists were made.
 pub(crate) fn is_same(one: State, other: State) -> bool {
     let bytes = |mut state: State| {
-        let Springs { pairs, spheres, .. } = &mut state.springs;
-        keep_loaded(&mut state.pair_ids, pairs);
-        keep_loaded(&mut spheres.ids, &mut spheres.springs);
+        let Springs { pairs, pair_memories, spheres, walls, .. } = &mut state.springs;
+        keep_loaded(&mut state.pair_ids, pairs, pair_memories);
+        keep_loaded(&mut spheres.ids, &mut spheres.springs, &mut spheres.memories);
+        keep_loaded(&mut walls.ids, &mut walls.springs, &mut walls.memories);
         write(&state)
     };
     bytes(one) == bytes(other)
 }
 
-fn keep_loaded(ids: &mut Vec<[u32; 2]>, springs: &mut Vec<Vec3>) {
-    let mut is_loaded = springs.iter().map(|spring| *spring != Vec3::zeros());
-    ids.retain(|_| is_loaded.next() == Some(true));
-    springs.retain(|spring| *spring != Vec3::zeros());
+fn keep_loaded(ids: &mut Vec<[u32; 2]>, springs: &mut Vec<Vec3>, memories: &mut Vec<Real>) {
+    let width = memories.len() / ids.len().max(1);
+    let remembers = |k: usize| memories[k * width..(k + 1) * width].iter().any(|it| *it != 0.0);
+    let is_loaded: Vec<bool> = (springs.iter().enumerate())
+        .map(|(k, spring)| *spring != Vec3::zeros() || remembers(k))
+        .collect();
+    let mut of_ids = is_loaded.iter();
+    ids.retain(|_| of_ids.next() == Some(&true));
+    let mut of_springs = is_loaded.iter();
+    springs.retain(|_| of_springs.next() == Some(&true));
+    let mut of_memories = is_loaded.iter().flat_map(|it| std::iter::repeat_n(*it, width));
+    memories.retain(|_| of_memories.next() == Some(true));
+}
+
+/// Springs of all walls with all grains, wall by wall, zero for those that are not listed.
+fn wall_springs(state: &State) -> Vec<[Real; 3]> {
+    let springs = state.springs.walls.dense(state.walls.len(), state.grains.len());
+    springs.map(Into::into).collect()
+}
+
+/// The contacts of walls with grains, `ids` with their `memories` if those are given, or else those whose
+/// springs are not zero to the bit.
+fn listed_walls(numbers: &Numbers, ids: Vec<[u32; 2]>, memories: Vec<Real>) -> ListedSprings {
+    let n_grains = numbers.grain_positions.len();
+    let at = |[wall, grain]: [u32; 2]| {
+        let index = wall as usize * n_grains + grain as usize;
+        numbers.wall_springs.get(index).map_or_else(Vec3::zeros, |&it| Vec3::from(it))
+    };
+    let is_loaded = |ids: &[u32; 2]| at(*ids).iter().any(|it| it.to_bits() != 0);
+    let ids = if ids.is_empty() {
+        let all = (0..numbers.walls.len()).flat_map(|w| (0..n_grains).map(move |i| [w, i].map(id)));
+        all.filter(is_loaded).collect()
+    } else {
+        ids
+    };
+    ListedSprings { springs: ids.iter().map(|&ids| at(ids)).collect(), ids, memories }
+}
+
+/// An index as an id.
+#[expect(clippy::cast_possible_truncation, reason = "the scene allows far fewer grains than 2^32")]
+fn id(index: usize) -> u32 {
+    index as u32
 }
 
 /// Bytes followed by their digest.
@@ -142,7 +206,8 @@ pub fn read(bytes: &[u8]) -> Result<State, SavedStateError> {
     let (numbers, rest): (Numbers, _) =
         postcard::take_from_bytes(unsealed(bytes)?).map_err(|_| corrupt.clone())?;
     numbers.check()?;
-    let wall_memory = wall_memory(rest).ok_or(corrupt)?;
+    let (memories, wall_memory) = read_memories(rest).map_err(|_| corrupt)?;
+    let walls = listed_walls(&numbers, memories.wall_ids, memories.walls);
     if !wall_memory.is_empty() {
         same_counts(&[("walls' motions", wall_memory.len(), numbers.walls.len())])?;
     }
@@ -150,7 +215,7 @@ pub fn read(bytes: &[u8]) -> Result<State, SavedStateError> {
         grains: Grains {
             positions: vectors(&numbers.grain_positions),
             velocities: vectors(&numbers.grain_velocities),
-            spins: vectors(&numbers.grain_spins),
+            angular_velocities: vectors(&numbers.grain_spins),
             radii: numbers.radii,
             masses: numbers.masses,
         },
@@ -160,12 +225,14 @@ pub fn read(bytes: &[u8]) -> Result<State, SavedStateError> {
         },
         springs: Springs {
             pairs: vectors(&numbers.pair_springs),
+            pair_memories: memories.pairs,
             patches: numbers.patches.iter().map(|rows| patches(rows)).collect(),
-            spheres: SphereSprings {
+            spheres: ListedSprings {
                 ids: numbers.sphere_ids,
                 springs: vectors(&numbers.sphere_springs),
+                memories: Vec::new(),
             },
-            walls: vectors(&numbers.wall_springs),
+            walls,
             bodies: vectors(&numbers.body_springs),
         },
         pair_ids: numbers.pair_ids,
@@ -254,5 +321,70 @@ fn motion(row: &[Real; 13]) -> BodyMotion {
     BodyMotion {
         pose: pose(&[px, py, pz, qx, qy, qz, qw]),
         twist: Twist { linear: Vec3::new(vx, vy, vz), angular: Vec3::new(wx, wy, wz) },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Three grains and two walls at which some contacts are listed, with `width` memories each.
+    fn state(width: usize) -> State {
+        let at_rest = Grains::at_rest(vec![Vec3::zeros(); 3], vec![1e-3; 3], vec![1e-5; 3]);
+        let motion = BodyMotion { pose: Pose::identity(), twist: Twist::zero() };
+        let mut springs = Springs::none(3, 0);
+        springs.pairs = vec![Vec3::zeros(), Vec3::new(1e-6, 0.0, -0.0)];
+        springs.pair_memories = vec![1.0; 2 * width];
+        springs.walls = ListedSprings {
+            ids: vec![[0, 1], [1, 0], [1, 2]],
+            springs: vec![Vec3::y() * 2e-6, Vec3::zeros(), Vec3::new(-0.0, 0.0, 0.0)],
+            memories: vec![1.0; 3 * width],
+        };
+        let membrane = MembraneState { positions: Vec::new(), velocities: Vec::new() };
+        State {
+            grains: at_rest,
+            membrane,
+            springs,
+            pair_ids: vec![[0, 1], [0, 2]],
+            gauge: -1.0,
+            walls: vec![motion; 2],
+            wall_memory: Vec::new(),
+        }
+    }
+
+    fn digest(state: &State) -> u64 {
+        let mut digest = crate::base::digest::Digest::new();
+        state.digest(&mut digest);
+        digest.finish()
+    }
+
+    #[test]
+    fn contacts_come_back_with_what_they_remember() {
+        // Oracle: the state that was written.
+        for width in [0, 1, 2] {
+            let before = state(width);
+            let after = read(&write(&before)).unwrap();
+            assert_eq!(digest(&after), digest(&before), "{width}");
+            assert_eq!(after.springs.pair_memories, before.springs.pair_memories);
+            assert_eq!(after.springs.walls.memories, before.springs.walls.memories);
+            assert!(is_same(after, before));
+        }
+    }
+
+    #[test]
+    fn springs_at_walls_are_written_and_digested_as_if_all_were_listed() {
+        // Oracle: the array of all walls with all grains that earlier versions kept.
+        let state = state(0);
+        let mut expected = vec![[0.0; 3]; 6];
+        expected[1] = [0.0, 2e-6, 0.0];
+        expected[5] = [-0.0, 0.0, 0.0];
+        let bits = |rows: &[[Real; 3]]| -> Vec<u64> {
+            rows.as_flattened().iter().map(|it| it.to_bits()).collect()
+        };
+        assert_eq!(bits(&wall_springs(&state)), bits(&expected));
+        let mut sparser = state.clone();
+        sparser.springs.walls.ids.remove(1);
+        sparser.springs.walls.springs.remove(1);
+        assert_eq!(digest(&sparser), digest(&state));
     }
 }

@@ -4,7 +4,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{number_format, record::Column};
-use crate::physics::measure::real;
+use crate::base::real::real;
 
 /// All that the records show.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]

@@ -13,9 +13,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 #[cfg(not(feature = "cli"))]
 use super::no_terminal::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-
-use crate::host::clock::Pacer;
-use crate::snapshot::Snapshot;
+use crate::{host::clock::Pacer, snapshot::Snapshot};
 
 /// Ticks between two new messages; the terminal does not show more anyway.
 const EVERY: u64 = 25;

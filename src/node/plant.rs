@@ -4,10 +4,8 @@ use std::error::Error;
 
 use super::schedule::Parts;
 use crate::{
-    command::{
-        Command,
-        change::{Change, ChangeRefused},
-    },
+    command::{Command, change::Change},
+    cosim::refused::ChangeError,
     physics::{health::Diverged, membrane::mesh::Mesh},
     session::Session,
     simulator::Subject,
@@ -81,7 +79,7 @@ impl Subject for Session {
         Self::snapshot(self, Parts::ALL)
     }
 
-    fn change(&mut self, change: &Change) -> Result<(), ChangeRefused> {
+    fn change(&mut self, change: &Change) -> Result<(), ChangeError> {
         Self::change(self, change)
     }
 }

@@ -11,10 +11,8 @@ use crate::{
         Pose, Tick, Vec3,
         real::{Twist, Wrench},
     },
-    command::{
-        Command, CommandCounts,
-        change::{Change, ChangeRefused},
-    },
+    command::{Command, CommandCounts, change::Change},
+    cosim::refused::ChangeError,
     io::{
         fanout::Delivery,
         sink::Sink,
@@ -46,8 +44,8 @@ impl Subject for Counter {
         snapshot(self.n_ticks)
     }
 
-    fn change(&mut self, _change: &Change) -> Result<(), ChangeRefused> {
-        Err(ChangeRefused::Unchangeable)
+    fn change(&mut self, _change: &Change) -> Result<(), ChangeError> {
+        Err(ChangeError::Unchangeable)
     }
 }
 

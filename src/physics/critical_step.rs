@@ -1,4 +1,4 @@
-//! How long a substep may be.
+//! The longest stable substep.
 //!
 //! ```text
 //! critical step = min(0.3 T_R, t_membrane),   T_R = π R √(ρ/G) / (0.1631 ν + 0.8766)
@@ -13,29 +13,63 @@
 //! Source: Thornton & Randall (1988). Under full vacuum a packing of 100 MPa rings at 0.37 of T_R and
 //! comes to rest at 0.28.
 
-use super::membrane::{MembraneModel, critical_step::critical_step as membrane_limit};
+use super::{
+    law::PairLaw,
+    membrane::{MembraneContact, MembraneModel, critical_step::critical_step as membrane_limit},
+    model::BodyModel,
+};
 use crate::{base::Real, scene::Material};
 
-/// Share of the Rayleigh time that a packing under full vacuum bears.
+/// Share of the Rayleigh time at which a packing under full vacuum is stable.
 pub const RAYLEIGH_SHARE: Real = 0.3;
 
-/// Rayleigh time of a grain of `radius` [m]; in s.
+/// Rayleigh time of a grain of `radius` (m); in s.
 pub fn rayleigh_time(radius: Real, material: &Material) -> Real {
     let shear_modulus = material.youngs_modulus / (2.0 * (1.0 + material.poisson_ratio));
     std::f64::consts::PI * radius * (material.density / shear_modulus).sqrt()
         / (0.1631 * material.poisson_ratio + 0.8766)
 }
 
-/// The longest stable substep [s] for grains of `material`, the smallest of `radius_min` [m], and a
-/// sheet on whose vertices contacts of `stiffness` [N/m] press.
+/// The longest stable substep (s) for grains of `material`, the smallest of `radius_min` (m), and a
+/// membrane on whose vertices contacts of `stiffness` (N/m) press.
 pub fn critical_step(
     radius_min: Real,
     material: &Material,
     membrane: &MembraneModel,
     stiffness: Real,
 ) -> Real {
-    let sheet = membrane_limit(membrane, stiffness);
-    sheet.min(RAYLEIGH_SHARE * rayleigh_time(radius_min, material))
+    let of_membrane = membrane_limit(membrane, stiffness);
+    of_membrane.min(RAYLEIGH_SHARE * rayleigh_time(radius_min, material))
+}
+
+/// Stiffness (N/m) that grains of `grain_radius` (m) add to a vertex when `pressure` (Pa) lays the
+/// membrane on them under `law`.
+pub fn stiffness_at_vertex(
+    membrane: &MembraneModel,
+    law: &PairLaw,
+    grain_radius: Real,
+    pressure: Real,
+) -> Real {
+    match membrane.contact {
+        // One contact carries the pressure on the grain's square of membrane.
+        MembraneContact::Triangles => {
+            law.stiffness(grain_radius, pressure * 4.0 * grain_radius.powi(2))
+        }
+        // Two grains at one sphere, each with the pressure on the vertex's own share of the membrane.
+        MembraneContact::Spheres { radius } => {
+            let area = membrane.mesh.vertex_areas().into_iter().fold(0.0, Real::max);
+            let shared = grain_radius * radius / (grain_radius + radius);
+            2.0 * law.stiffness(shared, pressure * area)
+        }
+    }
+}
+
+/// Stiffness (N/m) that the stiffest of `bodies` adds to a vertex when `pressure` (Pa) lays the vertex's
+/// share of the membrane on it.
+pub fn stiffness_of_bodies(membrane: &MembraneModel, bodies: &[BodyModel], pressure: Real) -> Real {
+    let area = membrane.mesh.vertex_areas().into_iter().fold(0.0, Real::max);
+    let of_bodies = bodies.iter().map(|it| it.law.stiffness(it.contact_radius, pressure * area));
+    of_bodies.fold(0.0, Real::max)
 }
 
 #[cfg(test)]

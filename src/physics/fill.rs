@@ -10,11 +10,10 @@ use serde::{Deserialize, Serialize};
 use super::{
     Controls, Model, State, System,
     boundary::body::BodyMotion,
-    contact::law::PairLaw,
     health::Diverged,
-    measure::real,
+    law::PairLaw,
     membrane::{CARRIER_ID, MembraneState, mesh::Mesh},
-    neighbours::weigh_pairs,
+    neighbours::update_pair_masses,
     packing::sphere_volume,
     state::{Grains, Springs},
 };
@@ -22,7 +21,7 @@ use crate::{
     base::{
         Real, Vec3,
         random::{Random, Stream},
-        real::{Twist, count},
+        real::{Twist, count, real},
     },
     scene::Scene,
 };
@@ -311,7 +310,7 @@ impl Filling {
             self.system.state.grains.masses[i] =
                 sphere_volume(scale * radius) * self.recipe.density;
         }
-        weigh_pairs(&self.system.state, &mut self.system.scratch.neighbours);
+        update_pair_masses(&self.system.state, &mut self.system.scratch.neighbours);
     }
 
     /// The stage after `stage`, without those that have nothing to do.
@@ -409,12 +408,12 @@ fn scatter(scene: &Scene, recipe: &Recipe) -> State {
         grains: Grains {
             positions: local.iter().map(in_world).collect(),
             velocities: vec![Vec3::zeros(); n],
-            spins: vec![Vec3::zeros(); n],
+            angular_velocities: vec![Vec3::zeros(); n],
             masses: radii.iter().map(|&r| sphere_volume(r) * recipe.density).collect(),
             radii,
         },
         membrane,
-        springs: Springs::none(n, 1, 0),
+        springs: Springs::none(n, 0),
         pair_ids: Vec::new(),
         gauge: 0.0,
         walls: vec![BodyMotion { pose, twist: Twist::zero() }],

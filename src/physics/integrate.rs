@@ -5,6 +5,7 @@ use super::{
     boundary::wall::CARRIER,
     contact::sums::{self, PairSums},
     membrane::{FREE, MembraneState},
+    state::Grains,
 };
 use crate::base::{
     Real, Vec3, lanes,
@@ -28,12 +29,12 @@ pub fn advance(model: &Model, controls: &Controls, scratch: &mut Scratch, state:
     state.walls.clone_from(&controls.walls);
 }
 
-/// Where the carrier is at the end of this substep [m].
+/// Where the carrier is at the end of this substep (m).
 fn carried_to(controls: &Controls) -> Vec3 {
     controls.walls.get(CARRIER).map_or_else(Vec3::zeros, |it| it.pose.translation.vector)
 }
 
-/// What grains and free vertices gain with the carrier in this substep [m/s], so that heavier ones
+/// What grains and free vertices gain with the carrier in this substep (m/s), so that heavier ones
 /// follow it as the real ones do; see `cosim::compile::density_scaling`.
 fn carried_along(model: &Model, controls: &Controls, state: &State) -> Vec3 {
     let gained = match (controls.walls.get(CARRIER), state.walls.get(CARRIER)) {
@@ -45,19 +46,25 @@ fn carried_along(model: &Model, controls: &Controls, state: &State) -> Vec3 {
 
 /// What the carrier and gravity do to all.
 struct Carried {
-    /// Velocity that grains and free vertices gain [m/s].
+    /// Velocity that grains and free vertices gain (m/s).
     gain: Vec3,
-    /// How far the carrier goes in this substep [m].
+    /// How far the carrier goes in this substep (m).
     step: Vec3,
-    /// How far it has come since the lists were built [m].
+    /// How far it has come since the lists were built (m).
     since_build: Vec3,
 }
 
 impl Carried {
-    /// Squared displacements relative to the carrier [m²], since the lists were built and in this
+    /// Squared displacements relative to the carrier (m²), since the lists were built and in this
     /// substep, added to the largest ones. What is no number is the largest.
     #[inline(always)]
-    fn apart(&self, built: &Vec3, before: &Vec3, now: &Vec3, furthest: &mut [Real; 2]) {
+    fn record_displacement(
+        &self,
+        built: &Vec3,
+        before: &Vec3,
+        now: &Vec3,
+        furthest: &mut [Real; 2],
+    ) {
         let since_build = (now - built - self.since_build).norm_squared();
         let step = (now - before - self.step).norm_squared();
         // The bits of non-negative doubles are ordered like the numbers.
@@ -67,7 +74,7 @@ impl Carried {
     }
 }
 
-/// Returns the largest squared displacements [m²].
+/// Returns the largest squared displacements (m²).
 fn advance_grains(
     model: &Model,
     scratch: &Scratch,
@@ -75,40 +82,34 @@ fn advance_grains(
     carried: &Carried,
 ) -> [Real; 2] {
     let dt = model.substep;
-    let mut positions = std::mem::take(&mut state.grains.positions);
-    let mut velocities = std::mem::take(&mut state.grains.velocities);
-    let mut spins = std::mem::take(&mut state.grains.spins);
-    let grains = &state.grains;
-    let furthest = parallel::largest_of_three(
-        &mut positions,
-        &mut velocities,
-        &mut spins,
-        |start, positions, velocities, spins| {
+    let Grains { positions, velocities, angular_velocities, radii, masses } = &mut state.grains;
+    let (radii, masses) = (&*radii, &*masses);
+    parallel::largest_of_three(
+        positions,
+        velocities,
+        angular_velocities,
+        |start, positions, velocities, angular_velocities| {
             let mut sums = [[0.0; 8]; PART];
             let sums = &mut sums[..positions.len()];
-            lanes::widest(PairSums { scratch, radii: &grains.radii, first: start, sums });
+            lanes::widest(PairSums { scratch, radii, first: start, sums });
             let mut furthest = [0.0; 2];
             for (k, of_pairs) in sums.iter().enumerate() {
                 let i = start + k;
                 let (force, torque) = sums::with_others(scratch, i, of_pairs);
-                let (mass, radius) = (grains.masses[i], grains.radii[i]);
+                let (mass, radius) = (masses[i], radii[i]);
                 let (before, velocity) = (positions[k], &mut velocities[k]);
                 *velocity += force * (dt / mass) + carried.gain;
-                spins[k] += torque * (dt / (0.4 * mass * radius * radius));
+                angular_velocities[k] += torque * (dt / (0.4 * mass * radius * radius));
                 positions[k] += *velocity * dt;
                 let built = &scratch.neighbours.grain_positions[i];
-                carried.apart(built, &before, &positions[k], &mut furthest);
+                carried.record_displacement(built, &before, &positions[k], &mut furthest);
             }
             furthest
         },
-    );
-    state.grains.positions = positions;
-    state.grains.velocities = velocities;
-    state.grains.spins = spins;
-    furthest
+    )
 }
 
-/// Returns the largest squared displacements [m²].
+/// Returns the largest squared displacements (m²).
 fn advance_membrane(
     model: &Model,
     controls: &Controls,
@@ -138,7 +139,7 @@ fn advance_membrane(
                     *position += *velocity * dt;
                 }
                 let built = &scratch.neighbours.vertex_positions[v];
-                carried.apart(built, &before, position, &mut furthest);
+                carried.record_displacement(built, &before, position, &mut furthest);
             }
             furthest
         },

@@ -13,7 +13,7 @@ pub mod critical_step; // how long a substep may be
 pub mod fill; // grains into the bag
 pub mod health; // can the run go on?
 pub mod integrate;
-pub mod measure; // energies, stresses, coordination
+pub mod law; // contact laws
 pub mod membrane; // the flexible bag
 pub mod model;
 pub mod neighbours; // who may touch whom

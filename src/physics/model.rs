@@ -2,7 +2,7 @@
 
 use super::{
     boundary::{shape::Surface, wall::WallModel},
-    contact::law::PairLaw,
+    law::PairLaw,
     membrane::MembraneModel,
 };
 use crate::base::{Pose, Real, Vec3};

@@ -1,6 +1,8 @@
 //! Scratch: what can be recomputed. Never saved.
 
-use super::{Model, boundary::body::BodyMotion, membrane::MembraneScratch, state::N_PATCHES};
+use super::{
+    Model, State, boundary::body::BodyMotion, membrane::MembraneScratch, state::N_PATCHES,
+};
 use crate::base::{Real, Vec3, real::Wrench};
 
 /// Working memory of the substep.
@@ -12,28 +14,30 @@ pub struct Scratch {
     pub grain_rows: Vec<GrainRow>,
     /// Force of each pair of grains. Written by `contact::grains`.
     pub pair_forces: Vec<PairForce>,
+    /// Whether each pair is in contact. Written by `contact::grains`.
+    pub pair_flags: Vec<ContactFlags>,
     /// Closest points of candidate triangles. Written by `contact::membrane`.
     pub candidates: CandidateScratch,
     /// What the membrane does to each grain. Written by `contact::membrane`.
     pub patch_forces: Vec<PatchForces>,
     /// Force of each listed vertex sphere on its grain. Written by `contact::spheres`.
     pub sphere_forces: Vec<SphereForce>,
-    /// What walls do to each grain, wall by wall; none but the listed ones touch. Written by `contact::walls`.
+    /// What walls do to grains, in the order of `Springs::walls`. Written by `contact::walls`.
     pub wall_forces: Vec<WallForce>,
     /// What bodies do to samples of the membrane, body by body: all vertices, then all facets; none but the
     /// listed ones touch. Written by `contact::bodies`.
     pub sample_forces: Vec<SampleForce>,
-    /// Contact force on each vertex of the membrane [N]. Written by `contact::on_membrane`.
+    /// Contact force on each vertex of the membrane (N). Written by `contact::on_membrane`.
     pub vertex_forces: Vec<Vec3>,
     /// Internal forces and pressure. Written by `membrane::forces`.
     pub membrane: MembraneScratch,
-    /// Wrench of the membrane on each body about its centre of mass, this substep [N], [N m].
+    /// Wrench of the membrane on each body about its center of mass, this substep (N), (N m).
     /// Written by `contact::on_membrane`.
     pub body_wrenches: Vec<Wrench>,
     /// Wrench of membrane, grains and air on each wall about its origin, world axes, this substep
-    /// [N], [N m]. Written by `contact::on_walls`.
+    /// (N), (N m). Written by `contact::on_walls`.
     pub wall_wrenches: Vec<Wrench>,
-    /// Grains whose centre left the bag, if any. Written by `contact::on_membrane` and, if grains
+    /// Grains whose center left the bag, if any. Written by `contact::on_membrane` and, if grains
     /// touch vertex spheres, by `neighbours`.
     pub leaked: Option<usize>,
 }
@@ -45,6 +49,7 @@ impl Scratch {
             neighbours: Neighbours::default(),
             grain_rows: Vec::new(),
             pair_forces: Vec::new(),
+            pair_flags: Vec::new(),
             candidates: CandidateScratch::default(),
             patch_forces: Vec::new(),
             sphere_forces: Vec::new(),
@@ -57,6 +62,65 @@ impl Scratch {
             leaked: None,
         }
     }
+
+    /// Forces and ids of the pairs of grains that were in contact in the last substep, in the order of the
+    /// list.
+    pub fn touching_pairs<'a>(
+        &'a self,
+        state: &'a State,
+    ) -> impl Iterator<Item = (&'a PairForce, &'a [u32; 2])> {
+        let pairs = self.pair_forces.iter().zip(&state.pair_ids).zip(&self.pair_flags);
+        pairs.filter(|(_, flags)| flags.touches()).map(|(pair, _)| pair)
+    }
+
+    /// Number of pairs of grains that slid in the last substep.
+    pub fn n_sliding_pairs(&self) -> usize {
+        self.pair_flags.iter().filter(|flags| flags.slides()).count()
+    }
+
+    /// Forces of the walls on the grains that were pressed on them in the last substep, with wall and
+    /// grain, in the order of the list.
+    pub fn touching_walls<'a>(
+        &'a self,
+        state: &'a State,
+    ) -> impl Iterator<Item = (&'a WallForce, [usize; 2])> {
+        let contacts = self.wall_forces.iter().zip(&state.springs.walls.ids);
+        contacts
+            .filter(|(contact, _)| contact.flags.touches())
+            .map(|(contact, ids)| (contact, ids.map(|id| id as usize)))
+    }
+}
+
+/// What became of a contact in the last substep.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(transparent)]
+pub struct ContactFlags(u8);
+
+impl ContactFlags {
+    /// No contact.
+    pub const NONE: Self = Self(0);
+    /// The bit of contacts.
+    pub(super) const TOUCHES: u8 = 1;
+    /// The bit of contacts that slide.
+    pub(super) const SLIDES: u8 = 2;
+
+    /// A contact that sticks or slides.
+    #[inline(always)]
+    pub const fn contact(slides: bool) -> Self {
+        Self(if slides { Self::TOUCHES | Self::SLIDES } else { Self::TOUCHES })
+    }
+
+    /// True if the two are in contact: they touch, or a force acts between them.
+    #[inline(always)]
+    pub const fn touches(self) -> bool {
+        self.0 & Self::TOUCHES != 0
+    }
+
+    /// True if the contact has reached Coulomb's limit.
+    #[inline(always)]
+    pub const fn slides(self) -> bool {
+        self.0 & Self::SLIDES != 0
+    }
 }
 
 /// Lists of possible contacts, valid until something has moved by half the skin.
@@ -64,19 +128,19 @@ impl Scratch {
 pub struct Neighbours {
     /// False before the first build.
     pub is_built: bool,
-    /// Distance beyond contact within which grains were listed at the last build [m].
+    /// Distance beyond contact and the range of the law within which grains were listed at the last build (m).
     pub skin: Real,
     /// Substeps since the last build.
     pub n_since_build: u64,
-    /// Positions of the grains at the last build [m].
+    /// Positions of the grains at the last build (m).
     pub grain_positions: Vec<Vec3>,
-    /// Positions of the vertices at the last build [m].
+    /// Positions of the vertices at the last build (m).
     pub vertex_positions: Vec<Vec3>,
-    /// Position of the carrier, the first wall, at the last build [m].
+    /// Position of the carrier, the first wall, at the last build (m).
     pub carrier_position: Vec3,
-    /// Effective radius R* of each pair [m].
+    /// Effective radius R* of each pair (m).
     pub pair_radii: Vec<Real>,
-    /// Effective mass m* of each pair [kg].
+    /// Effective mass m* of each pair (kg).
     pub pair_masses: Vec<Real>,
     /// Pairs in which grain i is first are `first_starts[i] .. first_starts[i + 1]`.
     pub first_starts: Vec<u32>,
@@ -91,31 +155,31 @@ pub struct Neighbours {
     /// Whose candidate each one is.
     pub candidate_grains: Vec<u32>,
     /// Grains with candidates, ascending.
-    pub sheet_grains: Vec<u32>,
-    /// The travel at which each candidate must be looked at again [m].
+    pub membrane_grains: Vec<u32>,
+    /// The travel at which each candidate must be looked at again (m).
     pub wake_at: Vec<Real>,
     /// Sum of the largest steps of any grain and any vertex since the last build, relative to the
-    /// carrier [m]. Written by `integrate`.
+    /// carrier (m). Written by `integrate`.
     pub travel: Real,
-    /// Sum of the largest steps of any vertex, relative to the carrier [m]. Written by `integrate`.
+    /// Sum of the largest steps of any vertex, relative to the carrier (m). Written by `integrate`.
     pub vertex_travel: Real,
-    /// Samples of the membrane near bodies; they have a time of their own.
+    /// Samples of the membrane near bodies; they are listed at times of their own.
     pub bodies: BodyLists,
     /// Contacts of grain i with vertex spheres are `sphere_starts[i] .. sphere_starts[i + 1]`.
     pub sphere_starts: Vec<u32>,
-    /// Where the walls near grain i begin in `walls`.
+    /// Where the contacts of grain i with walls begin in `wall_contacts`.
     pub wall_starts: Vec<u32>,
-    /// Walls that grains may touch, each with its grain, by grain.
-    pub walls: Vec<[u32; 2]>,
+    /// Indices of listed contacts with walls, by grain.
+    pub wall_contacts: Vec<u32>,
     /// The walls at the last build.
     pub walls_at_build: Vec<BodyMotion>,
-    /// No grain was further than this, and the skin, from the origin of each wall [m].
+    /// No grain was further than this, and the skin, from the origin of each wall (m).
     pub wall_extents: Vec<Real>,
-    /// Radii of the grains at the last build [m].
+    /// Radii of the grains at the last build (m).
     pub radii: Vec<Real>,
-    /// The most that a radius has grown since the last build [m].
+    /// The most that a radius has grown since the last build (m).
     pub growth_max: Real,
-    /// Largest squared displacement since the last build, relative to the carrier [m²].
+    /// Largest squared displacement since the last build, relative to the carrier (m²).
     pub displacement_squared_max: Real,
     /// How often the lists were built.
     pub n_builds: u64,
@@ -130,11 +194,11 @@ pub struct BodyLists {
     pub near: Vec<NearSamples>,
     /// The bodies at the last build.
     pub bodies_at_build: Vec<BodyMotion>,
-    /// No near sample was further than this from the origin of each body [m].
+    /// No near sample was further than this from the origin of each body (m).
     pub extents: Vec<Real>,
-    /// Position of the carrier at the last build [m].
+    /// Position of the carrier at the last build (m).
     pub carrier_position: Vec3,
-    /// `Neighbours::vertex_travel` at the last build [m].
+    /// `Neighbours::vertex_travel` at the last build (m).
     pub travel_at_build: Real,
 }
 
@@ -152,10 +216,10 @@ pub struct NearSamples {
 pub struct CandidateScratch {
     /// Candidates that are awake, ascending: their places in `Neighbours::triangles`.
     pub awake: Vec<u32>,
-    /// Where those of each grain of `Neighbours::sheet_grains` begin.
+    /// Where those of each grain of `Neighbours::membrane_grains` begin.
     pub awake_starts: Vec<usize>,
-    /// Of each: squared distance [m²], weights of the closest point, the vector from there to the
-    /// grain's centre [m], the number of the feature.
+    /// Of each: squared distance (m²), weights of the closest point, the vector from there to the
+    /// grain's center (m), the number of the feature.
     pub found: Vec<[Real; 8]>,
 }
 
@@ -163,12 +227,12 @@ pub struct CandidateScratch {
 #[derive(Clone, Copy, Default)]
 #[repr(C, align(32))]
 pub struct GrainRow {
-    /// Position and radius [m].
+    /// Position and radius (m).
     pub place: [Real; 4],
-    /// Velocity [m/s], and nothing.
+    /// Velocity (m/s), and nothing.
     pub velocity: [Real; 4],
-    /// Angular velocity [rad/s], and nothing.
-    pub spin: [Real; 4],
+    /// Angular velocity (rad/s), and nothing.
+    pub angular_velocity: [Real; 4],
 }
 
 /// Force between two grains.
@@ -176,14 +240,14 @@ pub struct GrainRow {
 // A row in one line of the cache.
 #[repr(C, align(64))]
 pub struct PairForce {
-    /// Force on the first grain [N].
+    /// Force on the first grain (N).
     pub force: Vec3,
-    /// Normal × tangential force [N]: the torque per lever arm on both grains, negated.
+    /// Normal × tangential force (N): the torque per lever arm on both grains, negated.
     pub couple: Vec3,
-    /// Overlap [m]; no contact if not positive.
+    /// Overlap (m), zero without contact, negative where the grains attract each other from a distance.
     pub overlap: Real,
-    /// Normal force [N], negative if the contact slides.
-    pub signed_normal: Real,
+    /// Normal force (N), negative where the grains attract each other.
+    pub normal: Real,
 }
 
 /// Forces of the membrane on one grain.
@@ -191,11 +255,11 @@ pub struct PairForce {
 pub struct PatchForces {
     /// How many contacts.
     pub n: usize,
-    /// Torque on the grain [N m].
+    /// Torque on the grain (N m).
     pub torque: Vec3,
     /// The contacts.
     pub contacts: [PatchForce; N_PATCHES],
-    /// True if the centre of the grain is outside the bag.
+    /// True if the center of the grain is outside the bag.
     pub is_outside: bool,
 }
 
@@ -206,12 +270,14 @@ pub struct PatchForce {
     pub triangle: u32,
     /// Barycentric weights of the contact point.
     pub weights: [Real; 3],
-    /// Force on the grain [N].
+    /// Force on the grain (N).
     pub force: Vec3,
-    /// Overlap [m].
+    /// Overlap (m).
     pub overlap: Real,
-    /// Normal force [N].
+    /// Normal force (N).
     pub normal: Real,
+    /// Whether the contact slides.
+    pub flags: ContactFlags,
 }
 
 impl PatchForces {
@@ -225,6 +291,7 @@ impl PatchForces {
             force: Vec3::new(0.0, 0.0, 0.0),
             overlap: 0.0,
             normal: 0.0,
+            flags: ContactFlags::NONE,
         }; N_PATCHES],
         is_outside: false,
     };
@@ -235,40 +302,46 @@ impl PatchForces {
 pub struct SphereForce {
     /// Vertex that carries the sphere.
     pub vertex: u32,
-    /// Force on the grain [N].
+    /// Force on the grain (N).
     pub force: Vec3,
-    /// Torque on the grain [N m].
+    /// Torque on the grain (N m).
     pub torque: Vec3,
-    /// Overlap [m]; no contact if not positive.
+    /// Overlap (m), zero without contact.
     pub overlap: Real,
-    /// Normal force [N].
+    /// Normal force (N).
     pub normal: Real,
+    /// Whether they touch.
+    pub flags: ContactFlags,
 }
 
 /// Force of a wall on one grain.
 #[derive(Clone, Copy, Default)]
 pub struct WallForce {
-    /// Force on the grain [N].
+    /// Force on the grain (N).
     pub force: Vec3,
-    /// Contact point relative to the grain's centre [m].
+    /// Contact point relative to the grain's center (m).
     pub arm: Vec3,
-    /// Overlap [m]; no contact if not positive.
+    /// Overlap (m), zero without contact, negative where the wall attracts the grain from a distance.
     pub overlap: Real,
-    /// Normal force [N], zero without contact.
+    /// Normal force (N), negative where the wall attracts the grain, zero without contact.
     pub normal: Real,
+    /// Whether a force acts. A grain that leaves so fast that nothing presses it does not touch.
+    pub flags: ContactFlags,
 }
 
 /// Force of a body on a sample of the membrane.
 #[derive(Clone, Copy)]
 pub struct SampleForce {
-    /// Force on the membrane [N].
+    /// Force on the membrane (N).
     pub force: Vec3,
     /// Unit normal, from body to membrane.
     pub normal: Vec3,
-    /// Position of the sample [m].
+    /// Position of the sample (m).
     pub point: Vec3,
-    /// Overlap [m]; no contact if not positive, and then a lower bound.
+    /// Overlap (m); without contact a lower bound.
     pub overlap: Real,
+    /// Whether they touch.
+    pub flags: ContactFlags,
 }
 
 impl SampleForce {
@@ -278,5 +351,6 @@ impl SampleForce {
         normal: Vec3::new(0.0, 0.0, 0.0),
         point: Vec3::new(0.0, 0.0, 0.0),
         overlap: Real::NEG_INFINITY,
+        flags: ContactFlags::NONE,
     };
 }

@@ -9,7 +9,7 @@ use crate::base::{Real, Vec3, digest::Digest};
 
 /// Membrane patches that one grain can touch at the same time: the six faces around a vertex that
 /// the vacuum has drawn over it like a cup, and two more, for example in a fold. If one of them were
-/// left out, which one would change from substep to substep, and the sheet would ring.
+/// left out, which one would change from substep to substep, and the membrane would ring.
 pub const N_PATCHES: usize = 8;
 
 /// Everything that evolves.
@@ -23,7 +23,7 @@ pub struct State {
     pub springs: Springs,
     /// Which pairs of grains the pair springs belong to. Written by `neighbours`.
     pub pair_ids: Vec<[u32; 2]>,
-    /// Gauge pressure in the chamber, negative under vacuum [Pa]. Written by `chamber`.
+    /// Gauge pressure in the chamber, negative under vacuum (Pa). Written by `chamber`.
     pub gauge: Real,
     /// Where the walls are and how they move. Written by `integrate` from the controls.
     pub walls: Vec<BodyMotion>,
@@ -35,24 +35,24 @@ pub struct State {
 /// The grains.
 #[derive(Clone, Debug, Default)]
 pub struct Grains {
-    /// Positions of the centres [m]. Written by `integrate`.
+    /// Positions of the centers (m). Written by `integrate`.
     pub positions: Vec<Vec3>,
-    /// Velocities [m/s]. Written by `integrate`.
+    /// Velocities (m/s). Written by `integrate`.
     pub velocities: Vec<Vec3>,
-    /// Angular velocities [rad/s]. Written by `integrate`.
-    pub spins: Vec<Vec3>,
-    /// Radii [m]; they change only while grains grow. Written by `fill`.
+    /// Angular velocities (rad/s). Written by `integrate`.
+    pub angular_velocities: Vec<Vec3>,
+    /// Radii (m); they change only while grains grow. Written by `fill`.
     pub radii: Vec<Real>,
-    /// Masses [kg]. Written by `fill`.
+    /// Masses (kg). Written by `fill`.
     pub masses: Vec<Real>,
 }
 
 impl Grains {
-    /// At rest at `positions` [m].
+    /// At rest at `positions` (m).
     pub fn at_rest(positions: Vec<Vec3>, radii: Vec<Real>, masses: Vec<Real>) -> Self {
         let velocities = vec![Vec3::zeros(); positions.len()];
-        let spins = velocities.clone();
-        Self { positions, velocities, spins, radii, masses }
+        let angular_velocities = velocities.clone();
+        Self { positions, velocities, angular_velocities, radii, masses }
     }
 
     /// Mean radius (m), 0 without grains.
@@ -71,49 +71,68 @@ impl Grains {
     }
 }
 
-/// Tangential springs of all contacts: the history of friction.
+/// What all contacts remember: their tangential springs, the history of friction, and whatever else
+/// their law asks for.
 #[derive(Clone, Debug, Default)]
 pub struct Springs {
-    /// Of each listed pair of grains, zero without contact [m]. Written by `contact::grains`.
+    /// Of each listed pair of grains, zero without contact (m). Written by `contact::grains`.
     pub pairs: Vec<Vec3>,
+    /// What else each listed pair of grains remembers; nothing under a law without cohesion. Written by
+    /// `contact::grains`.
+    pub pair_memories: Vec<Real>,
     /// Membrane contacts of each grain. Written by `contact::membrane`.
     pub patches: Vec<Patches>,
     /// Contacts of grains with the membrane's vertex spheres.
-    pub spheres: SphereSprings,
-    /// Of each grain with walls [m], wall by wall. Written by `contact::walls`.
-    pub walls: Vec<Vec3>,
-    /// Of membrane samples with bodies [m], body by body: all vertices, then all facets. Written
+    pub spheres: ListedSprings,
+    /// Contacts of walls with grains. Written by `contact::walls`.
+    pub walls: ListedSprings,
+    /// Of membrane samples with bodies (m), body by body: all vertices, then all facets. Written
     /// by `contact::bodies`.
     pub bodies: Vec<Vec3>,
 }
 
 impl Springs {
-    /// No contact yet, for `n_grains` grains, `n_walls` walls and `n_samples` samples on all bodies.
-    pub fn none(n_grains: usize, n_walls: usize, n_samples: usize) -> Self {
+    /// No contact yet, for `n_grains` grains and `n_samples` samples of the membrane on all bodies.
+    pub fn none(n_grains: usize, n_samples: usize) -> Self {
         Self {
             pairs: Vec::new(),
+            pair_memories: Vec::new(),
             patches: vec![Patches::NONE; n_grains],
-            spheres: SphereSprings::default(),
-            walls: vec![Vec3::zeros(); n_grains * n_walls],
+            spheres: ListedSprings::default(),
+            walls: ListedSprings::default(),
             bodies: vec![Vec3::zeros(); n_samples],
         }
     }
 }
 
-/// Springs of the listed contacts with vertex spheres; empty if grains touch triangles.
+/// Springs of listed contacts: of grains with vertex spheres, or of walls with grains.
 #[derive(Clone, Debug, Default)]
-pub struct SphereSprings {
-    /// Grain and vertex of each, ascending. Written by `neighbours`.
+pub struct ListedSprings {
+    /// Grain and vertex of each, or wall and grain; ascending. Written by `neighbours`.
     pub ids: Vec<[u32; 2]>,
-    /// Zero without contact [m]. Written by `contact::spheres`.
+    /// Zero without contact (m).
     pub springs: Vec<Vec3>,
+    /// What else each contact remembers; nothing under a law without cohesion.
+    pub memories: Vec<Real>,
+}
+
+impl ListedSprings {
+    /// The springs of contacts of walls with grains, wall by wall, zero for those that are not listed.
+    pub fn dense(&self, n_walls: usize, n_grains: usize) -> impl Iterator<Item = Vec3> {
+        let mut listed = self.ids.iter().zip(&self.springs).peekable();
+        let all = (0..n_walls).flat_map(move |wall| (0..n_grains).map(move |grain| [wall, grain]));
+        all.map(move |at| {
+            let here = listed.next_if(|(ids, _)| ids.map(|id| id as usize) == at);
+            here.map_or_else(Vec3::zeros, |(_, spring)| *spring)
+        })
+    }
 }
 
 /// One patch of membrane that a grain touches: the contact lives on while the grain slides from
 /// triangle to triangle.
 #[derive(Clone, Copy, Debug)]
 pub struct Patch {
-    /// Tangential spring [m].
+    /// Tangential spring (m).
     pub spring: Vec3,
     /// Normal at the last substep, from membrane to grain.
     pub normal: Vec3,
@@ -143,7 +162,7 @@ impl State {
     pub fn at_rest(model: &Model, walls: Vec<BodyMotion>, grains: Grains) -> Self {
         let n_samples = model.n_samples() * model.bodies.len();
         Self {
-            springs: Springs::none(grains.len(), walls.len(), n_samples),
+            springs: Springs::none(grains.len(), n_samples),
             grains,
             membrane: MembraneState::at_rest(&model.membrane.mesh),
             pair_ids: Vec::new(),
@@ -153,7 +172,7 @@ impl State {
         }
     }
 
-    /// Position of the carrier, the first wall [m]; zero without walls.
+    /// Position of the carrier, the first wall (m); zero without walls.
     pub fn carrier_position(&self) -> Vec3 {
         self.walls.get(CARRIER).map_or_else(Vec3::zeros, |it| it.pose.translation.vector)
     }
@@ -162,7 +181,7 @@ impl State {
     pub fn digest(&self, digest: &mut Digest) {
         digest.vectors(&self.grains.positions);
         digest.vectors(&self.grains.velocities);
-        digest.vectors(&self.grains.spins);
+        digest.vectors(&self.grains.angular_velocities);
         digest.reals(&self.grains.radii);
         digest.vectors(&self.membrane.positions);
         digest.vectors(&self.membrane.velocities);
@@ -180,23 +199,37 @@ impl State {
 
     /// Only loaded springs count: which empty pairs are listed is not part of the physics.
     fn digest_springs(&self, digest: &mut Digest) {
+        let Springs { pairs, pair_memories, spheres, walls, .. } = &self.springs;
+        let id = |ids: &[u32; 2]| u64::from(ids[0]) << 32 | u64::from(ids[1]);
         let mut loaded = |ids: &[[u32; 2]], springs: &[Vec3]| {
             for (ids, spring) in ids.iter().zip(springs) {
                 if *spring != Vec3::zeros() {
-                    digest.integer(u64::from(ids[0]) << 32 | u64::from(ids[1]));
+                    digest.integer(id(ids));
                     digest.reals(spring.as_slice());
                 }
             }
         };
-        loaded(&self.pair_ids, &self.springs.pairs);
-        loaded(&self.springs.spheres.ids, &self.springs.spheres.springs);
+        loaded(&self.pair_ids, pairs);
+        loaded(&spheres.ids, &spheres.springs);
         for patches in &self.springs.patches {
             digest.integer(patches.n as u64);
             for patch in &patches.slots[..patches.n] {
                 digest.vectors(&[patch.spring, patch.normal]);
             }
         }
-        digest.vectors(&self.springs.walls);
+        // As if every grain were listed with every wall: what is listed is not part of the physics.
+        for spring in walls.dense(self.walls.len(), self.grains.len()) {
+            digest.reals(spring.as_slice());
+        }
         digest.vectors(&self.springs.bodies);
+        for (ids, memories) in [(&self.pair_ids, pair_memories), (&walls.ids, &walls.memories)] {
+            let width = memories.len() / ids.len().max(1);
+            for (ids, memory) in ids.iter().zip(memories.chunks_exact(width.max(1))) {
+                if memory.iter().any(|it| *it != 0.0) {
+                    digest.integer(id(ids));
+                    digest.reals(memory);
+                }
+            }
+        }
     }
 }

@@ -2,52 +2,45 @@
 
 use super::{
     Controls, Model, Scratch, State, chamber,
-    contact::{bodies, grains, membrane as sheet, spheres, sums, walls},
+    contact::{bodies, grains, membrane as membrane_contact, spheres, sums, walls},
     integrate, membrane, neighbours,
 };
 
 /// A stage reads the state and writes its own part of state and scratch.
 pub type Stage = fn(&Model, &Controls, &mut State, &mut Scratch);
 
-/// All stages of a substep in order, by the names under which their time is told.
+/// All stages of a substep in order, with the names under which their times are reported.
 pub static STAGES: &[(&str, Stage)] = &[
     ("chamber", |model, controls, state, _| chamber::advance(&model.chamber, controls, state)),
     ("neighbours", |model, controls, state, scratch| {
         neighbours::refresh(model, controls, state, scratch);
     }),
-    // Before those that touch the sheet: it brings its vertices into rows, which they read.
+    // Before the contacts with the membrane, which read the rows that it makes of the vertices.
     ("membrane", |model, _, state, scratch| {
         membrane::forces(&model.membrane, &state.membrane, state.gauge, &mut scratch.membrane);
     }),
     ("contact_grains", |model, _, state, scratch| {
-        let mut springs = std::mem::take(&mut state.springs.pairs);
-        let Scratch { neighbours, grain_rows, pair_forces, .. } = scratch;
-        grains::forces(model, state, &mut springs, neighbours, (grain_rows, pair_forces));
-        state.springs.pairs = springs;
+        let State { grains, pair_ids, springs, .. } = state;
+        grains::forces(model, grains, pair_ids, springs, scratch);
     }),
     ("contact_membrane", |model, _, state, scratch| {
-        let mut springs = std::mem::take(&mut state.springs.patches);
-        let Scratch { neighbours, grain_rows, membrane, candidates, patch_forces, .. } = scratch;
-        let rows = (&**grain_rows, &*membrane.vertices);
-        sheet::forces(model, state, &mut springs, neighbours, rows, (candidates, patch_forces));
-        state.springs.patches = springs;
+        let State { grains, membrane, springs, .. } = state;
+        membrane_contact::forces(model, grains, membrane, &mut springs.patches, scratch);
     }),
     ("contact_spheres", |model, _, state, scratch| {
-        let mut springs = std::mem::take(&mut state.springs.spheres);
-        spheres::forces(model, state, &mut springs, &mut scratch.sphere_forces);
-        state.springs.spheres = springs;
+        let State { grains, membrane, springs, .. } = state;
+        let forces = &mut scratch.sphere_forces;
+        spheres::forces(model, grains, membrane, &mut springs.spheres, forces);
     }),
     ("contact_walls", |model, _, state, scratch| {
-        let mut springs = std::mem::take(&mut state.springs.walls);
-        let Scratch { neighbours, wall_forces, .. } = scratch;
-        walls::forces(model, state, &mut springs, neighbours, wall_forces);
-        state.springs.walls = springs;
+        let State { grains, walls, springs, .. } = state;
+        walls::forces(model, walls, grains, &mut springs.walls, &mut scratch.wall_forces);
     }),
     ("contact_bodies", |model, controls, state, scratch| {
-        let mut springs = std::mem::take(&mut state.springs.bodies);
+        let State { membrane, springs, .. } = state;
         let Scratch { neighbours, sample_forces, .. } = scratch;
-        bodies::forces(model, controls, state, &mut springs, (&neighbours.bodies, sample_forces));
-        state.springs.bodies = springs;
+        let samples = (&neighbours.bodies, &mut **sample_forces);
+        bodies::forces(model, controls, membrane, &mut springs.bodies, samples);
     }),
     ("sums", |model, controls, state, scratch| {
         sums::on_membrane(model, controls, scratch);

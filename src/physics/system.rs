@@ -67,13 +67,13 @@ impl System {
         let grains = &mut state.grains;
         grains.positions.push(position);
         grains.velocities.push(Vec3::zeros());
-        grains.spins.push(Vec3::zeros());
+        grains.angular_velocities.push(Vec3::zeros());
         grains.radii.push(radius);
         grains.masses.push(mass);
         model.radius_max = model.radius_max.max(radius);
         model.radius_mean = grains.mean_radius();
         let n_samples = model.n_samples() * model.bodies.len();
-        state.springs = Springs::none(grains.len(), model.walls.len(), n_samples);
+        state.springs = Springs::none(grains.len(), n_samples);
         state.pair_ids.clear();
         *scratch = Scratch::new(model);
         grains.len() - 1

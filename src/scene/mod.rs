@@ -9,6 +9,7 @@ pub mod error; // what can be wrong with a scene
 pub mod json; // YAML to JSON
 pub mod print; // scene to text
 pub mod quantity; // "2 mm"
+pub mod reference; // keys for documentation and editors
 pub mod resource; // objects described in other files
 pub mod ros_parameters; // parameter files
 pub mod text; // text to scene
@@ -18,6 +19,7 @@ mod extent;
 mod mesh_file;
 mod read;
 pub(crate) mod schema;
+mod schema_outputs;
 mod tree;
 #[cfg(feature = "meshes")]
 mod urdf;

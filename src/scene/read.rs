@@ -212,7 +212,7 @@ fn unit_example(dimension: &Dimension) -> String {
 }
 
 /// A scalar or list of scalars as it was written.
-fn plain(node: &Node) -> Option<String> {
+pub(super) fn plain(node: &Node) -> Option<String> {
     match &node.value {
         Value::List(items) => {
             let items: Option<Vec<String>> = items.iter().map(plain).collect();

@@ -17,7 +17,7 @@ use super::{
 /// The one place of all defaults.
 pub(super) const DEFAULTS_FILE: &str = "launch_configs/defaults.yaml";
 /// Its text.
-const DEFAULTS: &str = include_str!("../../launch_configs/defaults.yaml");
+pub(super) const DEFAULTS: &str = include_str!("../../launch_configs/defaults.yaml");
 
 /// Reads a scene file, with overrides of the form `key=value`.
 ///

@@ -83,6 +83,9 @@ impl Quantity {
 /// Visits the keys of a scene. The reader writes into the values it is given, the printer reads
 /// them.
 pub(crate) trait Visitor: Sized {
+    /// Describes the key that is visited next. Only the scene reference uses it.
+    fn doc(&mut self, _text: &'static str) {}
+
     /// A map under `key`.
     fn section(&mut self, key: &'static str, inside: impl FnOnce(&mut Self));
 

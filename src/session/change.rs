@@ -3,8 +3,8 @@
 use super::{Compiled, Session, no_forces};
 use crate::{
     base::{Tick, real::Wrench},
-    command::change::{Change, ChangeRefused, Scope, SettledScene, TunableParameter},
-    cosim::compile::retune,
+    command::change::{Change, Scope, SettledScene, TunableParameter},
+    cosim::{compile::retune, refused::ChangeError},
     physics::boundary::body::BodyMotion,
     scene::Object,
 };
@@ -14,7 +14,7 @@ impl Session {
     ///
     /// # Errors
     /// If the change is rejected; the session is then unchanged.
-    pub fn change(&mut self, change: &Change) -> Result<(), ChangeRefused> {
+    pub fn change(&mut self, change: &Change) -> Result<(), ChangeError> {
         match change {
             Change::Reset(scope) => self.reset(*scope)?,
             Change::PlaceObject { object, pose, twist } => {
@@ -62,17 +62,17 @@ impl Session {
     }
 
     /// Replaces the scene; the ticks of the run and the counts of commands continue.
-    fn load(&mut self, settled: &SettledScene) -> Result<(), ChangeRefused> {
+    fn load(&mut self, settled: &SettledScene) -> Result<(), ChangeError> {
         let SettledScene { scene, start, keeps_time } = settled;
         let [now, then] = [&self.scene, scene].map(|it| it.time.tick_ns);
         if now != then {
             let why = format!("its ticks are {then} ns long, those of this run {now} ns");
-            return Err(ChangeRefused::Unusable(why));
+            return Err(ChangeError::Unusable(why));
         }
         let compiled = Compiled::new(scene, &self.pool)
-            .map_err(|fault| ChangeRefused::Unusable(fault.to_string()))?;
+            .map_err(|fault| ChangeError::Unusable(fault.to_string()))?;
         let mut next = Self::from_start_state(compiled, start)
-            .map_err(|fault| ChangeRefused::Unusable(fault.to_string()))?;
+            .map_err(|fault| ChangeError::Unusable(fault.to_string()))?;
         next.run_tick = self.run_tick;
         next.is_loaded = true;
         next.processor.count_on(self.processor.counts());
@@ -85,10 +85,10 @@ impl Session {
         Ok(())
     }
 
-    fn reset(&mut self, scope: Scope) -> Result<(), ChangeRefused> {
+    fn reset(&mut self, scope: Scope) -> Result<(), ChangeError> {
         let is_own = |object: &Object| self.start.objects.iter().any(|it| it.name == object.name);
         if scope.state {
-            let start = self.start.state.as_ref().ok_or(ChangeRefused::StartUnknown)?;
+            let start = self.start.state.as_ref().ok_or(ChangeError::StartUnknown)?;
             let added = self.scene.objects.iter().filter(|it| !scope.spawned && !is_own(it));
             self.scene.objects = self.start.objects.iter().chain(added).cloned().collect();
             self.coupled.start_anew(&self.scene, start);
@@ -108,10 +108,10 @@ impl Session {
         Ok(())
     }
 
-    fn insert(&mut self, object: &Object) -> Result<(), ChangeRefused> {
+    fn insert(&mut self, object: &Object) -> Result<(), ChangeError> {
         let mut names = self.scene.objects.iter().chain(&self.start.objects);
         if names.any(|it| it.name == object.name) {
-            return Err(ChangeRefused::NameTaken { object: object.name.clone() });
+            return Err(ChangeError::NameTaken { object: object.name.clone() });
         }
         self.coupled.insert(&self.scene, object)?;
         self.scene.objects.push(object.clone());
@@ -125,11 +125,11 @@ impl Session {
         self.processor.remove(i);
     }
 
-    fn find(&self, object: &str) -> Result<usize, ChangeRefused> {
+    fn find(&self, object: &str) -> Result<usize, ChangeError> {
         let objects = &self.scene.objects;
         objects.iter().position(|it| it.name == object).ok_or_else(|| {
             let known: Vec<&str> = objects.iter().map(|it| it.name.as_str()).collect();
-            ChangeRefused::UnknownObject { object: object.to_owned(), known: known.join(", ") }
+            ChangeError::UnknownObject { object: object.to_owned(), known: known.join(", ") }
         })
     }
 }

@@ -8,7 +8,7 @@ use crate::{
         Tick, Vec3,
         digest::Digest,
         parallel::{self, ThreadPool},
-        real::Wrench,
+        real::{Wrench, real},
     },
     command::{
         Command, CommandRecord,
@@ -21,11 +21,11 @@ use crate::{
         rapier_world::RapierWorld,
         saved_state::{self, SavedStateError},
     },
+    measure,
     physics::{
         State, System,
         fill::{self, Progress},
         health::{self, Diverged},
-        measure,
     },
     scene::{Object, Scene},
 };
@@ -118,7 +118,7 @@ impl Session {
     fn assemble(compiled: Compiled, state: State) -> Self {
         let Compiled { scene, model, plan, bulks, limits, pool, .. } = compiled;
         let start = Start { state: Some(state.clone()), objects: scene.objects.clone() };
-        let step = plan.tick / measure::real(plan.n_substeps / plan.n_per_exchange);
+        let step = plan.tick / real(plan.n_substeps / plan.n_per_exchange);
         let world = RapierWorld::new(&scene, &model, bulks, step);
         let (n_objects, n_grains) = (scene.objects.len(), state.grains.positions.len());
         let processor = CommandProcessor::new(&scene);

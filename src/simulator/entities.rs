@@ -13,9 +13,9 @@ use crate::{
     },
     command::{
         apply::{self, object_frame},
-        change::{Change, ChangeRefused},
+        change::Change,
     },
-    cosim::rapier_world::TABLE_HALF,
+    cosim::{rapier_world::TABLE_HALF, refused::ChangeError},
     physics::boundary::shape::Aabb,
     snapshot::Snapshot,
     wire::{
@@ -260,7 +260,7 @@ impl Simulator {
             name => Change::PlaceObject { object: name.to_owned(), pose, twist },
         };
         self.change(&change, world).map_err(|refusal| match refusal {
-            ChangeRefused::Overlap { .. } => failed(INVALID, refusal),
+            ChangeError::Overlap { .. } => failed(INVALID, refusal),
             _ => failed(SimResult::RESULT_OPERATION_FAILED, refusal),
         })
     }

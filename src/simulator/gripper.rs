@@ -8,10 +8,8 @@
 
 use super::{Simulator, World, goals::GoalId, services::Action};
 use crate::{
-    command::{
-        Command,
-        change::{Change, ChangeRefused},
-    },
+    command::{Command, change::Change},
+    cosim::refused::ChangeError,
     snapshot::Snapshot,
     wire::{
         cdr::Cdr,
@@ -58,7 +56,7 @@ struct Progress {
 impl Simulator {
     pub(super) fn grip_command(&mut self, request: &SetBoolRequest) -> SetBoolResponse {
         if !self.has_world() {
-            return SetBoolResponse { success: false, message: ChangeRefused::NoScene.to_string() };
+            return SetBoolResponse { success: false, message: ChangeError::NoScene.to_string() };
         }
         let gauge_pa = if request.data { self.scene.chamber.gauge_min } else { 0.0 };
         self.end_grip(GoalStatus::STATUS_ABORTED, None);
@@ -72,7 +70,7 @@ impl Simulator {
                 success: true,
                 message: "~/flange/wrench reads zero from here on".to_owned(),
             },
-            Err(ChangeRefused::Unchangeable) | Err(_) => {
+            Err(ChangeError::Unchangeable) | Err(_) => {
                 TriggerResponse { success: false, message: "there is no sensor".to_owned() }
             }
         }

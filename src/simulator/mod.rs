@@ -34,10 +34,8 @@ pub use services::{Endpoint, Service, asked};
 use self::{entity_info::Register, goals::Goals, gripper::Grip, running::Running, worlds::Loading};
 use crate::{
     base::real::Twist,
-    command::{
-        Command,
-        change::{Change, ChangeRefused},
-    },
+    command::{Command, change::Change},
+    cosim::refused::ChangeError,
     io::server::{Outgoing, RequestId, ServiceRequest},
     physics::boundary::shape::Aabb,
     scene::{Scene, resource::Shelf},
@@ -59,7 +57,7 @@ pub trait Subject {
     ///
     /// # Errors
     /// If the change cannot be made; nothing is changed then.
-    fn change(&mut self, change: &Change) -> Result<(), ChangeRefused>;
+    fn change(&mut self, change: &Change) -> Result<(), ChangeError>;
 }
 
 /// The world between two ticks.
@@ -313,14 +311,14 @@ impl Simulator {
         self.running.has_world()
     }
 
-    fn change(&mut self, change: &Change, world: &mut World<'_>) -> Result<(), ChangeRefused> {
+    fn change(&mut self, change: &Change, world: &mut World<'_>) -> Result<(), ChangeError> {
         if !self.has_world() {
-            return Err(ChangeRefused::NoScene);
+            return Err(ChangeError::NoScene);
         }
         self.apply(change, world)
     }
 
-    fn apply(&mut self, change: &Change, world: &mut World<'_>) -> Result<(), ChangeRefused> {
+    fn apply(&mut self, change: &Change, world: &mut World<'_>) -> Result<(), ChangeError> {
         let changed = world.subject.change(change);
         if changed.is_ok() {
             self.changed.changes.push(change.clone());

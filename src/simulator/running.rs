@@ -2,7 +2,8 @@
 
 use super::{Simulator, Unreadable, World, failed, goals::GoalId, ok};
 use crate::{
-    command::change::{Change, ChangeRefused, Scope},
+    command::change::{Change, Scope},
+    cosim::refused::ChangeError,
     io::server::RequestId,
     scene::resource::FORMATS,
     wire::{
@@ -262,7 +263,7 @@ impl Simulator {
                 }
                 ok()
             }
-            Err(error @ ChangeRefused::NoScene) => failed(SimResult::RESULT_INCORRECT_STATE, error),
+            Err(error @ ChangeError::NoScene) => failed(SimResult::RESULT_INCORRECT_STATE, error),
             Err(error) => failed(SimResult::RESULT_OPERATION_FAILED, error),
         };
         ResetSimulationResponse { result }

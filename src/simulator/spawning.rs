@@ -9,8 +9,8 @@ use super::{
     failed, ok,
 };
 use crate::{
-    command::change::{Change, ChangeRefused},
-    cosim::compile::body,
+    command::change::Change,
+    cosim::{compile::body, refused::ChangeError},
     scene::{
         Object,
         resource::{self, ResourceFault, Shelf},
@@ -81,7 +81,7 @@ impl Simulator {
         world: &mut World<'_>,
     ) -> Result<String, SimResult> {
         if !self.has_world() {
-            return Err(failed(SimResult::RESULT_INCORRECT_STATE, ChangeRefused::NoScene));
+            return Err(failed(SimResult::RESULT_INCORRECT_STATE, ChangeError::NoScene));
         }
         if OBJECTS_MAX <= world.seen.objects.len() {
             let why = format!("there are {OBJECTS_MAX} objects already");
@@ -95,9 +95,9 @@ impl Simulator {
         let name = object.name.clone();
         self.change(&Change::Insert(Box::new(object.clone())), world).map_err(|refusal| {
             let code = match refusal {
-                ChangeRefused::NameTaken { .. } => SpawnResult::NAME_NOT_UNIQUE,
-                ChangeRefused::Overlap { .. } => SpawnResult::INVALID_POSE,
-                ChangeRefused::Unusable(_) => SpawnResult::UNSUPPORTED_ASSETS,
+                ChangeError::NameTaken { .. } => SpawnResult::NAME_NOT_UNIQUE,
+                ChangeError::Overlap { .. } => SpawnResult::INVALID_POSE,
+                ChangeError::Unusable(_) => SpawnResult::UNSUPPORTED_ASSETS,
                 _ => SimResult::RESULT_OPERATION_FAILED,
             };
             failed(code, refusal)
@@ -179,12 +179,10 @@ impl Simulator {
         } else {
             match self.change(&Change::Remove { object: name.clone() }, world) {
                 Ok(()) => ok(),
-                Err(refusal @ ChangeRefused::UnknownObject { .. }) => {
+                Err(refusal @ ChangeError::UnknownObject { .. }) => {
                     failed(SimResult::RESULT_NOT_FOUND, refusal)
                 }
-                Err(refusal @ ChangeRefused::NoScene) => {
-                    failed(SimResult::RESULT_NOT_FOUND, refusal)
-                }
+                Err(refusal @ ChangeError::NoScene) => failed(SimResult::RESULT_NOT_FOUND, refusal),
                 Err(refusal) => failed(SimResult::RESULT_OPERATION_FAILED, refusal),
             }
         };

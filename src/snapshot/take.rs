@@ -7,7 +7,8 @@ use super::{
 use crate::{
     base::{Real, Vec3, real::Wrench},
     cosim::{Coupled, FLANGE},
-    physics::{System, measure},
+    measure,
+    physics::System,
     session::Session,
 };
 
@@ -58,7 +59,7 @@ impl Session {
             snapshot,
             grain_positions: &state.grains.positions,
             grain_velocities: &state.grains.velocities,
-            grain_spins: &state.grains.spins,
+            grain_spins: &state.grains.angular_velocities,
             grain_radii: &state.grains.radii,
             grain_normal_forces: self.normal_forces(),
             vertex_positions: &state.membrane.positions,
@@ -146,7 +147,7 @@ fn contacts(coupled: &Coupled) -> Vec<ContactSnapshot> {
     let System { model, scratch, .. } = &coupled.system;
     let n_samples = scratch.sample_forces.len() / model.bodies.len().max(1);
     let of_objects = scratch.sample_forces.iter().take(n_samples * coupled.n_objects()).enumerate();
-    let touching = of_objects.filter(|(_, sample)| 0.0 < sample.overlap);
+    let touching = of_objects.filter(|(_, sample)| sample.flags.touches());
     touching
         .map(|(index, sample)| ContactSnapshot {
             object: index / n_samples,

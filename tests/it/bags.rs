@@ -395,8 +395,8 @@ fn thread_time_s(name: &str) -> f64 {
 }
 
 /// 1 kHz of states and 100 Hz of all grains and vertices, as fast as real time, with numbers that do
-/// not compress, for two seconds or `JAMGRIP_RECORD_SECONDS`. Oracle: nothing is dropped, though
-/// the queue may drop; what was given is what is there.
+/// not compress, for two seconds or `JAMGRIP_RECORD_SECONDS`. Oracles: what was given is what is there;
+/// writing takes less processor time than the recorded time, however busy the machine is.
 #[test]
 fn a_recording_keeps_up_with_real_time() {
     let seconds = std::env::var("JAMGRIP_RECORD_SECONDS").ok().and_then(|it| it.parse().ok());
@@ -416,7 +416,8 @@ fn a_recording_keeps_up_with_real_time() {
     let bag = Bag::create(&place, encoder, subject()).unwrap();
     let reporter = bag.reporter();
     let mut fanout = Fanout::new();
-    fanout.add(Box::new(bag), Delivery::Latest { depth: 1000 }).unwrap();
+    let depth = usize::try_from(n_ticks).unwrap();
+    fanout.add(Box::new(bag), Delivery::Latest { depth }).unwrap();
     let mut system = by_tick::Synthetic::new("cylinder");
     let (grains, membrane) = (system.grains(), system.membrane());
     #[expect(clippy::disallowed_methods, reason = "real time is what is tested")]
@@ -436,7 +437,12 @@ fn a_recording_keeps_up_with_real_time() {
         let due = Duration::from_millis(tick);
         std::thread::sleep(due.saturating_sub(start.elapsed()));
     }
-    let share = thread_time_s("sink-bag") / start.elapsed().as_secs_f64();
+    while fanout.counters()[0].n_written < n_ticks {
+        assert!(start.elapsed() < Duration::from_millis(n_ticks) + Duration::from_secs(60));
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    let share = thread_time_s("sink-bag") / Duration::from_millis(n_ticks).as_secs_f64();
+    assert!(share < 1.0, "{share} s of processor time for each recorded second");
     let (ends, faults) = fanout.close(Duration::from_secs(60));
     assert!(faults.is_empty(), "{faults:?}");
     let counters = &ends[0].counters;

@@ -4,9 +4,9 @@ use jamgrip::{
     base::{Pose, Real, Vec3, real::Twist},
     command::{
         Command,
-        change::{Change, ChangeRefused, Scope, SettledScene},
+        change::{Change, Scope, SettledScene},
     },
-    cosim::FLANGE,
+    cosim::{FLANGE, refused::ChangeError},
     scene::{Object, Shape},
     session::Session,
 };
@@ -103,15 +103,15 @@ fn there_must_be_room() {
         ("in the bag", Vec3::new(0.0, 0.0, 0.085), "the gripper"),
     ] {
         let refused = session.change(&ball(&session, "ball", position)).unwrap_err();
-        let ChangeRefused::Overlap { with: found, .. } = refused else { panic!("{refused}") };
+        let ChangeError::Overlap { with: found, .. } = refused else { panic!("{refused}") };
         assert_eq!(found, with, "{what}");
     }
     let taken = session.change(&ball(&session, "cylinder", Vec3::new(0.3, 0.0, 0.2)));
-    assert!(matches!(taken, Err(ChangeRefused::NameTaken { .. })));
+    assert!(matches!(taken, Err(ChangeError::NameTaken { .. })));
     let into_table = Change::PlaceFlange { pose: Pose::translation(0.2, 0.0, 0.01) };
-    assert!(matches!(session.change(&into_table), Err(ChangeRefused::Overlap { .. })));
+    assert!(matches!(session.change(&into_table), Err(ChangeError::Overlap { .. })));
     let unknown = Change::Remove { object: "ball".to_owned() };
-    assert!(matches!(session.change(&unknown), Err(ChangeRefused::UnknownObject { .. })));
+    assert!(matches!(session.change(&unknown), Err(ChangeError::UnknownObject { .. })));
     assert_eq!(session.digest(), before);
 }
 
@@ -173,7 +173,7 @@ fn a_loaded_scene_runs_as_if_it_had_been_the_first() {
     let scene = coarse::scene(&["time.tick=2 ms", "outputs.state_rate=100 Hz"]);
     for wrong in [damaged, SettledScene { scene, ..settled }] {
         let refused = session.change(&Change::LoadScene(Box::new(wrong)));
-        assert!(matches!(refused, Err(ChangeRefused::Unusable(_))), "{refused:?}");
+        assert!(matches!(refused, Err(ChangeError::Unusable(_))), "{refused:?}");
         assert_eq!(session.digest(), now, "nothing is changed");
     }
 }

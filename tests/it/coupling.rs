@@ -7,7 +7,8 @@ use jamgrip::{
     base::{Pose, Real, Vec3, parallel},
     command::Command,
     cosim::{Coupled, FLANGE, Inputs},
-    physics::{Controls, Scratch, State, System, measure, substep},
+    measure,
+    physics::{Controls, Scratch, State, System, substep},
     session::Session,
     snapshot::Parts,
 };
@@ -56,7 +57,8 @@ fn momenta(coupled: &Coupled) -> (Vec3, Vec3) {
         add(model.membrane.masses[v], &sheet.positions[v], &sheet.velocities[v]);
     }
     for i in 0..grains.len() {
-        angular += grains.spins[i] * (0.4 * grains.masses[i] * grains.radii[i].powi(2));
+        angular +=
+            grains.angular_velocities[i] * (0.4 * grains.masses[i] * grains.radii[i].powi(2));
     }
     (linear, angular)
 }
@@ -86,7 +88,7 @@ fn what_the_sheet_gets_the_object_gives() {
     for (body, of_body) in sample_forces.chunks(n_samples).enumerate() {
         let centre = controls.bodies[body].pose.translation.vector;
         let (mut force, mut torque, mut size) = (Vec3::zeros(), Vec3::zeros(), 0.0);
-        for sample in of_body.iter().filter(|sample| sample.overlap > 0.0) {
+        for sample in of_body.iter().filter(|sample| sample.flags.touches()) {
             force += sample.force;
             torque += (sample.point - centre).cross(&sample.force);
             size += sample.force.norm();

@@ -1,11 +1,13 @@
 //! The same bits every time: whatever the number of threads, wherever a run is taken up, whenever
 //! the neighbour lists are built.
 
+use std::{io::Write, process::Command as Process};
+
 use jamgrip::{
     base::{
         Pose, Vec3,
         digest::Digest,
-        lanes::{self, Width},
+        lanes::{self, Kernel, Lanes, Width},
         parallel,
     },
     command::Command,
@@ -47,19 +49,90 @@ fn one_two_and_seven_threads_give_the_same_bits_and_so_does_a_second_run() {
     }
 }
 
+/// Number of lanes that `lanes::widest` uses in this process.
+fn lanes_used() -> usize {
+    struct Probe<'a>(&'a mut usize);
+    impl Kernel for Probe<'_> {
+        #[inline(always)]
+        fn run<L: Lanes>(self) {
+            *self.0 = L::N;
+        }
+    }
+    let mut n = 0;
+    lanes::widest(Probe(&mut n));
+    n
+}
+
+/// Set in the process that runs the script of the next test with at most so many lanes.
+const LANES: &str = "JAMGRIP_TEST_LANES";
+/// The settled start state, for that process.
+const START: &str = "JAMGRIP_TEST_START";
+
+/// Oracle: plain numbers, one at a time, to the last bit. The limit on the width holds for a whole
+/// process, so each width has a process of its own and no other test meets it.
 #[test]
+#[cfg(target_arch = "x86_64")]
 fn registers_of_any_width_give_the_same_bits() {
-    let mut runs = Vec::new();
-    for width in [Width::One, Width::Four, Width::Eight] {
-        // A processor that is not as wide takes what it has. Tests beside this one may meet the limit
-        // too: it changes nothing, as is shown here.
-        lanes::limit(width);
-        runs.push((lanes::width(), script(&mut coarse::session(1, &[]))));
+    if let Ok(limit) = std::env::var(LANES) {
+        return print_script_with_lanes(&limit);
     }
-    // Oracle: plain numbers, one at a time, to the last bit.
+    let has_four = is_x86_feature_detected!("avx2");
+    let has_eight = is_x86_feature_detected!("avx512f")
+        && is_x86_feature_detected!("avx512dq")
+        && is_x86_feature_detected!("avx512vl");
+    let has = format!("this processor: AVX2 {has_four}, AVX-512 (F, DQ, VL) {has_eight}");
+    let all = [(1, true), (4, has_four), (8, has_eight)];
+    let (there, missing): (Vec<_>, Vec<_>) = all.into_iter().partition(|it| it.1);
+    let mut out = std::io::stderr().lock();
+    writeln!(out, "registers_of_any_width_give_the_same_bits: {has}").unwrap();
+    for (width, _) in missing {
+        writeln!(out, "NOT RUN: {width} lanes, which this processor does not have").unwrap();
+    }
+    drop(out);
+    assert!(1 < there.len(), "NOT RUN: nothing to compare with one lane; {has}");
+
+    let folder = tempfile::tempdir().unwrap();
+    let start = folder.path().join("start");
+    std::fs::write(&start, coarse::start_state()).unwrap();
+    let runs: Vec<(usize, String)> = there
+        .iter()
+        .map(|(limit, _)| {
+            let test = "determinism::registers_of_any_width_give_the_same_bits";
+            let output = Process::new(std::env::current_exe().unwrap())
+                .args(["--exact", test, "--nocapture"])
+                .env(LANES, limit.to_string())
+                .env(START, &start)
+                .output()
+                .unwrap();
+            let text = String::from_utf8_lossy(&output.stdout).into_owned();
+            assert!(output.status.success(), "{limit} lanes: {text}");
+            let line = text.lines().find_map(|it| it.split_once("lanes used: "));
+            let (n, digests) = line.unwrap().1.split_once("; ").unwrap();
+            (n.parse().unwrap(), digests.to_owned())
+        })
+        .collect();
+    let widths: Vec<usize> = runs.iter().map(|it| it.0).collect();
+    let expected: Vec<usize> = there.iter().map(|it| it.0).collect();
+    assert_eq!(widths, expected, "each run used the width that it was to use; {has}");
     for (width, digests) in &runs {
-        assert_eq!(*digests, runs[0].1, "{width:?}");
+        assert_eq!(digests.split(' ').count(), N_TICKS + 1);
+        assert_eq!(*digests, runs[0].1, "{width} lanes against one");
     }
+}
+
+/// Runs the script in this process with a limit on the width, and prints what came out.
+#[cfg(target_arch = "x86_64")]
+fn print_script_with_lanes(limit: &str) {
+    lanes::limit(match limit {
+        "1" => Width::One,
+        "4" => Width::Four,
+        _ => Width::Eight,
+    });
+    let start = std::fs::read(std::env::var_os(START).unwrap()).unwrap();
+    let mut session = Session::from_start_state(coarse::compiled(1, &[]), &start).unwrap();
+    let digests: Vec<String> = script(&mut session).iter().map(|it| format!("{it:016x}")).collect();
+    let n = lanes_used();
+    writeln!(std::io::stdout().lock(), "\nlanes used: {n}; {}", digests.join(" ")).unwrap();
 }
 
 #[test]

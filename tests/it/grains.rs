@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 
 use jamgrip::{
     base::{Real, Vec3, parallel},
-    physics::contact::law::Surface,
+    physics::law::Surface,
     scene::Material,
 };
 
@@ -45,7 +45,8 @@ fn a_sliding_grain_starts_to_roll() {
         while time < 2.0 * rolling_at {
             rig.step();
             time += rig.model.substep;
-            let (v, spin) = (rig.state.grains.velocities[0].x, rig.state.grains.spins[0].y);
+            let (v, spin) =
+                (rig.state.grains.velocities[0].x, rig.state.grains.angular_velocities[0].y);
             if (0.1..0.95).contains(&(time / rolling_at)) {
                 // Oracle: v = v0 − μ g t, ω = 5/2 μ g t / R. Tolerance 0.2 %: the lever arm is
                 // R − ξ/2 with ξ/R = 0.1 %, and the spring takes the first 0.1 ms to stretch.
@@ -57,7 +58,8 @@ fn a_sliding_grain_starts_to_roll() {
                 }
             }
         }
-        let (v, spin) = (rig.state.grains.velocities[0].x, rig.state.grains.spins[0].y);
+        let (v, spin) =
+            (rig.state.grains.velocities[0].x, rig.state.grains.angular_velocities[0].y);
         // Oracle: angular momentum about a point of the plate, v = 5/7 v0, and ω R = v.
         // Tolerance 0.2 %: the same lever arm.
         eprintln!("rolling: v/v0·7/5 {}, ωR/v {}", v / v0 * 1.4, spin * RADIUS / v);
@@ -120,7 +122,7 @@ fn a_grain_that_may_not_roll_sticks_below_the_angle_of_friction_and_does_not_cre
             for _ in 0..2 {
                 for _ in 0..n_steps / 2 {
                     rig.step();
-                    rig.state.grains.spins[0] = Vec3::zeros();
+                    rig.state.grains.angular_velocities[0] = Vec3::zeros();
                 }
                 let grains = &rig.state.grains;
                 seen.push((grains.positions[0].x, grains.velocities[0].x));
@@ -175,7 +177,7 @@ fn oblique_impact_follows_the_table() {
             }
             let after = rig.kinetic_energy();
             let found = rig.state.grains.velocities[0].x / velocity.x;
-            let rolled = rig.state.grains.spins[0].y * RADIUS / speed;
+            let rolled = rig.state.grains.angular_velocities[0].y * RADIUS / speed;
             eprintln!(
                 "{angle}°: e_t {found:.4} ({e_t}), Rω/v {rolled:.4} ({spin}), E {:.4}",
                 after / before
@@ -196,7 +198,7 @@ fn two_unequal_grains_conserve_momentum_and_angular_momentum() {
         let high = Vec3::new(0.0, 0.0, 0.01);
         rig.add_grain(high, Vec3::new(0.5, 0.1, 0.0), 2e-3, 2000.0);
         rig.add_grain(high + Vec3::new(3.0e-3, 0.5e-3, 0.6e-3), Vec3::zeros(), 1e-3, 2000.0);
-        rig.state.grains.spins[0] = Vec3::new(30.0, -60.0, 100.0);
+        rig.state.grains.angular_velocities[0] = Vec3::new(30.0, -60.0, 100.0);
         let (momentum, _) = rig.momenta();
         let mass: Real = rig.state.grains.masses.iter().sum();
         let about_centre = |rig: &Rig| {
@@ -210,7 +212,7 @@ fn two_unequal_grains_conserve_momentum_and_angular_momentum() {
         let mut touched = 0;
         for _ in 0..3000 {
             rig.step();
-            touched += usize::from(rig.scratch.pair_forces.iter().any(|p| p.overlap > 0.0));
+            touched += usize::from(rig.scratch.pair_flags.iter().any(|it| it.touches()));
         }
         assert!(touched > 100, "the grains meet");
         assert!((rig.state.grains.velocities[1] - Vec3::zeros()).norm() > 0.1, "and part");
@@ -239,8 +241,8 @@ fn an_elastic_stack_keeps_its_energy_over_a_hundred_contacts() {
         let (mut n_contacts, mut touches, mut worst) = (0, false, 0.0_f64);
         while n_contacts < 100 {
             rig.step();
-            let touching = rig.scratch.wall_forces.iter().any(|p| p.normal > 0.0)
-                || rig.scratch.pair_forces.iter().any(|p| p.overlap > 0.0);
+            let touching = rig.scratch.wall_forces.iter().any(|it| it.flags.touches())
+                || rig.scratch.pair_flags.iter().any(|it| it.touches());
             n_contacts += usize::from(touching && !touches);
             if !touching && !touches {
                 let energy = potential(&rig) + rig.kinetic_energy();

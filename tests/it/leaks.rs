@@ -8,8 +8,8 @@ use jamgrip::{
             body::BodyMotion,
             wall::{WallModel, WallShape},
         },
-        contact::law::Surface,
         health::{self, Diverged},
+        law::Surface,
         membrane::{CARRIER_ID, FREE, MembraneContact, mesh::Mesh},
         state::Springs,
     },
@@ -74,7 +74,7 @@ fn bed(mesh: Mesh, contact: MembraneContact, radius: Real) -> Rig {
         rig.controls.walls.push(motion);
         rig.state.walls.push(motion);
     }
-    rig.state.springs = Springs::none(rig.state.grains.len(), rig.model.walls.len(), 0);
+    rig.state.springs = Springs::none(rig.state.grains.len(), 0);
     rig.model.skin = 0.25 * radius;
     rig
 }

@@ -8,6 +8,7 @@ mod bags_damaged; // killed, cut off, full disks, and what is saved of it
 #[cfg(feature = "bag")]
 mod bags_played; // a recording published again
 mod bench; // how fast it is told to be
+mod book; // links of the documentation, and pages made from the code
 mod by_tick; // a made-up system whose numbers follow from its tick
 mod changes; // back to the start, in, out and elsewhere
 mod coarse; // a coarse gripper for tests of the physics

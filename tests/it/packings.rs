@@ -8,17 +8,15 @@ use jamgrip::{
         random::{Random, Stream},
     },
     experiments::{Experiment, Plan, SceneText, Size, packing::Packing},
+    measure::{
+        coordination::{NEEDED_SMOOTH, coordination},
+        rest, stress,
+    },
     physics::{
         System, SystemBuilder,
-        contact::{
-            grains::closest_image,
-            law::{PairLaw, Surface},
-        },
-        measure::{
-            coordination::{NEEDED_SMOOTH, coordination},
-            rest, stress,
-        },
-        packing::{Grown, Growth, Recipe, Room, scatter, sphere_volume},
+        contact::grains::closest_image,
+        law::{PairLaw, Surface},
+        packing::{Grown, Growth, Recipe, Room, pressure::normal_pressure, scatter, sphere_volume},
         state::Grains,
     },
 };
@@ -81,7 +79,7 @@ fn a_periodic_box_has_no_walls_and_misses_no_pair() {
             }
         }
     }
-    let pressure = stress::normal_pressure(&system.state, &system.scratch, EDGE.powi(3));
+    let pressure = normal_pressure(&system.state, &system.scratch, EDGE.powi(3));
     assert!(pressure > 0.0, "they touch");
     let furthest =
         system.state.grains.positions.iter().map(|p| (p - Vec3::repeat(EDGE / 2.0)).amax());
@@ -133,7 +131,7 @@ fn a_squeezed_lattice_has_the_stress_and_the_energy_of_its_contacts() {
     let sigma = stress::contact_stress(model, state, scratch, volume);
     let expected = Mat3::identity() * (force / (cell * cell));
     assert!((sigma - expected).norm() < 1e-9 * expected.norm(), "{sigma} {expected}");
-    let pressure = stress::normal_pressure(state, scratch, volume);
+    let pressure = normal_pressure(state, scratch, volume);
     assert!((pressure / expected[(0, 0)] - 1.0).abs() < 1e-9, "{pressure}");
     let energy = rest::elastic_energy(model, state, scratch);
     assert!((energy / (64.0 * 3.0 * 0.4 * force * overlap) - 1.0).abs() < 1e-9, "{energy}");

@@ -8,7 +8,7 @@ use jamgrip::{
         System, SystemBuilder,
         boundary::wall::WallShape,
         builder::{Membrane, Vertices, Wall},
-        contact::law::{PairLaw, Surface},
+        law::{PairLaw, Surface},
         membrane::{MembraneMaterial, MembraneModel, mesh::Mesh},
     },
     scene::Material,
@@ -101,7 +101,7 @@ impl Rig {
             let momentum = grains.velocities[i] * grains.masses[i];
             linear += momentum;
             angular += grains.positions[i].cross(&momentum)
-                + grains.spins[i] * (0.4 * grains.masses[i] * grains.radii[i].powi(2));
+                + grains.angular_velocities[i] * (0.4 * grains.masses[i] * grains.radii[i].powi(2));
         }
         (linear, angular)
     }
@@ -112,7 +112,7 @@ impl Rig {
         let of_grain = |i: usize| {
             let inertia = 0.4 * grains.masses[i] * grains.radii[i].powi(2);
             0.5 * grains.masses[i] * grains.velocities[i].norm_squared()
-                + 0.5 * inertia * grains.spins[i].norm_squared()
+                + 0.5 * inertia * grains.angular_velocities[i].norm_squared()
         };
         (0..grains.len()).map(of_grain).sum()
     }

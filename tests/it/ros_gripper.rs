@@ -1,7 +1,7 @@
 //! What drivers of vacuum grippers offer, asked of the whole program; and ticks that wait for a
 //! controller.
 
-use std::{sync::Arc, time::Duration};
+use std::sync::Arc;
 
 use jamgrip::{
     ros::node::{Body, Publisher, RosNode, Subscription},
@@ -190,29 +190,28 @@ fn goals_are_cancelled_and_replaced() {
 fn the_wrist_sensor_is_set_to_zero() {
     inside("ros_gripper::the_wrist_sensor_is_set_to_zero", || {
         let folder = tempfile::tempdir().unwrap();
-        let _program = Running::start(folder.path(), &[]);
+        let _program = Running::start(folder.path(), &["outputs.state_rate=1000 Hz"]);
         let node = RosNode::join_as("operator", &reach()).unwrap();
         let wrench = node.subscription::<WrenchStamped>(&topic("/jamgrip/flange/wrench")).unwrap();
+        wait_until("the sensor", || 0 < node.n_writers("/jamgrip/flange/wrench"));
         set_state(&node, SimulationState::STATE_PAUSED);
         let mut step = Client::of::<srv::StepSimulation>(&node, "step_simulation");
         let mut zero = Client::of::<Trigger>(&node, "zero_ftsensor");
-        let mut read = || {
+        let mut read = |until_ns: u32| {
             let answer: StepSimulationResponse = step.ask(&StepSimulationRequest { steps: 50 });
             assert_eq!(answer.result.result, SimResult::RESULT_OK);
             let mut found = None;
-            wait_until("a wrench", || {
+            wait_until("the wrench of the last tick", || {
                 found = last(&wrench).or(found.take());
-                found.is_some()
+                found.as_ref().is_some_and(|it| it.header.stamp.nanosec == until_ns)
             });
-            // What belongs to the last step may still be on its way.
-            std::thread::sleep(Duration::from_millis(50));
-            last(&wrench).or(found).unwrap().wrench.force.z
+            found.unwrap().wrench.force.z
         };
-        let before = read();
+        let before = read(50_000_000);
         assert!(before < -0.5, "the gripper weighs {before} N");
         let answer: TriggerResponse = zero.ask(&TriggerRequest::default());
         assert!(answer.success, "{}", answer.message);
-        let after = read();
+        let after = read(100_000_000);
         assert!(after.abs() < 0.02 * before.abs(), "{after} N after zeroing {before} N");
     });
 }
@@ -261,19 +260,30 @@ impl Controller {
         let scope = ResetSimulationRequest::SCOPE_ALL;
         let answer: ResetSimulationResponse = reset.ask(&ResetSimulationRequest { scope });
         assert_eq!(answer.result.result, SimResult::RESULT_OK, "{}", answer.result.error_message);
-        std::thread::sleep(Duration::from_millis(200));
-        while self.clock.take().is_ok_and(|it| it.is_some()) {}
+        // The reset publishes the start, so that nothing older is still to come.
+        wait_until("the clock of the reset", || {
+            last(&self.clock).is_some_and(|it| (it.clock.sec, it.clock.nanosec) == (0, 0))
+        });
         let mut time_ns = 0;
         for i in 0..n {
             let way = f64::from(i) / f64::from(n);
             self.answer(time_ns, way, 0.101 - 0.02 * way);
             time_ns = self.next_ns(time_ns);
         }
-        let mut look = Client::of::<srv::GetEntityState>(&self.node, "get_entity_state");
-        let entity = "cylinder".to_owned();
-        let answer: GetEntityStateResponse = look.ask(&GetEntityStateRequest { entity });
-        answer.state
+        look(&self.node)
     }
+}
+
+/// The object's state.
+fn look(node: &RosNode) -> EntityState {
+    let mut client = Client::of::<srv::GetEntityState>(node, "get_entity_state");
+    let entity = "cylinder".to_owned();
+    let answer: GetEntityStateResponse = client.ask(&GetEntityStateRequest { entity });
+    answer.state
+}
+
+fn stamp_ns(header: &Header) -> i64 {
+    i64::from(header.stamp.sec) * 1_000_000_000 + i64::from(header.stamp.nanosec)
 }
 
 /// Oracle: counting, and the same bits twice. A command acts in the very next tick.
@@ -291,25 +301,23 @@ fn a_controller_in_lockstep_misses_no_tick() {
             node: Arc::clone(&node),
         };
         wait_until("the node's ear", || 0 < node.n_readers("/jamgrip/joint_commands"));
+        // While it waits for a first command it publishes the start again and again.
+        wait_until("the first clock", || last(&controller.clock).is_some());
+        wait_until("the chamber", || 0 < node.n_writers("/jamgrip/vacuum_state"));
         set_state(&node, SimulationState::STATE_PLAYING);
-        std::thread::sleep(Duration::from_millis(200));
         let n = std::env::var("JAMGRIP_LOCKSTEP_TICKS").map_or(200, |it| it.parse().unwrap());
         let first = controller.episode(n);
         assert_eq!(first, controller.episode(n), "two episodes of {n} ticks");
         // What was commanded at the end of a tick is set at the end of the next one.
-        last(&vacuum);
         let time_ns = i64::from(n) * 1_000_000;
         controller.answer(time_ns, 0.75, 0.101);
         let now_ns = controller.next_ns(time_ns);
         let mut seen = None;
         wait_until("the state of that tick", || {
-            seen = last(&vacuum);
-            seen.is_some()
+            seen = last(&vacuum).or(seen.take());
+            seen.as_ref().is_some_and(|it| stamp_ns(&it.header) == now_ns)
         });
         let seen = seen.unwrap();
-        let stamp =
-            i64::from(seen.header.stamp.sec) * 1_000_000_000 + i64::from(seen.header.stamp.nanosec);
-        assert_eq!(stamp, now_ns);
         assert!((seen.gauge_setpoint + 0.75 * STRONGEST).abs() < 1e-6, "{}", seen.gauge_setpoint);
     });
 }
@@ -336,7 +344,11 @@ fn time_follows_the_clock_of_another_simulator() {
                 now = last(&joints).map(|it| it.header.stamp.nanosec).or(now);
                 now.is_some_and(|it| milliseconds * 1_000_000 <= it)
             });
-            std::thread::sleep(Duration::from_millis(100));
+            // Between two ticks the program answers questions: had it gone on, it would show by now.
+            for _ in 0..10 {
+                let answer: EntityState = look(&node);
+                assert_eq!(answer.header.stamp.nanosec, milliseconds * 1_000_000);
+            }
             let now = last(&joints).map_or(now.unwrap(), |it| it.header.stamp.nanosec);
             assert_eq!(now, milliseconds * 1_000_000, "time stands at the other clock");
         }

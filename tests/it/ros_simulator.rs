@@ -3,7 +3,8 @@
 use std::{path::Path, process::Command, time::Duration};
 
 use jamgrip::{
-    command::change::{Change, ChangeRefused},
+    command::change::Change,
+    cosim::refused::ChangeError,
     io::server::{RequestId, ServiceRequest, ServiceSpec},
     ros::{
         node::RosNode,
@@ -170,7 +171,7 @@ impl Subject for Dummy {
         self.0.snapshot.clone()
     }
 
-    fn change(&mut self, _change: &Change) -> Result<(), ChangeRefused> {
+    fn change(&mut self, _change: &Change) -> Result<(), ChangeError> {
         Ok(())
     }
 }

@@ -4,8 +4,8 @@
 use jamgrip::{
     base::{Real, Vec3, parallel},
     physics::{
-        contact::law::Surface,
         health,
+        law::Surface,
         membrane::{CARRIER_ID, FREE, mesh::Mesh},
         scratch::PatchForce,
     },
@@ -145,7 +145,7 @@ fn friction_does_not_see_edges() {
         for step in 0..n_steps {
             let velocity = &mut rig.state.grains.velocities[0];
             (velocity.x, velocity.y) = (0.05, 0.0);
-            rig.state.grains.spins[0] = Vec3::zeros();
+            rig.state.grains.angular_velocities[0] = Vec3::zeros();
             rig.step();
             if 0.05 * 1e-5 * Real::from(step) > 2.0 * stick {
                 let patches = &rig.scratch.patch_forces[0];

@@ -4,9 +4,8 @@ use jamgrip::{
     base::{Real, Vec3, digest::Digest, parallel},
     cosim::saved_state,
     physics::{
-        Scratch,
-        contact::law::Surface,
-        health,
+        Scratch, health,
+        law::Surface,
         membrane::{FREE, MembraneContact},
         scratch::SphereForce,
     },
@@ -30,7 +29,7 @@ fn rig(n: i32, surface: Surface, dt: Real) -> Rig {
 
 /// The contacts that carry load.
 fn loaded(rig: &Rig) -> Vec<SphereForce> {
-    rig.scratch.sphere_forces.iter().filter(|it| it.overlap > 0.0).copied().collect()
+    rig.scratch.sphere_forces.iter().filter(|it| it.flags.touches()).copied().collect()
 }
 
 fn shared_radius() -> Real {
@@ -77,16 +76,17 @@ fn what_the_grain_gets_the_vertices_give() {
         let mut rig = rig(4, surface, 1e-6);
         let position = Vec3::new(0.62e-3, 0.35e-3, RADIUS + 0.52e-3);
         rig.add_grain(position, Vec3::new(0.2, -0.1, -0.05), RADIUS, GRAIN.density);
-        rig.state.grains.spins[0] = Vec3::new(20.0, 30.0, -40.0);
+        rig.state.grains.angular_velocities[0] = Vec3::new(20.0, 30.0, -40.0);
         let mut n_touched = 0;
         for _ in 0..300 {
             let (x, velocity) = (rig.state.grains.positions[0], rig.state.grains.velocities[0]);
-            let spin = rig.state.grains.spins[0];
+            let spin = rig.state.grains.angular_velocities[0];
             rig.step();
             let mass = rig.state.grains.masses[0];
             let gained = (rig.state.grains.velocities[0] - velocity) * (mass / rig.model.substep);
             let inertia = 0.4 * mass * RADIUS * RADIUS;
-            let turned = (rig.state.grains.spins[0] - spin) * (inertia / rig.model.substep);
+            let turned =
+                (rig.state.grains.angular_velocities[0] - spin) * (inertia / rig.model.substep);
             let (mut moment, mut couple, mut scale) = (Vec3::zeros(), Vec3::zeros(), 0.0);
             for (r, f) in rig.model.membrane.mesh.positions.iter().zip(&rig.scratch.vertex_forces) {
                 moment += r.cross(f);

@@ -1,7 +1,9 @@
 //! Zero-copy streams: what a reader on this host sees, and that no reader can hold up the writer.
 
 use std::{
+    io::{BufRead, BufReader},
     process::{Command, Stdio},
+    sync::mpsc,
     time::{Duration, Instant},
 };
 
@@ -88,7 +90,8 @@ fn a_reader_that_sleeps_loses_old_ticks_and_holds_up_nothing() {
     assert!(is(list.payload()[0].position[0], number(list.user_header().tick)));
 }
 
-/// Oracle: the contract. A second process reads, is killed, and the writer goes on without a fault.
+/// Oracle: the contract. A second process reads, is killed while it reads, and the writer goes on
+/// without a fault.
 #[test]
 fn another_process_reads_and_may_die() {
     let prefix = prefix("two_processes");
@@ -114,9 +117,24 @@ fn another_process_reads_and_may_die() {
     };
 
     let mut victim = spawn("1000000");
-    write_for(&mut stream, Duration::from_millis(500));
+    let lines = BufReader::new(victim.stdout.take().unwrap()).lines();
+    let (send, received) = mpsc::channel();
+    let listener = std::thread::spawn(move || {
+        lines.map_while(Result::ok).try_for_each(|line| send.send(line))
+    });
+    let start = now();
+    // It says once a second what it has read; before its first state it says `tick 0`.
+    while !received.try_iter().any(|line| line.starts_with("tick ") && !line.starts_with("tick 0 "))
+    {
+        assert!(now() - start < Duration::from_secs(60), "the first reader read nothing in 60 s");
+        write_for(&mut stream, Duration::from_millis(50));
+    }
+    assert_eq!(victim.try_wait().unwrap(), None, "it is still reading");
     victim.kill().unwrap();
     victim.wait().unwrap();
+    drop(received);
+    // It ends with the victim's output; a line that nobody takes any more ends it earlier.
+    let _ended = listener.join().unwrap();
     write_for(&mut stream, Duration::from_millis(500));
 
     let mut reader = spawn("200");

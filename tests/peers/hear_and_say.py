@@ -1,7 +1,7 @@
 """Hears clock, wrench and clouds, and says commands: what a ROS 2 user's process would do.
 
-Says `ready` once its readers are matched, then prints one JSON line when the clock has reached the
-number of seconds given as argument.
+Says `ready` once its readers are matched, then `heard N` for every tick of 1 ms, and one JSON line when
+the clock has reached the number of seconds given as argument.
 """
 
 import json
@@ -35,6 +35,7 @@ deadline = time.monotonic() + 120
 while (not ticks or ticks[-1] < until_s) and time.monotonic() < deadline:
     for it in clock.take(N=1000):
         ticks.append(it.clock.seconds())
+        print("heard", round(1000 * ticks[-1]), flush=True)
     for it in wrench.take(N=1000):
         forces.append((it.header.stamp.seconds(), it.wrench.force.z, it.header.frame_id))
     for it in grains.take(N=10):
@@ -52,7 +53,7 @@ while (not ticks or ticks[-1] < until_s) and time.monotonic() < deadline:
         stamp = t.Time(n_said, 5)
         flange_cmd.write(t.PoseStamped(t.Header(stamp, "world"), pose))
         n_said += 1
-    time.sleep(0.001)
+    time.sleep(0.0002)
 
 steps = [round((b - a) * 1e9) for a, b in zip(ticks, ticks[1:])]
 print(

@@ -230,4 +230,11 @@ impl Mask for Truths {
     fn any(self) -> bool {
         (unsafe { _mm256_movemask_pd(self.0) }) != 0
     }
+
+    #[inline(always)]
+    fn bits(self) -> u8 {
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "four bits")]
+        let bits = (unsafe { _mm256_movemask_pd(self.0) }) as u8;
+        bits
+    }
 }

@@ -267,4 +267,9 @@ impl Mask for __mmask8 {
     fn any(self) -> bool {
         self != 0
     }
+
+    #[inline(always)]
+    fn bits(self) -> u8 {
+        self
+    }
 }

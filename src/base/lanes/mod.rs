@@ -75,6 +75,8 @@ pub trait Mask: Copy {
     fn not(self) -> Self;
     /// True if it holds somewhere.
     fn any(self) -> bool;
+    /// One bit per lane, the first lane in the lowest.
+    fn bits(self) -> u8;
 }
 
 /// Work that can be done at any width. `run` must be `#[inline(always)]`, and what it calls too, so

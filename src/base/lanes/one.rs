@@ -102,4 +102,9 @@ impl Mask for bool {
     fn any(self) -> bool {
         self
     }
+
+    #[inline(always)]
+    fn bits(self) -> u8 {
+        u8::from(self)
+    }
 }

@@ -27,6 +27,8 @@ impl Kernel for All<'_> {
         for start in (0..self.a.len()).step_by(L::N) {
             let (a, b) = (L::load(&self.a[start..]), L::load(&self.b[start..]));
             let one = |mask: L::Mask| L::splat(1.0).or_where(mask, L::splat(0.0));
+            let from_bits =
+                |bits: u8| L::load(&std::array::from_fn::<_, 8, _>(|k| f64::from(bits >> k & 1)));
             let results = [
                 a + b,
                 a - b,
@@ -42,6 +44,7 @@ impl Kernel for All<'_> {
                 one(a.le(b)),
                 one(a.lt(b).and(b.lt(L::splat(1.0)))),
                 one(a.lt(b).not()),
+                from_bits(a.lt(b).bits()),
             ];
             for (row, result) in self.out.iter_mut().zip(results) {
                 result.store(&mut row[start..]);
@@ -97,7 +100,7 @@ fn operations_have_the_bits_of_plain_numbers() {
     for _ in 0..300 {
         let (a, b) = (numbers(&mut random), numbers(&mut random));
         at_every_width(|width| {
-            let mut out = vec![vec![0.0; 24]; 14];
+            let mut out = vec![vec![0.0; 24]; 15];
             run_at(width, All { a: &a, b: &b, out: &mut out });
             for k in 0..24 {
                 let (a, b) = (a[k], b[k]);
@@ -118,6 +121,7 @@ fn operations_have_the_bits_of_plain_numbers() {
                     one(a <= b),
                     one(a < b && b < 1.0),
                     one(a.partial_cmp(&b).is_none_or(Ordering::is_ge)),
+                    one(a < b),
                 ];
                 for (operation, expected) in expected.into_iter().enumerate() {
                     // The sign of something that is no number is nobody's business.

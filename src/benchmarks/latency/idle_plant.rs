@@ -5,18 +5,16 @@ use std::cell::RefCell;
 
 use super::{Heard, Latency, LatencyError, N_FIRST, latency, listener::Samples, percentiles};
 use crate::{
-    base::{Real, Tick, parallel},
+    base::{Real, Tick, parallel, real::real_of},
     benchmarks::{
         BenchError, Options,
         packing::{Boxed, Phase},
     },
-    command::{
-        Command,
-        change::{Change, ChangeRefused},
-    },
+    command::{Command, change::Change},
+    cosim::refused::ChangeError,
     host::clock::{Stopwatch, wall_ns},
     node::plant::Plant,
-    physics::{System, health::Diverged, measure::real_of},
+    physics::{System, health::Diverged},
     session::Session,
     simulator::Subject,
     snapshot::{Parts, Snapshot, view::View},
@@ -80,8 +78,8 @@ impl Subject for IdlePlant {
         Plant::snapshot(self, Parts::ALL)
     }
 
-    fn change(&mut self, _: &Change) -> Result<(), ChangeRefused> {
-        Err(ChangeRefused::Unchangeable)
+    fn change(&mut self, _: &Change) -> Result<(), ChangeError> {
+        Err(ChangeError::Unchangeable)
     }
 }
 

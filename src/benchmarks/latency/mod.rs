@@ -19,14 +19,16 @@ use serde::{Deserialize, Serialize};
 
 use super::{BenchError, Case, Figures, Options, lift};
 use crate::{
-    base::Real,
+    base::{
+        Real,
+        real::{real, real_of},
+    },
     host::{progress_bar::Progress, shutdown::Shutdown},
     io::fanout::Delivery,
     node::{
         Inputs, RunContext, Supervision, command_sources::CommandSources, lockstep::Gate,
         outputs::OutputSinks,
     },
-    physics::measure::{real, real_of},
     ros::{
         discovery::{DiscoveryExtent, DiscoveryRange},
         node::{RosNode, RosSink},

@@ -50,7 +50,7 @@ pub(super) fn packing(tool: Tool, system: &System, boxed: &Boxed) -> String {
     let (mut places, mut speeds) = (String::new(), String::new());
     for i in 0..grains.len() {
         let (p, radius) = (grains.positions[i], grains.radii[i]);
-        let (v, w) = (grains.velocities[i], grains.spins[i]);
+        let (v, w) = (grains.velocities[i], grains.angular_velocities[i]);
         let motion = row(&[v.x, v.y, v.z, w.x, w.y, w.z]);
         if tool == Tool::Yade {
             places += &format!("{} {motion}\n", row(&[p.x, p.y, p.z, radius]));

@@ -17,11 +17,11 @@ use serde_json::{Value, json};
 
 use super::{packing::Boxed, process::niceness, repetitions::Work, result::median, sanity::Limits};
 use crate::{
-    base::Real,
-    physics::{
-        System,
-        measure::{real, real_of},
+    base::{
+        Real,
+        real::{real, real_of},
     },
+    physics::System,
 };
 pub use error::PeerError;
 use input::{numbers, packing};

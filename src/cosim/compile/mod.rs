@@ -17,7 +17,7 @@ use crate::{
         Pose, Real, Vec3,
         digest::Digest,
         parallel::ThreadPool,
-        real::{Twist, count},
+        real::{Twist, count, real},
     },
     physics::{
         Model, State, SystemBuilder,
@@ -28,12 +28,8 @@ use crate::{
             wall::WallShape,
         },
         builder::{BuildError, Membrane, Vertices, Wall},
-        contact::{
-            self,
-            law::{self, PairLaw},
-        },
         critical_step,
-        measure::real,
+        law::{self, PairLaw},
         membrane::{MembraneMaterial, MembraneModel, mesh::Mesh},
         model::{BodyModel, BodySurface, ChamberModel},
     },
@@ -343,12 +339,8 @@ fn critical_step(
     // Under the strongest vacuum a grain carries the pressure on its square of membrane, a sample
     // that on its share of the membrane.
     let pressure = scene.chamber.gauge_min.abs().max(scene.chamber.gauge_max);
-    let of_grain =
-        contact::stiffness_at_vertex(membrane, &laws.membrane, grains.radius_max, pressure);
-    let area = membrane.mesh.vertex_areas().into_iter().fold(0.0, Real::max);
-    let of_body = bodies
-        .iter()
-        .map(|body| contact::stiffness(&body.law, body.contact_radius, pressure * area))
-        .fold(0.0, Real::max);
-    critical_step::critical_step(grains.radius_min, &grains.material, membrane, of_grain + of_body)
+    let on_vertex =
+        critical_step::stiffness_at_vertex(membrane, &laws.membrane, grains.radius_max, pressure)
+            + critical_step::stiffness_of_bodies(membrane, bodies, pressure);
+    critical_step::critical_step(grains.radius_min, &grains.material, membrane, on_vertex)
 }

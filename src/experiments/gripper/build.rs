@@ -6,9 +6,12 @@ use super::{
     scene::GripperScene,
 };
 use crate::{
-    base::{Pose, Real, Vec3, real::Twist},
+    base::{
+        Pose, Real, Vec3,
+        real::{Twist, real},
+    },
     cosim::compile::{self, CompileError, Gripper},
-    physics::{Controls, Model, State, System, boundary::body::BodyMotion, measure::real},
+    physics::{Controls, Model, State, System, boundary::body::BodyMotion},
 };
 
 /// How far the object goes down beyond its starting point if the bag does not let go of it (m).

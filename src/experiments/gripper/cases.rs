@@ -5,7 +5,7 @@
 //! between fillings.
 
 use super::scene::GripperScene;
-use crate::{base::Real, physics::measure::real};
+use crate::base::{Real, real::real};
 
 /// One filling and the grips that are done with it.
 #[derive(Clone, Debug)]

@@ -6,12 +6,11 @@ use super::{
     scene::GripperScene,
 };
 use crate::{
-    base::Real,
+    base::{Real, real::real},
     experiments::{
         findings::{Expected, Findings, Mean, Report, Row},
         record::Record,
     },
-    physics::measure::real,
 };
 
 /// Why a check from the settled bag on may fail.

@@ -4,12 +4,10 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use super::phase::Phase;
 use crate::{
-    base::{Real, Vec3},
+    base::{Real, Vec3, real::real},
     experiments::record::{Column, Record},
-    physics::{
-        System,
-        measure::{self, real},
-    },
+    measure,
+    physics::System,
 };
 
 /// Share of the normal force on the object that lies within the contact angle; the rest may come
@@ -90,13 +88,10 @@ fn contacts(system: &System, volume: Real) -> (Real, Real) {
     let System { state, scratch, .. } = system;
     let radii = &state.grains.radii;
     let (mut virial, mut energy) = (0.0, 0.0);
-    for (pair, ids) in scratch.pair_forces.iter().zip(&state.pair_ids) {
-        if pair.overlap > 0.0 {
-            let [a, b] = ids.map(|id| radii[id as usize]);
-            let normal = pair.signed_normal.abs();
-            virial += normal * (a + b - pair.overlap);
-            energy += 0.4 * normal * pair.overlap;
-        }
+    for (pair, ids) in scratch.touching_pairs(state) {
+        let [a, b] = ids.map(|id| radii[id as usize]);
+        virial += pair.normal * (a + b - pair.overlap);
+        energy += 0.4 * pair.normal * pair.overlap;
     }
     for (patches, radius) in scratch.patch_forces.iter().zip(radii) {
         for patch in &patches.contacts[..patches.n] {
@@ -121,7 +116,7 @@ pub(super) struct Grip {
 impl Grip {
     fn new(system: &System) -> Self {
         let centre = system.controls.bodies[0].pose.translation.vector;
-        let touching = system.scratch.sample_forces.iter().filter(|it| it.overlap > 0.0);
+        let touching = system.scratch.sample_forces.iter().filter(|it| it.flags.touches());
         let mut presses: Vec<(Real, Real)> = touching
             .map(|it| (angle_from_top(&(it.point - centre)), it.force.dot(&it.normal)))
             .collect();

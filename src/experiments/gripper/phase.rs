@@ -86,7 +86,7 @@ impl Way {
 /// A set-point that goes from 0 to `goal` in `n_steps` equal steps, one each `step_time` (s), the
 /// first at once; its value at `time` (s).
 pub(super) fn staircase(goal: Real, n_steps: usize, step_time: Real, time: Real) -> Real {
-    let n = crate::physics::measure::real(n_steps);
+    let n = crate::base::real::real(n_steps);
     goal * ((time / step_time).floor() + 1.0).clamp(1.0, n) / n
 }
 

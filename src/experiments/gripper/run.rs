@@ -11,14 +11,14 @@ use super::{
     summary::{has_passed, summarise},
 };
 use crate::{
-    base::Real,
+    base::{Real, real::real},
     cosim::compile::CompileError,
     experiments::{Progress, ResumeError, Run, Stepped, record::Record, saved_run},
+    measure::rest::unbalanced_force,
     physics::{
         Model, State, System,
         fill::{self, Filling},
         health::Diverged,
-        measure::{real, rest::unbalanced_force},
     },
 };
 

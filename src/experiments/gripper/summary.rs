@@ -1,7 +1,10 @@
 //! What a grip amounts to: its end, and its numbers, read from the rows of the record.
 
 use super::{build::Ready, measure, phase::Phase, scene::GripperScene};
-use crate::{base::Real, experiments::record::Record, physics::measure::real};
+use crate::{
+    base::{Real, real::real},
+    experiments::record::Record,
+};
 
 /// Share of the penetration without any pull after which none is to come: without vacuum, the bag
 /// pushes the object out all the way.

@@ -15,11 +15,8 @@ use crate::{
         Model, System, SystemBuilder,
         boundary::{body::BodyMotion, shape::Surface as BodyShape},
         builder::{Membrane, Vertices, Wall},
-        contact::{
-            self,
-            law::{PairLaw, Surface},
-        },
-        critical_step::critical_step,
+        critical_step::{critical_step, stiffness_at_vertex},
+        law::{PairLaw, Surface},
         membrane::{CARRIER_ID, FREE, MembraneMaterial, MembraneModel, mesh::Mesh},
         model::{BodyModel, BodySurface},
         packing::{Growth, Recipe, Room, first_scale, scatter, sphere_volume},
@@ -173,8 +170,8 @@ fn substep(scene: &Scene, laws: &Laws, mut membrane: MembraneModel) -> Real {
     let vacuum = scene.protocol.vacuum;
     let area = membrane.mesh.vertex_areas().into_iter().fold(0.0, Real::max);
     let radius = scene.grains.radius_max;
-    let pressed = contact::stiffness_at_vertex(&membrane, &laws.membrane, radius, vacuum)
-        + contact::stiffness(&laws.object, scene.object.radius, vacuum * area);
+    let pressed = stiffness_at_vertex(&membrane, &laws.membrane, radius, vacuum)
+        + laws.object.stiffness(scene.object.radius, vacuum * area);
     // Vertices that are held do not count, and none is when it matters.
     membrane.holders.fill(FREE);
     let smallest = scene.grains.radius_min;

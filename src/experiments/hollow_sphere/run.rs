@@ -8,16 +8,19 @@ use super::{
     scene::{Protocol, Scene},
 };
 use crate::{
-    base::{Real, real::count},
+    base::{
+        Real,
+        real::{count, real},
+    },
     experiments::{
         Progress, ResumeError, Run, StartError,
         record::{Column, Record},
         saved_run,
     },
+    measure::{self, rest::unbalanced_force},
     physics::{
         Scratch, System,
         health::Diverged,
-        measure::{self, real, rest::unbalanced_force},
         packing::{Grown, Growth, grow},
     },
 };
@@ -177,7 +180,7 @@ impl Shell {
     /// Pressure of the membrane on the object: the sum of its radial forces over the surface (Pa).
     fn object_pressure(&self) -> Real {
         let radial: Real = (self.system.scratch.sample_forces.iter())
-            .filter(|sample| sample.overlap > 0.0)
+            .filter(|sample| sample.flags.touches())
             .map(|sample| sample.force.dot(&sample.point.normalize()))
             .sum();
         radial / (4.0 * std::f64::consts::PI * self.scene.object.radius.powi(2))

@@ -1,8 +1,7 @@
 //! The scene of the hollow sphere, key by key.
 
 use crate::{
-    base::Real,
-    physics::measure::real,
+    base::{Real, real::real},
     scene::{
         Grains, Material, Membrane,
         quantity::{LENGTH, PRESSURE, TIME},

@@ -1,13 +1,12 @@
 //! One or two grains with a plane or a membrane, moved by the substeps of the simulation.
 
 use crate::{
-    base::{Real, Vec3},
+    base::{Real, Vec3, real::real},
     experiments::{oracles::impact::Collision, record::Record},
     physics::{
         System, SystemBuilder,
         builder::{Membrane, Vertices, Wall},
-        contact::law::{PairLaw, Surface},
-        measure::real,
+        law::{PairLaw, Surface},
         membrane::MembraneModel,
         state::Grains,
     },
@@ -95,10 +94,8 @@ impl Bench {
     /// Normal force between the grains, or of the plane (N).
     pub(super) fn normal_force(&self) -> Real {
         match self.grains().len() {
-            1 => self.system.scratch.wall_forces[0].normal,
-            _ => {
-                self.system.scratch.pair_forces.first().map_or(0.0, |pair| pair.signed_normal.abs())
-            }
+            1 => self.system.scratch.wall_forces.first().map_or(0.0, |wall| wall.normal),
+            _ => self.system.scratch.pair_forces.first().map_or(0.0, |pair| pair.normal),
         }
     }
 
@@ -110,7 +107,7 @@ impl Bench {
             let momentum = grains.velocities[i] * grains.masses[i];
             linear += momentum;
             angular += grains.positions[i].cross(&momentum)
-                + grains.spins[i] * (0.4 * grains.masses[i] * grains.radii[i].powi(2));
+                + grains.angular_velocities[i] * (0.4 * grains.masses[i] * grains.radii[i].powi(2));
         }
         (linear, angular)
     }
@@ -121,7 +118,7 @@ impl Bench {
         let of_grain = |i: usize| {
             let inertia = 0.4 * grains.masses[i] * grains.radii[i].powi(2);
             0.5 * grains.masses[i] * grains.velocities[i].norm_squared()
-                + 0.5 * inertia * grains.spins[i].norm_squared()
+                + 0.5 * inertia * grains.angular_velocities[i].norm_squared()
         };
         (0..grains.len()).map(of_grain).sum()
     }
@@ -187,7 +184,7 @@ impl Flight {
         let mut bench = Bench::on_plane(&self.material, self.surface, dt);
         bench.add_grain(Vec3::z() * self.radius, self.radius, self.material.density);
         bench.grains_mut().velocities[0] = self.velocity;
-        bench.grains_mut().spins[0] = self.spin;
+        bench.grains_mut().angular_velocities[0] = self.spin;
         let met = bench.collide();
         note_overlap(record, met.overlap_max / (2.0 * self.radius));
         (bench, met)
@@ -247,7 +244,7 @@ impl Encounter {
         for (i, x) in [-self.radii[0], self.radii[1]].into_iter().enumerate() {
             bench.add_grain(high + Vec3::x() * x, self.radii[i], self.densities[i]);
             bench.grains_mut().velocities[i] = Vec3::x() * self.speeds[i];
-            bench.grains_mut().spins[i] = self.spins[i];
+            bench.grains_mut().angular_velocities[i] = self.spins[i];
         }
         let met = bench.collide();
         note_overlap(record, met.overlap_max / (self.radii[0] + self.radii[1]));

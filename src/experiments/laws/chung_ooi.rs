@@ -174,7 +174,7 @@ fn test_5(scene: &Scene, record: &mut Record) {
             };
             let (bench, _) = flight.land(scene.steps_per_contact, record);
             // Their sign: the spin of a sphere that rolls forward is negative.
-            let spin = -bench.grains().spins[0].y * flight.radius / (0.3 * 5.0);
+            let spin = -bench.grains().angular_velocities[0].y * flight.radius / (0.3 * 5.0);
             if ratio >= 7.0 {
                 worst(record, id, spin / -5.0 - 1.0);
             }
@@ -200,7 +200,7 @@ fn test_6(scene: &Scene, record: &mut Record) {
             flight.surface.dissipation_time = dissipation_time(&flight.collision(), 0.5);
             let (bench, _) = flight.land(scene.steps_per_contact, record);
             let gained = bench.grains().velocities[0].x;
-            let lost = spin - bench.grains().spins[0].y;
+            let lost = spin - bench.grains().angular_velocities[0].y;
             if spin > SLIDES {
                 worst(record, "U3.test_6", gained / 0.12 - 1.0);
                 worst(record, "U3.test_6", lost / 3.0 - 1.0);
@@ -218,7 +218,7 @@ fn test_7(scene: &Scene, record: &mut Record) {
             encounter.spins = [Vec3::z() * spin, Vec3::z() * -spin];
             let (bench, _) = encounter.meet(scene.steps_per_contact, record);
             for i in 0..2 {
-                let changed = bench.grains().spins[i] - encounter.spins[i];
+                let changed = bench.grains().angular_velocities[i] - encounter.spins[i];
                 worst(record, "U3.test_7_no_slip", changed.norm() / spin);
                 worst(record, "U3.test_7_no_slip", bench.grains().velocities[i].yz().norm() / 0.2);
             }
@@ -226,7 +226,11 @@ fn test_7(scene: &Scene, record: &mut Record) {
                 encounter.spins = [Vec3::z() * spin; 2];
                 let (bench, _) = encounter.meet(scene.steps_per_contact, record);
                 for i in 0..2 {
-                    worst(record, "U3.test_7_slip", (spin - bench.grains().spins[i].z) / 3.0 - 1.0);
+                    worst(
+                        record,
+                        "U3.test_7_slip",
+                        (spin - bench.grains().angular_velocities[i].z) / 3.0 - 1.0,
+                    );
                     let sideways = bench.grains().velocities[i].y.abs();
                     worst(record, "U3.test_7_slip", sideways / 0.12 - 1.0);
                 }
@@ -248,7 +252,7 @@ fn test_8(scene: &Scene, record: &mut Record) {
             encounter.surface.dissipation_time = dissipation_time(&encounter.collision(), 0.5);
             let (bench, _) = encounter.meet(scene.steps_per_contact, record);
             let grains = bench.grains();
-            worst(record, "U3.test_8", (spin - grains.spins[0].z) / 3.0 - 1.0);
+            worst(record, "U3.test_8", (spin - grains.angular_velocities[0].z) / 3.0 - 1.0);
             worst(record, "U3.test_8", grains.velocities[0].y.abs() / 0.12 - 1.0);
         }
     }

@@ -8,12 +8,11 @@ use super::{
     scene::Scene,
 };
 use crate::{
-    base::{Real, Vec3},
+    base::{Real, Vec3, real::real},
     experiments::{
         findings::{Expected, Findings},
         record::Record,
     },
-    physics::measure::real,
 };
 
 pub(super) struct Conservation;
@@ -51,7 +50,7 @@ fn off_centre(scene: &Scene, turn: &nalgebra::Rotation3<Real>) -> (Bench, Real) 
         bench.add_grain(position, radius * grain.radius, grain.material.density);
     }
     bench.grains_mut().velocities[0] = turn * Vec3::new(0.5, 0.1, 0.0);
-    bench.grains_mut().spins[0] = turn * Vec3::new(30.0, -60.0, 100.0);
+    bench.grains_mut().angular_velocities[0] = turn * Vec3::new(30.0, -60.0, 100.0);
     (bench, 3.0 * real(scene.steps_per_contact))
 }
 
@@ -96,8 +95,8 @@ fn stack(scene: &Scene, record: &mut Record) {
     while n_contacts < 100 {
         bench.step();
         let scratch = &bench.system.scratch;
-        let touching = scratch.wall_forces.iter().any(|it| it.normal > 0.0)
-            || scratch.pair_forces.iter().any(|it| it.overlap > 0.0);
+        let touching = scratch.wall_forces.iter().any(|it| it.flags.touches())
+            || scratch.pair_flags.iter().any(|it| it.touches());
         n_contacts += usize::from(touching && !touched);
         if !touching && !touched {
             worst = worst.max((energy(&bench) / start - 1.0).abs());
@@ -122,7 +121,8 @@ fn turned(scene: &Scene, record: &mut Record) {
     for i in 0..2 {
         let (a, b) = (bench.grains(), other.grains());
         let speed = (turn * a.velocities[i] - b.velocities[i]).norm() / a.velocities[i].norm();
-        let spin = (turn * a.spins[i] - b.spins[i]).norm() / a.spins[i].norm();
+        let spin = (turn * a.angular_velocities[i] - b.angular_velocities[i]).norm()
+            / a.angular_velocities[i].norm();
         worst = worst.max(speed).max(spin);
     }
     record.set("U7.turned_scene", worst, "1");
@@ -159,7 +159,7 @@ fn turn_pair(scene: &Scene, shear_over_overlap: Real) -> ([Vec3; 2], Real) {
         for (i, side) in [-1.0, 1.0].into_iter().enumerate() {
             let arm = along * (side * half);
             grains.positions[i] = high + arm;
-            grains.spins[i] = Vec3::z() * spin;
+            grains.angular_velocities[i] = Vec3::z() * spin;
             grains.velocities[i] = (Vec3::z() * spin).cross(&arm);
         }
         if step == 0 {
@@ -170,7 +170,7 @@ fn turn_pair(scene: &Scene, shear_over_overlap: Real) -> ([Vec3; 2], Real) {
         bench.step();
         let pair = &bench.system.scratch.pair_forces[0];
         let found = pair.force - along * pair.force.dot(&along);
-        normal = pair.signed_normal.abs();
+        normal = pair.normal;
         if step == 0 {
             tangential[0] = found;
         }

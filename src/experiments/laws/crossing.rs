@@ -16,14 +16,14 @@ use crate::{
     base::{
         Real, Vec3,
         random::{Random, Stream},
+        real::real,
     },
     experiments::{
         findings::{Curve, Expected, Findings},
         record::Record,
     },
     physics::{
-        contact::law::Surface,
-        measure::real,
+        law::Surface,
         membrane::{MembraneModel, mesh::Mesh},
     },
 };
@@ -194,7 +194,7 @@ impl Path {
             let grains = self.bench.grains_mut();
             grains.positions[0] = here;
             grains.velocities[0] = (next - here) / dt;
-            grains.spins[0] = Vec3::zeros();
+            grains.angular_velocities[0] = Vec3::zeros();
             self.bench.system.scratch.neighbours.is_built = false;
             self.bench.step();
             let patches = &self.bench.system.scratch.patch_forces[0];

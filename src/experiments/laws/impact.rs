@@ -9,12 +9,12 @@ use super::{
     worst,
 };
 use crate::{
-    base::Real,
+    base::{Real, real::real},
     experiments::{
         findings::{Curve, Expected, Findings, Kind, Plot, Series},
         record::Record,
     },
-    physics::{contact::law::Surface, measure::real},
+    physics::law::Surface,
     scene::Material,
 };
 

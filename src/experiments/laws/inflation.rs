@@ -17,17 +17,15 @@ use crate::{
     base::{
         Real, Vec3,
         random::{Random, Stream},
+        real::real,
     },
     experiments::{
         findings::{Curve, Expected, Findings, Kind, Plot, Series},
         record::Record,
     },
-    physics::{
-        measure::real,
-        membrane::{
-            MembraneMaterial, MembraneModel, MembraneScratch, MembraneState,
-            critical_step::critical_step, forces, mesh::Mesh, pressure, stretch,
-        },
+    physics::membrane::{
+        MembraneMaterial, MembraneModel, MembraneScratch, MembraneState,
+        critical_step::critical_step, forces, mesh::Mesh, pressure, stretch,
     },
 };
 

@@ -46,7 +46,7 @@ impl Law for Oblique {
     fn measure(&self, scene: &Scene, point: usize, record: &mut Record) {
         let n = n_angles(scene);
         if point < n {
-            swept(scene, crate::physics::measure::real(point + 1), record);
+            swept(scene, crate::base::real::real(point + 1), record);
         } else if let Some([degrees, e_t, spin]) = TABLE.get(point - n) {
             let found = fly(scene, degrees.to_radians(), 0.0, record);
             worst(record, "U4.table", found[0] / e_t - 1.0);
@@ -91,7 +91,7 @@ fn fly(scene: &Scene, angle: Real, damping: Real, record: &mut Record) -> [Real;
     let before = 0.5 * bench.grains().masses[0] * speed * speed;
     [
         bench.grains().velocities[0].x / flight.velocity.x,
-        bench.grains().spins[0].y * grain.radius / speed,
+        bench.grains().angular_velocities[0].y * grain.radius / speed,
         bench.kinetic_energy() / before,
     ]
 }

@@ -14,16 +14,13 @@
 
 use super::{Law, Line, judge, scene::Scene};
 use crate::{
-    base::{Real, Vec3},
+    base::{Real, Vec3, real::real},
     experiments::{
         findings::{Expected, Findings},
         record::Record,
     },
-    physics::{
-        measure::real,
-        membrane::{
-            MembraneMaterial, MembraneModel, MembraneScratch, MembraneState, forces, mesh::Mesh,
-        },
+    physics::membrane::{
+        MembraneMaterial, MembraneModel, MembraneScratch, MembraneState, forces, mesh::Mesh,
     },
 };
 

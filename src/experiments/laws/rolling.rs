@@ -8,15 +8,12 @@ use super::{
     scene::Scene,
 };
 use crate::{
-    base::{Real, Vec3},
+    base::{Real, Vec3, real::real},
     experiments::{
         findings::{Curve, Expected, Findings, Kind, Plot, Series},
         record::Record,
     },
-    physics::{
-        contact::law::{PairLaw, Surface},
-        measure::real,
-    },
+    physics::law::{PairLaw, Surface},
 };
 
 pub(super) struct Rolling;
@@ -80,18 +77,19 @@ fn slide(scene: &Scene, record: &mut Record) {
         if step % EVERY == 0 {
             push(record, "time", "s", real(step) * scene.rolling.substep);
             push(record, "speed", "m/s", bench.grains().velocities[0].x);
-            push(record, "rim_speed", "m/s", bench.grains().spins[0].y * grain.radius);
+            push(record, "rim_speed", "m/s", bench.grains().angular_velocities[0].y * grain.radius);
         }
         bench.step();
         step += 1;
-        let slip = bench.grains().velocities[0].x - bench.grains().spins[0].y * grain.radius;
+        let slip =
+            bench.grains().velocities[0].x - bench.grains().angular_velocities[0].y * grain.radius;
         if rolled_at.is_none() && slip < 0.01 * v0 {
             // The last percent of the slip would take a percent of the time.
             let time = real(step) * scene.rolling.substep / 0.99;
             rolled_at = Some((time, bench.grains().positions[0].x));
         }
     }
-    let (v, spin) = (bench.grains().velocities[0].x, bench.grains().spins[0].y);
+    let (v, spin) = (bench.grains().velocities[0].x, bench.grains().angular_velocities[0].y);
     record.set("U5.rolling_speed", v / (5.0 / 7.0 * v0), "1");
     record.set("U5.rolls", spin * grain.radius / v, "1");
     let (time, place) = rolled_at.unwrap_or((Real::NAN, Real::NAN));
@@ -139,7 +137,7 @@ fn creep(scene: &Scene, record: &mut Record) {
     let mut go = |n_steps: usize| {
         for _ in 0..n_steps {
             bench.step();
-            bench.grains_mut().spins[0] = Vec3::zeros();
+            bench.grains_mut().angular_velocities[0] = Vec3::zeros();
         }
         bench.grains().positions[0].x
     };
@@ -164,10 +162,10 @@ fn shear(scene: &Scene, record: &mut Record) {
             let grains = bench.grains_mut();
             grains.positions[0].z = grain.radius - overlap;
             grains.velocities[0] = Vec3::x() * (distance / (real(n_steps) * 1e-6));
-            grains.spins[0] = Vec3::zeros();
+            grains.angular_velocities[0] = Vec3::zeros();
             bench.step();
         }
-        -bench.system.scratch.wall_forces[0].force.x
+        -bench.system.scratch.wall_forces.first().map_or(0.0, |wall| wall.force.x)
     };
     record.set("C1.shear_stiffness", sheared(0.5 * full) / (mindlin * 0.5 * full), "1");
     record.set("C1.coulomb", sheared(5.0 * full) / (surface.friction * normal), "1");

@@ -2,7 +2,7 @@
 
 use crate::{
     base::{Real, Vec3},
-    physics::{contact::law, membrane::MembraneMaterial},
+    physics::{law, membrane::MembraneMaterial},
     scene::{
         Material,
         quantity::{ANGLE, DENSITY, IMPULSE, LENGTH, PRESSURE, SPEED, TIME, TORQUE},

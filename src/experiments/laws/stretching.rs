@@ -3,19 +3,16 @@
 
 use super::{Law, Line, judge, scene::Scene, worst};
 use crate::{
-    base::{Mat3, Real, Vec3},
+    base::{Mat3, Real, Vec3, real::real},
     experiments::{
         findings::{Expected, Findings},
         record::Record,
     },
-    physics::{
-        measure::real,
-        membrane::{
-            MembraneMaterial, MembraneModel, MembraneScratch, MembraneState, forces,
-            mesh::Mesh,
-            pressure,
-            stretch::{self, Spring, tension},
-        },
+    physics::membrane::{
+        MembraneMaterial, MembraneModel, MembraneScratch, MembraneState, forces,
+        mesh::Mesh,
+        pressure,
+        stretch::{self, Spring, tension},
     },
 };
 

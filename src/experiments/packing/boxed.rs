@@ -28,17 +28,21 @@ use crate::{
     base::{
         Real, Vec3,
         random::{Random, Stream},
+        real::real,
+    },
+    measure::{
+        coordination::{NEEDED_ROUGH, NEEDED_SMOOTH, coordination},
+        grain_volume, packing, rest, stress,
+        structure::{self, Bins, Region},
     },
     physics::{
         Model, System, SystemBuilder,
         contact::grains::closest_image,
         health::Diverged,
-        measure::{
-            coordination::{NEEDED_ROUGH, NEEDED_SMOOTH, coordination},
-            grain_volume, packing, real, rest, stress,
-            structure::{self, Bins, Region},
+        packing::{
+            Grown, Growth, Laws, Recipe, Room, first_scale, grow, pressure::normal_pressure,
+            scatter, sphere_volume,
         },
-        packing::{Grown, Growth, Laws, Recipe, Room, first_scale, grow, scatter, sphere_volume},
     },
 };
 
@@ -234,7 +238,7 @@ impl Boxed {
         let compression = self.scene.compression.clone();
         let is_smooth = friction(&self.scene, self.case) == 0.0;
         let System { model, state, scratch, .. } = &self.system;
-        let pressure = stress::normal_pressure(state, scratch, self.volume);
+        let pressure = normal_pressure(state, scratch, self.volume);
         if !is_smooth && pressure < LOOSE * compression.pressure_first {
             // Growth ended in motion, and at rest the grains do not hold each other yet.
             let more = compression.share * self.first_overlap();
@@ -274,8 +278,8 @@ impl Boxed {
         let System { model, state, scratch, .. } = &mut self.system;
         let before = period(self.volume, self.place.stretch);
         let springs = state.springs.pairs.iter_mut().zip(&state.pair_ids);
-        for ((spring, [i, j]), force) in springs.zip(&scratch.pair_forces) {
-            if force.overlap > 0.0 {
+        for ((spring, [i, j]), flags) in springs.zip(&scratch.pair_flags) {
+            if flags.touches() {
                 let [first, second] = [i, j].map(|&it| state.grains.positions[it as usize]);
                 let branch = closest_image(first - second, &before);
                 let moved = Vec3::new(branch.x * (by - 1.0), branch.y * (by.recip() - 1.0), 0.0);
@@ -365,8 +369,13 @@ impl Boxed {
         let mean = radii.iter().sum::<Real>() / real(radii.len());
         let bins = Bins { width: BIN * 2.0 * mean, n_bins: N_BINS };
         let region = Region::Periodic(period);
-        let g = structure::pair_distribution(&state.grains.positions, &region, &bins);
-        let cut = structure::cut_distribution(&state.grains, &region, &bins);
+        let g = structure::radial_distribution(&state.grains.positions, &region, &bins);
+        let cut = structure::cut_distribution(
+            &state.grains.positions,
+            &state.grains.radii,
+            &region,
+            &bins,
+        );
         let middles = (0..N_BINS).map(|k| bins.middle(k) / (2.0 * mean)).collect();
         let column =
             |name: &str, values| Column { name: name.to_owned(), unit: "1".to_owned(), values };

@@ -8,14 +8,10 @@ use crate::{
     base::{
         Real, Vec3,
         random::{Random, Stream},
+        real::real,
     },
-    physics::{
-        System,
-        contact::law::PairLaw,
-        measure::{kinetic_energy, real, rest},
-        packing::sphere_volume,
-        state,
-    },
+    measure::{kinetic_energy, rest},
+    physics::{System, law::PairLaw, packing::sphere_volume, state},
 };
 
 /// Unbalanced force over mean contact force below which grains are at rest.
@@ -60,7 +56,7 @@ pub(super) fn drag(system: &mut System, drag_time: Real) {
     let left = (-system.model.substep / drag_time).exp();
     let grains = &mut system.state.grains;
     grains.velocities.iter_mut().for_each(|it| *it *= left);
-    grains.spins.iter_mut().for_each(|it| *it *= left);
+    grains.angular_velocities.iter_mut().for_each(|it| *it *= left);
 }
 
 /// Kinetic damping (Cundall 1976): grains and membrane move freely until their kinetic energy has
@@ -103,7 +99,7 @@ impl Settling {
 fn stop(system: &mut System) -> Real {
     let grains = &mut system.state.grains;
     grains.velocities.fill(Vec3::zeros());
-    grains.spins.fill(Vec3::zeros());
+    grains.angular_velocities.fill(Vec3::zeros());
     system.state.membrane.velocities.fill(Vec3::zeros());
     0.0
 }

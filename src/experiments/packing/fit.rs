@@ -1,6 +1,6 @@
 //! Straight lines through points, by least squares.
 
-use crate::{base::Real, physics::measure::real};
+use crate::base::{Real, real::real};
 
 /// Onsets that are tried.
 const N_TRIES: usize = 2000;

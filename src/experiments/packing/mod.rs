@@ -18,8 +18,7 @@ mod scene; // scene keys
 
 use super::{Experiment, Plan, Run, SceneText, StartError, findings::Findings, record::Record};
 use crate::{
-    base::Real,
-    physics::measure::real,
+    base::{Real, real::real},
     scene::{SceneError, text::fill},
 };
 use scene::Scene;

@@ -2,7 +2,7 @@
 
 use crate::{
     base::Real,
-    physics::contact::law,
+    physics::law,
     scene::{
         Material,
         quantity::{IMPULSE, LENGTH, PRESSURE, TIME, TORQUE},

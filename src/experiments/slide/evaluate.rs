@@ -8,12 +8,11 @@ use super::{
     scene::Scene,
 };
 use crate::{
-    base::Real,
+    base::{Real, real::real},
     experiments::{
         findings::{Curve, Expected, Findings, Quantity, Report, Row},
         record::Record,
     },
-    physics::measure::real,
 };
 
 /// Everything that the records show.

@@ -24,7 +24,7 @@
 
 use crate::{
     base::{Real, Vec3},
-    physics::contact::law::PairLaw,
+    physics::law::PairLaw,
 };
 
 /// Overlap (m) of a Hertz contact of effective radius `radius` (m) under `load` (N).
@@ -70,8 +70,8 @@ const N_ROUNDS: usize = 4;
 impl Bed<'_> {
     /// The ball at `n` places over `period` (m) from the origin.
     pub(super) fn curve(&self, period: Real, n: usize) -> Vec<Rest> {
-        let step = period / crate::physics::measure::real(n);
-        let at = |k: usize| self.along * (step * crate::physics::measure::real(k));
+        let step = period / crate::base::real::real(n);
+        let at = |k: usize| self.along * (step * crate::base::real::real(k));
         let mut slopes = vec![0.0; n];
         let mut rests = Vec::new();
         for _ in 0..N_ROUNDS {
@@ -126,7 +126,7 @@ pub(super) fn friction_on_one(friction: Real, reach: Real, behind: Real) -> Real
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{physics::contact::law::Surface, scene::Material};
+    use crate::{physics::law::Surface, scene::Material};
 
     /// Oracle: the closed forms of one sphere, which the general sum must meet; tolerance: a
     /// difference quotient over 1/4000 of a period.

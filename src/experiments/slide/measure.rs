@@ -1,7 +1,10 @@
 //! A record as the rows need it: without its first period, in means, ranges and whole periods.
 
 use super::{expected::Rest, run::Case, scene::Scene};
-use crate::{base::Real, experiments::record::Record, physics::measure::real};
+use crate::{
+    base::{Real, real::real},
+    experiments::record::Record,
+};
 
 /// Places over one period at which the expected curve is known.
 const N_PLACES: usize = 400;

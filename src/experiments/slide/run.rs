@@ -10,18 +10,22 @@ use super::{
     scene::{Pull, Scene},
 };
 use crate::{
-    base::{Real, Vec3},
+    base::{
+        Real, Vec3,
+        real::{real, real_of},
+    },
     experiments::{
         Progress, ResumeError, Run, StartError,
         record::{Column, Record},
         saved_run,
     },
+    measure::packing,
     physics::{
         Scratch, State, System, SystemBuilder,
         builder::{BuildError, Membrane, Vertices, Wall},
-        contact::{self, law::PairLaw, sums},
+        contact::sums,
         health::Diverged,
-        measure::{packing, real, real_of},
+        law::PairLaw,
         membrane::{MembraneContact, MembraneModel, critical_step},
         state::Grains,
     },
@@ -180,7 +184,7 @@ impl Ride {
         *v = self.along * speed;
         *x = before + *v * dt;
         (x.z, v.z) = (height, fall);
-        grains.spins[0] = Vec3::zeros();
+        grains.angular_velocities[0] = Vec3::zeros();
         self.n_done += 1;
         if !self.behind.is_empty() && (*x - self.start).dot(&self.along) >= self.period {
             self.set_back();
@@ -299,7 +303,7 @@ fn system(scene: &Scene, case: &Case, patch: Patch, start: Vec3) -> Result<Syste
     if case.is_framed {
         held = Vertices::Rims;
         membrane.scale_rest_lengths(1.0 / (1.0 + scene.frame.stretch));
-        let stiffness = contact::stiffness(&law, contact_radius, case.weight(scene));
+        let stiffness = law.stiffness(contact_radius, case.weight(scene));
         let longest = SAFETY * critical_step::critical_step(&membrane, stiffness);
         substep = substep.min(longest);
     }

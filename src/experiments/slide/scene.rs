@@ -2,7 +2,7 @@
 
 use crate::{
     base::Real,
-    physics::{contact::law, membrane::MembraneMaterial},
+    physics::{law, membrane::MembraneMaterial},
     scene::{
         Material,
         quantity::{FORCE, IMPULSE, LENGTH, SPEED, TIME, TORQUE},

@@ -15,11 +15,8 @@ use crate::{
     physics::{
         Model, System, SystemBuilder,
         builder::{BuildError, Membrane, Vertices, Wall},
-        contact::{
-            law::{PairLaw, Surface},
-            stiffness_at_vertex,
-        },
-        critical_step::{RAYLEIGH_SHARE, rayleigh_time},
+        critical_step::{RAYLEIGH_SHARE, rayleigh_time, stiffness_at_vertex},
+        law::{PairLaw, Surface},
         membrane::{
             FREE, MembraneContact, MembraneModel,
             critical_step::critical_step_at,

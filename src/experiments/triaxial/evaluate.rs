@@ -9,11 +9,11 @@ use super::{
     timing_name,
 };
 use crate::{
+    base::real::{real, real_of},
     experiments::{
         findings::{Expected, Findings, Quantity, Report, Row},
         record::Record,
     },
-    physics::measure::{real, real_of},
 };
 
 const KINDS: [Kind; 2] = [Kind::Triangles, Kind::Spheres];

@@ -12,23 +12,21 @@
 
 use super::build::{BOTTOM, TOP};
 use crate::{
-    base::{Real, Vec3},
+    base::{Real, Vec3, real::real},
+    measure,
     physics::{
         System,
         contact::sums,
-        measure::{self, real},
         membrane::{pressure, stretch},
     },
 };
 
 /// Forces of the grains on the lower and the upper plate, outward along the axis (N).
 pub(super) fn plate_forces(system: &System) -> [Real; 2] {
-    let n_grains = system.state.grains.len();
     let on = |wall: u32, sign: Real| {
-        let first = wall as usize * n_grains;
-        let forces = &system.scratch.wall_forces;
-        let pushed: Real = forces[first..first + n_grains].iter().map(|it| it.force.z).sum();
-        sign * pushed
+        let contacts = system.scratch.touching_walls(&system.state);
+        let of_wall = contacts.filter(|(_, [w, _])| *w == wall as usize);
+        sign * of_wall.map(|(contact, _)| contact.force.z).sum::<Real>()
     };
     [on(BOTTOM, 1.0), on(TOP, -1.0)]
 }
@@ -94,7 +92,8 @@ pub(super) fn grain_energy(system: &System) -> Real {
     let grains = &system.state.grains;
     let twice = |i: usize| {
         let gyration = 0.4 * grains.radii[i] * grains.radii[i];
-        let (v, w) = (grains.velocities[i].norm_squared(), grains.spins[i].norm_squared());
+        let (v, w) =
+            (grains.velocities[i].norm_squared(), grains.angular_velocities[i].norm_squared());
         grains.masses[i] * (v + gyration * w)
     };
     0.5 * (0..grains.len()).map(twice).sum::<Real>()
@@ -125,7 +124,7 @@ pub(super) fn carried(system: &System) -> Carried {
     };
     of_grains(system, &mut sum);
     of_membrane(system, &mut sum);
-    for contact in system.scratch.wall_forces.iter().filter(|it| it.normal > 0.0) {
+    for (contact, _) in system.scratch.touching_walls(&system.state) {
         sum.n += 1;
         sum.force += contact.force.norm();
         sum.normal_overlap += contact.normal * contact.overlap;
@@ -200,19 +199,12 @@ impl Sum {
 
 fn of_grains(system: &System, sum: &mut Sum) {
     let grains = &system.state.grains;
-    for (pair, ids) in system.scratch.pair_forces.iter().zip(&system.state.pair_ids) {
-        if pair.overlap > 0.0 {
-            let [i, j] = ids.map(|id| id as usize);
-            let branch = grains.positions[i] - grains.positions[j];
-            sum.add(
-                &pair.force,
-                &grains.positions[i],
-                &branch,
-                pair.signed_normal.abs() * pair.overlap,
-            );
-            let diameter = grains.radii[i] + grains.radii[j];
-            sum.overlap_over_diameter = sum.overlap_over_diameter.max(pair.overlap / diameter);
-        }
+    for (pair, ids) in system.scratch.touching_pairs(&system.state) {
+        let [i, j] = ids.map(|id| id as usize);
+        let branch = grains.positions[i] - grains.positions[j];
+        sum.add(&pair.force, &grains.positions[i], &branch, pair.normal * pair.overlap);
+        let diameter = grains.radii[i] + grains.radii[j];
+        sum.overlap_over_diameter = sum.overlap_over_diameter.max(pair.overlap / diameter);
     }
 }
 
@@ -228,7 +220,7 @@ fn of_membrane(system: &System, sum: &mut Sum) {
     }
     let ids = &system.state.springs.spheres.ids;
     for (contact, [grain, vertex]) in system.scratch.sphere_forces.iter().zip(ids) {
-        if contact.overlap > 0.0 {
+        if contact.flags.touches() {
             let grain = *grain as usize;
             let centre = &grains.positions[grain];
             let apart = centre - sheet.positions[*vertex as usize];

@@ -17,12 +17,15 @@ use super::{
     time_series::Logbook,
 };
 use crate::{
-    base::{Real, Vec3, real::Twist},
+    base::{
+        Real, Vec3,
+        real::{Twist, real},
+    },
+    measure as packing_measure,
     physics::{
         System,
         boundary::motion::{Load, Servo, WallMotion},
         health::Diverged,
-        measure::{self as packing_measure, real},
         packing::{
             Grown, Growth, Laws,
             grow::{self, Progress as Grow},
@@ -328,7 +331,8 @@ impl Test {
     fn damp(&mut self, rate: Real) {
         let left = 1.0 - rate * self.course.substep;
         let state = &mut self.system.state;
-        let of_grains = state.grains.velocities.iter_mut().chain(&mut state.grains.spins);
+        let of_grains =
+            state.grains.velocities.iter_mut().chain(&mut state.grains.angular_velocities);
         of_grains.chain(&mut state.membrane.velocities).for_each(|it| *it *= left);
     }
 

@@ -7,9 +7,9 @@ use super::{
     scene::Setup,
 };
 use crate::{
-    base::Real,
+    base::{Real, real::real},
     experiments::{Progress, ResumeError, Run, StartError, Stepped, record::Record, saved_run},
-    physics::{health::Diverged, measure::real, state::State},
+    physics::{health::Diverged, state::State},
 };
 
 /// Contacts and vertices that a slice goes over: about a tenth of a second.

@@ -7,12 +7,10 @@ use serde::{Deserialize, Serialize};
 
 use super::measure;
 use crate::{
-    base::Real,
+    base::{Real, real::real},
     experiments::record::{Column, Record, Scalar, Validity},
-    physics::{
-        System,
-        measure::{self as packing_measure, real},
-    },
+    measure as packing_measure,
+    physics::System,
 };
 
 /// Columns with their units.

@@ -10,13 +10,13 @@ use super::{
     scene::Setup,
 };
 use crate::{
-    base::{Real, digest::Digest},
-    experiments::{Progress, ResumeError, Run, StartError, record::Record, saved_run},
-    physics::{
-        State,
-        health::Diverged,
-        measure::{real, real_of},
+    base::{
+        Real,
+        digest::Digest,
+        real::{real, real_of},
     },
+    experiments::{Progress, ResumeError, Run, StartError, record::Record, saved_run},
+    physics::{State, health::Diverged},
 };
 
 /// Stage in which both are made ready.

@@ -4,7 +4,7 @@
 use super::{body::BodyMotion, motion::WallMotion, triangles::Triangles};
 use crate::{
     base::{Real, Vec3},
-    physics::contact::law::PairLaw,
+    physics::law::PairLaw,
 };
 
 /// The carrier: the first wall. A gripper's is the flange, whose inner face is the plate.

@@ -6,6 +6,8 @@ mod membrane;
 mod tests;
 mod wall;
 
+use std::ops::Range;
+
 pub use error::BuildError;
 pub use membrane::{Membrane, Vertices};
 pub use wall::{Wall, WallId};
@@ -16,11 +18,8 @@ use super::{
         body::BodyMotion,
         wall::{WallModel, WallShape},
     },
-    contact::{
-        law::{PairLaw, Surface},
-        stiffness_at_vertex,
-    },
-    critical_step::critical_step,
+    critical_step::{critical_step, stiffness_at_vertex},
+    law::{PairLaw, Surface},
     membrane::{FREE, MembraneModel},
     model::{BodyModel, ChamberModel},
     packing::sphere_volume,
@@ -44,7 +43,7 @@ const UNIT_TOLERANCE: Real = 1e-9;
 /// use jamgrip::{
 ///     base::Vec3,
 ///     physics::{
-///         SystemBuilder, boundary::motion::WallMotion, builder::Wall, contact::law::Surface,
+///         SystemBuilder, boundary::motion::WallMotion, builder::Wall, law::Surface,
 ///     },
 ///     scene::Material,
 /// };
@@ -226,7 +225,7 @@ impl SystemBuilder {
         let all = &mut self.grains;
         all.positions.extend(grains.positions);
         all.velocities.extend(grains.velocities);
-        all.spins.extend(grains.spins);
+        all.angular_velocities.extend(grains.angular_velocities);
         all.radii.extend(grains.radii);
         all.masses.extend(grains.masses);
         self
@@ -244,10 +243,13 @@ impl SystemBuilder {
         self
     }
 
-    /// Adds a membrane. The vertices and facets of several follow each other in this order.
-    pub fn membrane(&mut self, membrane: Membrane) -> &mut Self {
+    /// Adds a membrane. Returns the numbers that its vertices have in the system, where the vertices
+    /// and facets of several membranes follow each other.
+    pub fn membrane(&mut self, membrane: Membrane) -> Range<usize> {
+        let first: usize = self.membranes.iter().map(|it| it.positions.len()).sum();
+        let vertices = first..first + membrane.positions.len();
         self.membranes.push(membrane);
-        self
+        vertices
     }
 
     /// Adds a rigid body that membranes touch.
@@ -301,7 +303,7 @@ impl SystemBuilder {
 
     fn assemble(mut self, [largest, mean]: [Real; 2], smallest: Real) -> Result<Model, BuildError> {
         let skin = self.skin.unwrap_or(SKIN_SHARE * largest);
-        self.check_period(2.0 * largest + skin)?;
+        self.check_period(2.0 * largest + self.grain_law.range() + skin)?;
         let (membrane, held_positions) = self.join_membranes()?;
         self.check_walls(largest, &membrane)?;
         let substep = self.find_substep([smallest, largest], &membrane)?;
@@ -364,11 +366,11 @@ impl SystemBuilder {
     }
 
     fn check_grains(&self) -> Result<(), BuildError> {
-        let Grains { positions, velocities, spins, radii, masses } = &self.grains;
+        let Grains { positions, velocities, angular_velocities, radii, masses } = &self.grains;
         let expected = positions.len();
         for (place, found) in [
             ("velocities of grains", velocities.len()),
-            ("angular velocities of grains", spins.len()),
+            ("angular velocities of grains", angular_velocities.len()),
             ("radii of grains", radii.len()),
             ("masses of grains", masses.len()),
         ] {
@@ -380,7 +382,7 @@ impl SystemBuilder {
             for (what, vector) in [
                 ("position (m)", &positions[i]),
                 ("velocity (m/s)", &velocities[i]),
-                ("angular velocity (rad/s)", &spins[i]),
+                ("angular velocity (rad/s)", &angular_velocities[i]),
             ] {
                 finite(|| format!("{what} of grain {i}"), vector)?;
             }

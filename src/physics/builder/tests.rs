@@ -140,8 +140,8 @@ fn several_membranes_share_a_system() {
     let heavy =
         Membrane::placed(&shape, &pose, MembraneMaterial { density: 3e3, ..LATEX }).unwrap();
     let mass = heavy.model.mass();
-    builder.membrane(disc().hold(Vertices::Rim(0), left));
-    builder.membrane(heavy.hold(Vertices::Rims, right));
+    let first = builder.membrane(disc().hold(Vertices::Rim(0), left));
+    let second = builder.membrane(heavy.hold(Vertices::Rims, right));
     let system = builder.build().unwrap();
     let membrane = &system.model.membrane;
     assert_eq!(membrane.mesh.rims.len(), 2);
@@ -149,9 +149,9 @@ fn several_membranes_share_a_system() {
         membrane.mesh.rims.iter().map(|rim| membrane.holders[rim[0] as usize]).collect();
     assert_eq!(holders, [left.holder(), right.holder()]);
     assert!((membrane.mass() / mass - 4.0 / 3.0).abs() < 1e-12);
-    let n = membrane.mesh.n_vertices();
-    let centre: Vec3 =
-        system.state.membrane.positions[n / 2..].iter().sum::<Vec3>() / (n / 2) as Real;
+    assert_eq!((first.start, first.end, second.end), (0, second.start, membrane.mesh.n_vertices()));
+    let positions = &system.state.membrane.positions[second];
+    let centre = positions.iter().sum::<Vec3>() / positions.len() as Real;
     assert!((centre - pose.translation.vector).norm() < 1e-12);
 }
 
@@ -210,7 +210,8 @@ fn parts_that_do_not_fit_are_refused() {
     let different = BuildError::MembranesDiffer { membrane: 1, what: "what grains touch of it" };
     assert_eq!(
         refused(&|it| {
-            it.membrane(disc().free_rims()).membrane(spheres());
+            it.membrane(disc().free_rims());
+            it.membrane(spheres());
         }),
         different
     );

@@ -7,7 +7,7 @@ use crate::{
             motion::WallMotion,
             wall::{CARRIER, WallShape},
         },
-        contact::law::PairLaw,
+        law::PairLaw,
     },
 };
 

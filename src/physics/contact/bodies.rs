@@ -1,23 +1,22 @@
 //! Contacts between the membrane and rigid bodies.
 //!
-//! The membrane meets a body in material points of its own: every vertex, and the centroid of
-//! every facet for what pokes through between vertices. A vertex with signed distance φ < 0 has the
-//! overlap ξ = −φ; a centroid has only what its corners do not see already,
-//! ξ = −φ − ⅓ Σ max(0, ξ_corner), so that the force grows from zero when a corner or an edge of
-//! the body comes up between three vertices. The samples are fixed to the sheet, so their friction
-//! springs need no hand-over. The law is the one of all other contacts; the effective radius is a
-//! property of the body's model.
+//! The membrane touches a body at sample points that are fixed to the membrane: every vertex, and the
+//! centroid of every facet, which detects what pokes through between vertices. A vertex at the signed
+//! distance φ < 0 has the overlap ξ = −φ. A centroid has only the overlap that its corners do not have
+//! already, ξ = −φ − ⅓ Σ max(0, ξ_corner), so the force grows from zero when a corner or an edge of the body
+//! comes up between three vertices. Because the samples are fixed to the membrane, friction springs stay
+//! with them. The law is that of the other contacts, without cohesion; the effective radius is a property of
+//! the body's model.
 
-use super::law::{self, PairLaw, Touch};
 use crate::{
     base::{Real, Vec3, parallel},
     physics::{
         Controls, Model,
         boundary::body::BodyMotion,
+        law::{self, ContactState},
         membrane::MembraneState,
         model::{BodyModel, BodySurface},
-        scratch::{BodyLists, NearSamples, SampleForce},
-        state::State,
+        scratch::{BodyLists, ContactFlags, NearSamples, SampleForce},
     },
 };
 
@@ -25,7 +24,7 @@ use crate::{
 pub fn forces(
     model: &Model,
     controls: &Controls,
-    state: &State,
+    membrane: &MembraneState,
     springs: &mut [Vec3],
     (lists, samples): (&BodyLists, &mut [SampleForce]),
 ) {
@@ -42,33 +41,33 @@ pub fn forces(
         let (vertex_springs, facet_springs) = springs.split_at_mut(mesh.n_vertices());
         let NearSamples { vertices, facets } = near;
         parallel::for_listed_of_two(vertices, of_vertices, vertex_springs, |k, sample, spring| {
-            let point = SheetPoint::vertex(model, &state.membrane, vertices[k] as usize);
+            let point = MembranePoint::vertex(model, membrane, vertices[k] as usize);
             *sample = contact.force(&point, spring);
         });
         let of_vertices = &*of_vertices;
         parallel::for_listed_of_two(facets, of_facets, facet_springs, |k, sample, spring| {
             let corners = mesh.triangles[facets[k] as usize].map(|v| v as usize);
             let overlaps = corners.map(|v| of_vertices[v].overlap);
-            let point = SheetPoint::facet(model, &state.membrane, corners, overlaps);
+            let point = MembranePoint::facet(model, membrane, corners, overlaps);
             *sample = contact.force(&point, spring);
         });
     }
 }
 
-/// A material point of the sheet.
-struct SheetPoint {
+/// A material point of the membrane.
+struct MembranePoint {
     position: Vec3,
     velocity: Vec3,
     mass: Real,
-    /// Overlap that the facet's corners see already [m].
+    /// Overlap that the facet's corners have already (m).
     known_overlap: Real,
 }
 
-impl SheetPoint {
-    fn vertex(model: &Model, sheet: &MembraneState, v: usize) -> Self {
+impl MembranePoint {
+    fn vertex(model: &Model, membrane: &MembraneState, v: usize) -> Self {
         Self {
-            position: sheet.positions[v],
-            velocity: sheet.velocities[v],
+            position: membrane.positions[v],
+            velocity: membrane.velocities[v],
             mass: model.membrane.masses[v],
             known_overlap: 0.0,
         }
@@ -76,15 +75,16 @@ impl SheetPoint {
 
     fn facet(
         model: &Model,
-        sheet: &MembraneState,
+        membrane: &MembraneState,
         corners: [usize; 3],
         overlaps: [Real; 3],
     ) -> Self {
         let [a, b, c] = corners;
         let masses = &model.membrane.masses;
         Self {
-            position: (sheet.positions[a] + sheet.positions[b] + sheet.positions[c]) / 3.0,
-            velocity: (sheet.velocities[a] + sheet.velocities[b] + sheet.velocities[c]) / 3.0,
+            position: (membrane.positions[a] + membrane.positions[b] + membrane.positions[c]) / 3.0,
+            velocity: (membrane.velocities[a] + membrane.velocities[b] + membrane.velocities[c])
+                / 3.0,
             mass: (masses[a] + masses[b] + masses[c]) / 3.0,
             known_overlap: overlaps.map(|overlap| overlap.max(0.0)).iter().sum::<Real>() / 3.0,
         }
@@ -99,38 +99,39 @@ struct Contact<'a> {
 
 impl Contact<'_> {
     #[inline(always)]
-    fn force(&self, sheet: &SheetPoint, spring: &mut Vec3) -> SampleForce {
-        let arm = sheet.position - self.motion.pose.translation.vector;
+    fn force(&self, membrane: &MembranePoint, spring: &mut Vec3) -> SampleForce {
+        let arm = membrane.position - self.motion.pose.translation.vector;
         let beyond = arm.norm() - self.body.bounding_radius;
         if beyond > 0.0 {
             *spring = Vec3::zeros();
             return SampleForce { overlap: -beyond, ..SampleForce::NONE };
         }
         let (distance, normal) = signed_distance(self.body, self.motion, &arm);
-        let overlap = -distance - sheet.known_overlap;
+        let overlap = -distance - membrane.known_overlap;
         if overlap <= 0.0 {
             *spring = Vec3::zeros();
             return SampleForce { overlap, ..SampleForce::NONE };
         }
-        let touch = Touch {
+        let contact = ContactState {
+            touches: true,
             overlap,
             normal: normal.into(),
-            velocity: (sheet.velocity - self.motion.twist.at(&arm)).into(),
+            velocity: (membrane.velocity - self.motion.twist.at(&arm)).into(),
             radius: self.body.contact_radius,
-            mass: sheet.mass,
+            mass: membrane.mass,
         };
-        let law: &PairLaw = &self.body.law;
-        let force = law::single(law, &touch, self.dt, spring);
+        let force = law::scalar(&self.body.law, &contact, self.dt, spring);
         SampleForce {
             force: normal * force.normal + force.tangential,
             normal,
-            point: sheet.position,
+            point: membrane.position,
             overlap,
+            flags: ContactFlags::contact(force.slides),
         }
     }
 }
 
-/// Signed distance [m] from `body` to the point at `arm` [m] from its origin, and the outward normal, in
+/// Signed distance (m) from `body` to the point at `arm` (m) from its origin, and the outward normal, in
 /// world axes.
 #[inline]
 pub fn signed_distance(body: &BodyModel, motion: &BodyMotion, arm: &Vec3) -> (Real, Vec3) {

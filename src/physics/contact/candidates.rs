@@ -1,8 +1,8 @@
 //! Which triangles a grain overlaps, and where it is closest to them.
 //!
-//! A candidate that was found `gap` away cannot touch before grain and triangle have come that far
-//! together. So it sleeps until `travel`, a sum of the largest steps of any grain and of any vertex, has
-//! grown by the gap. The others are looked at side by side.
+//! A candidate at a distance `gap` cannot touch before grain and triangle have moved that far together. So it
+//! sleeps until `travel`, the sum of the largest steps of any grain and of any vertex, has grown by the gap.
+//! The others are evaluated in lanes.
 
 use crate::{
     base::{
@@ -34,7 +34,7 @@ pub(super) fn look(
     for (&k, found) in scratch.awake.iter().zip(&scratch.found) {
         let radius = rows[lists.candidate_grains[k as usize] as usize].place[3];
         if found[0] >= radius * radius {
-            // A trifle less, for the rounding of sums.
+            // Slightly less, because sums are rounded.
             lists.wake_at[k as usize] = lists.travel + (found[0].sqrt() - radius) * (1.0 - 1e-9);
         }
     }
@@ -48,13 +48,13 @@ fn wake(lists: &Neighbours, scratch: &mut CandidateScratch) {
     awake_starts.clear();
     awake_starts.push(0);
     let mut n_awake = 0;
-    // The grains with candidates, and these, follow each other in all lists.
+    // Grains and their candidates have the same order in all lists.
     let mut k = 0;
-    for &grain in &lists.sheet_grains {
+    for &grain in &lists.membrane_grains {
         let end = lists.triangle_starts[grain as usize + 1];
-        for (place, wake_at) in (k..end).zip(&lists.wake_at[k as usize..end as usize]) {
-            awake[n_awake] = place;
-            // Without a branch, and so that a travel that is no number wakes all.
+        for (index, wake_at) in (k..end).zip(&lists.wake_at[k as usize..end as usize]) {
+            awake[n_awake] = index;
+            // Branch-free, and a NaN travel wakes all candidates.
             n_awake += usize::from(!is_more(*wake_at, lists.travel));
         }
         k = end;
@@ -67,7 +67,7 @@ fn is_more(a: Real, b: Real) -> bool {
     a > b
 }
 
-/// What is looked at.
+/// What the pass reads.
 struct View<'a> {
     mesh: &'a Mesh,
     lists: &'a Neighbours,

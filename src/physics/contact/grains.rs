@@ -1,9 +1,8 @@
 //! Contacts between grains: the pair pass.
 //!
-//! In a periodic box a pair meets by its closest image. Whether there is a box is decided once for all
-//! pairs, so that open systems do not pay for it.
+//! In a periodic box a pair meets by its closest image. Whether there is a box, and which law acts, is
+//! decided once for all pairs: open systems do not pay for a box, nor one law for another.
 
-use super::law::{self, Touch};
 use crate::{
     base::{
         Real, Vec3,
@@ -12,81 +11,117 @@ use crate::{
     },
     physics::{
         Model,
-        scratch::{GrainRow, Neighbours, PairForce},
-        state::{Grains, State},
+        law::{ContactLaw, ContactState, History, Memory, UnderLaw},
+        scratch::{ContactFlags, GrainRow, PairForce, Scratch},
+        state::{Grains, Springs},
     },
 };
 
-/// Forces of all pairs; carries their springs on by one substep.
+/// Forces of all pairs `ids`; carries what they remember on by one substep.
 pub fn forces(
     model: &Model,
-    state: &State,
-    springs: &mut [Vec3],
-    lists: &Neighbours,
-    (rows, pair_forces): (&mut Vec<GrainRow>, &mut Vec<PairForce>),
+    grains: &Grains,
+    ids: &[[u32; 2]],
+    springs: &mut Springs,
+    scratch: &mut Scratch,
 ) {
-    line_up(&state.grains, rows);
-    pair_forces.resize(state.pair_ids.len(), PairForce::default());
-    let rows = &*rows;
-    parallel::for_parts_of_two(pair_forces, springs, |start, forces, springs| {
-        let pairs = Pairs {
-            model,
-            rows,
-            ids: &state.pair_ids[start..start + forces.len()],
-            radii: &lists.pair_radii[start..start + forces.len()],
-            masses: &lists.pair_masses[start..start + forces.len()],
-        };
-        lanes::widest(Pass { pairs, forces, springs });
+    gather(grains, &mut scratch.grain_rows);
+    model.grain_law.with(AllPairs { model, ids, springs, scratch });
+}
+
+/// Gathers what pairs need of each grain in one place in memory.
+fn gather(grains: &Grains, rows: &mut Vec<GrainRow>) {
+    rows.resize(grains.len(), GrainRow::default());
+    parallel::for_each(rows, |i, row| {
+        let (position, velocity, angular_velocity) =
+            (&grains.positions[i], &grains.velocities[i], &grains.angular_velocities[i]);
+        row.place = [position.x, position.y, position.z, grains.radii[i]];
+        row.velocity = [velocity.x, velocity.y, velocity.z, 0.0];
+        row.angular_velocity = [angular_velocity.x, angular_velocity.y, angular_velocity.z, 0.0];
     });
 }
 
-/// What pairs need of each grain, in one place in memory.
-fn line_up(grains: &Grains, rows: &mut Vec<GrainRow>) {
-    rows.resize(grains.len(), GrainRow::default());
-    parallel::for_each(rows, |i, row| {
-        let (position, velocity, spin) =
-            (&grains.positions[i], &grains.velocities[i], &grains.spins[i]);
-        row.place = [position.x, position.y, position.z, grains.radii[i]];
-        row.velocity = [velocity.x, velocity.y, velocity.z, 0.0];
-        row.spin = [spin.x, spin.y, spin.z, 0.0];
-    });
+/// The pass over all pairs.
+struct AllPairs<'a> {
+    model: &'a Model,
+    ids: &'a [[u32; 2]],
+    springs: &'a mut Springs,
+    scratch: &'a mut Scratch,
+}
+
+impl UnderLaw for AllPairs<'_> {
+    type Output = ();
+
+    fn run<C: ContactLaw>(self, law: &C) {
+        let Self { model, ids, springs, scratch } = self;
+        let Scratch { neighbours, grain_rows, pair_forces, pair_flags, .. } = scratch;
+        pair_forces.resize(ids.len(), PairForce::default());
+        pair_flags.resize(ids.len(), ContactFlags::NONE);
+        let memories = C::Memory::rows(&mut springs.pair_memories, ids.len());
+        let (lists, rows) = (&*neighbours, &**grain_rows);
+        let columns = (&mut **pair_forces, &mut **pair_flags, &mut *springs.pairs, memories);
+        parallel::for_parts_of_four(columns, |start, forces, flags, springs, memories| {
+            let here = start..start + forces.len();
+            let pairs = Pairs {
+                model,
+                law,
+                rows,
+                ids: &ids[here.clone()],
+                radii: &lists.pair_radii[here.clone()],
+                masses: &lists.pair_masses[here],
+            };
+            let forces = bytemuck::cast_slice_mut(forces);
+            let flags = bytemuck::cast_slice_mut(flags);
+            let springs = bytemuck::cast_slice_mut(springs);
+            lanes::widest(Pass { pairs, results: Results { forces, flags, springs, memories } });
+        });
+    }
 }
 
 /// Pairs and their grains.
-struct Pairs<'a> {
+struct Pairs<'a, C> {
     model: &'a Model,
+    law: &'a C,
     rows: &'a [GrainRow],
     ids: &'a [[u32; 2]],
-    /// R* [m].
+    /// R* (m).
     radii: &'a [Real],
-    /// m* [kg].
+    /// m* (kg).
     masses: &'a [Real],
 }
 
-/// Forces and springs of pairs.
-struct Pass<'a> {
-    pairs: Pairs<'a>,
-    forces: &'a mut [PairForce],
-    springs: &'a mut [Vec3],
+/// What a pass over pairs writes.
+struct Results<'a, M> {
+    /// Rows of `PairForce`.
+    forces: &'a mut [[f64; 8]],
+    /// `ContactFlags`.
+    flags: &'a mut [u8],
+    springs: &'a mut [[f64; 3]],
+    memories: &'a mut [M],
 }
 
-impl Kernel for Pass<'_> {
+/// A pass over pairs.
+struct Pass<'a, C: ContactLaw> {
+    pairs: Pairs<'a, C>,
+    results: Results<'a, C::Memory>,
+}
+
+impl<C: ContactLaw> Kernel for Pass<'_, C> {
     #[inline(always)]
     fn run<L: Lanes>(self) {
-        let Self { pairs, forces, springs } = self;
-        let forces = bytemuck::cast_slice_mut(forces);
-        let springs = bytemuck::cast_slice_mut(springs);
-        let n_whole = forces.len() / L::N * L::N;
+        let Self { pairs, mut results } = self;
+        let n = pairs.ids.len();
+        let n_whole = n / L::N * L::N;
         match &pairs.model.period {
             None => {
                 let image = Open;
-                pairs.blocks::<L, _>(0..n_whole, &image, forces, springs);
-                pairs.blocks::<f64, _>(n_whole..forces.len(), &image, forces, springs);
+                pairs.blocks::<L, _>(0..n_whole, &image, &mut results);
+                pairs.blocks::<f64, _>(n_whole..n, &image, &mut results);
             }
             Some(period) => {
                 let image = Periodic(period);
-                pairs.blocks::<L, _>(0..n_whole, &image, forces, springs);
-                pairs.blocks::<f64, _>(n_whole..forces.len(), &image, forces, springs);
+                pairs.blocks::<L, _>(0..n_whole, &image, &mut results);
+                pairs.blocks::<f64, _>(n_whole..n, &image, &mut results);
             }
         }
     }
@@ -94,8 +129,8 @@ impl Kernel for Pass<'_> {
 
 /// Which image of a partner is meant.
 trait Image {
-    /// The vector between two centres [m], to the image meant.
-    fn apart<L: Lanes>(&self, apart: Vector<L>) -> Vector<L>;
+    /// The vector between two centers (m), to the image meant.
+    fn separation<L: Lanes>(&self, separation: Vector<L>) -> Vector<L>;
 }
 
 /// No images.
@@ -103,85 +138,135 @@ struct Open;
 
 impl Image for Open {
     #[inline(always)]
-    fn apart<L: Lanes>(&self, apart: Vector<L>) -> Vector<L> {
-        apart
+    fn separation<L: Lanes>(&self, separation: Vector<L>) -> Vector<L> {
+        separation
     }
 }
 
-/// Images in a box with these edges [m].
+/// Images in a box with these edges (m).
 struct Periodic<'a>(&'a Vec3);
 
 impl Image for Periodic<'_> {
     #[inline(always)]
-    fn apart<L: Lanes>(&self, apart: Vector<L>) -> Vector<L> {
-        let Vector { x, y, z } = apart;
+    fn separation<L: Lanes>(&self, separation: Vector<L>) -> Vector<L> {
+        let Vector { x, y, z } = separation;
         let Vector { x: a, y: b, z: c } = Vector::splat(self.0);
         Vector::new(x - (x / a).round() * a, y - (y / b).round() * b, z - (z / c).round() * c)
     }
 }
 
-/// The shortest of the vectors `apart` [m] between the images of two points.
-pub fn closest_image(apart: Vec3, period: &Vec3) -> Vec3 {
-    Periodic(period).apart(Vector::from(apart)).into()
+/// The shortest of the vectors `separation` (m) between the images of two points.
+pub fn closest_image(separation: Vec3, period: &Vec3) -> Vec3 {
+    Periodic(period).separation(Vector::from(separation)).into()
 }
 
-impl Pairs<'_> {
+/// What a block of pairs gives.
+struct Block<L: Lanes> {
+    /// Columns of `PairForce`.
+    force: [L; 8],
+    acts: L::Mask,
+    slides: L::Mask,
+}
+
+/// Spreads one bit per pair over one byte per pair, which is 0 or 1.
+#[inline(always)]
+fn spread(bits: u8) -> u64 {
+    // Byte k gets bit k in its place; then any bit of a byte becomes its lowest.
+    let in_place = (u64::from(bits) * 0x0101_0101_0101_0101) & 0x8040_2010_0804_0201;
+    (in_place + 0x7f7f_7f7f_7f7f_7f7f) >> 7 & 0x0101_0101_0101_0101
+}
+
+impl<C: ContactLaw> Pairs<'_, C> {
     /// The pairs of a range, `L::N` at a time.
     #[inline(always)]
     fn blocks<L: Lanes, I: Image>(
         &self,
         range: std::ops::Range<usize>,
         image: &I,
-        forces: &mut [[f64; 8]],
-        springs: &mut [[f64; 3]],
+        results: &mut Results<'_, C::Memory>,
     ) {
         let mut k = range.start;
         while k < range.end {
-            let springs = &mut springs[k..k + L::N];
-            let mut spring = Vector::of(L::from_rows_of_3(springs));
-            let force = self.block(k, image, &mut spring);
-            L::to_rows_of_3([spring.x, spring.y, spring.z], springs);
-            L::to_rows_of_8(force, &mut forces[k..k + L::N]);
+            let here = k..k + L::N;
+            let springs = &mut results.springs[here.clone()];
+            let memories = &mut results.memories[here.clone()];
+            let mut history = History {
+                spring: Vector::of(L::from_rows_of_3(springs)),
+                memory: C::Memory::load::<L>(memories),
+            };
+            let Block { force, acts, slides } = self.block(k, image, &mut history);
+            let Vector { x, y, z } = history.spring;
+            L::to_rows_of_3([x, y, z], springs);
+            C::Memory::store(history.memory, acts, memories);
+            L::to_rows_of_8(force, &mut results.forces[here.clone()]);
+            let touching = spread(acts.bits()) * u64::from(ContactFlags::TOUCHES);
+            let sliding = spread(slides.and(acts).bits()) * u64::from(ContactFlags::SLIDES);
+            let flags = touching | sliding;
+            results.flags[here].copy_from_slice(&flags.to_le_bytes()[..L::N]);
             k += L::N;
         }
     }
 
-    /// Rows of `PairForce` of the pairs from `k` on.
+    /// The pairs from `k` on.
     #[inline(always)]
-    fn block<L: Lanes, I: Image>(&self, k: usize, image: &I, spring: &mut Vector<L>) -> [L; 8] {
+    fn block<L: Lanes, I: Image>(
+        &self,
+        k: usize,
+        image: &I,
+        history: &mut History<L, C::Memory>,
+    ) -> Block<L> {
         let ids = &self.ids[k..k + L::N];
         let grain = |lane: usize, side: usize| &self.rows[ids[lane][side] as usize];
         let [x_i, y_i, z_i, radius_i] = L::from_rows_of_4(|lane| &grain(lane, 0).place);
         let [x_j, y_j, z_j, radius_j] = L::from_rows_of_4(|lane| &grain(lane, 1).place);
-        let apart = image.apart(Vector::new(x_i, y_i, z_i) - Vector::new(x_j, y_j, z_j));
+        let separation = image.separation(Vector::new(x_i, y_i, z_i) - Vector::new(x_j, y_j, z_j));
         let reach = radius_i + radius_j;
-        let distance_squared = apart.dot(apart);
+        let distance_squared = separation.dot(separation);
         let touches = distance_squared.lt(reach * reach);
+        let range = self.law.range();
+        let is_near = if range > 0.0 {
+            let reach = reach + L::splat(range);
+            distance_squared.lt(reach * reach)
+        } else {
+            touches
+        };
         let zero = L::splat(0.0);
-        if !touches.any() {
-            *spring = Vector::zero();
-            return [zero; 8];
+        if !is_near.any() {
+            history.spring = Vector::zero();
+            return Block { force: [zero; 8], acts: is_near, slides: is_near };
         }
         let distance = distance_squared.sqrt();
         let overlap = reach - distance;
-        let normal = apart * (L::splat(1.0) / distance);
-        // Levers from the centres to the contact point: −(R_i − ξ/2) n and +(R_j − ξ/2) n.
+        let normal = separation * (L::splat(1.0) / distance);
+        // Levers from the centers to the contact point: −(R_i − ξ/2) n and +(R_j − ξ/2) n.
         let half = overlap / L::splat(2.0);
         let vector = |[x, y, z, _]: [L; 4]| Vector::new(x, y, z);
-        let spin = vector(L::from_rows_of_4(|lane| &grain(lane, 0).spin)) * (radius_i - half)
-            + vector(L::from_rows_of_4(|lane| &grain(lane, 1).spin)) * (radius_j - half);
+        let turning = vector(L::from_rows_of_4(|lane| &grain(lane, 0).angular_velocity))
+            * (radius_i - half)
+            + vector(L::from_rows_of_4(|lane| &grain(lane, 1).angular_velocity))
+                * (radius_j - half);
         let velocity = vector(L::from_rows_of_4(|lane| &grain(lane, 0).velocity))
             - vector(L::from_rows_of_4(|lane| &grain(lane, 1).velocity))
-            - spin.cross(normal);
+            - turning.cross(normal);
         let radius = L::load(&self.radii[k..]);
         let mass = L::load(&self.masses[k..]);
-        let touch = Touch { overlap, normal, velocity, radius, mass };
-        let force = law::force(&self.model.grain_law, &touch, self.model.substep, spring);
-        *spring = spring.or_where(touches, Vector::zero());
+        let contact = ContactState { touches, overlap, normal, velocity, radius, mass };
+        let force = self.law.force(&contact, self.model.substep, history);
+        let acts = force.acts.and(is_near);
+        history.spring = history.spring.or_where(acts, Vector::zero());
         let on_first = normal * force.normal + force.tangential;
         let couple = normal.cross(force.tangential);
-        let signed_normal = (-force.normal).or_where(force.slides, force.normal);
-        [on_first.x, on_first.y, on_first.z, couple.x, couple.y, couple.z, overlap, signed_normal]
-            .map(|it| it.or_where(touches, zero))
+        let row = [
+            on_first.x,
+            on_first.y,
+            on_first.z,
+            couple.x,
+            couple.y,
+            couple.z,
+            overlap,
+            force.normal,
+        ];
+        let force_row = row.map(|it| it.or_where(acts, zero));
+        Block { force: force_row, acts, slides: force.slides }
     }
 }

@@ -1,30 +1,33 @@
 //! Contacts between grains and the membrane's triangles.
 //!
-//! A grain touches the membrane where its distance to the sheet has a local minimum. On one
+//! A grain touches the membrane where its distance to the membrane has a local minimum. On one
 //! triangle that point lies on the face, on an edge or on a vertex; on an edge or a vertex it
 //! counts only if it is the closest point of all triangles that share it, and then once. That is
 //! the rule of priorities (face before edge before vertex) of Götz (2024), section 3.2.3, stated
 //! by depth, so that force, direction and point are continuous when a grain moves over an edge.
 //!
-//! In the valley between two triangles both faces can hold a local minimum; how they share out the
-//! force stands in `sharing`.
+//! In the valley between two triangles both faces can hold a local minimum; `sharing` says how they share
+//! the force.
 //!
-//! The friction spring belongs to the patch, not to the triangle: it is handed on by direction.
+//! The friction spring belongs to the patch, not to the triangle: a patch inherits the spring of the patch
+//! whose normal was closest to its own.
 
 use arrayvec::ArrayVec;
 
 use super::{
     candidates,
-    law::{self, Touch},
-    sharing::{self, Minimum, N_TOUCHED, Passes, short},
+    sharing::{self, Minimum, N_TOUCHED, Saddles, short},
 };
 use crate::{
     base::{Real, Vec3, parallel},
     physics::{
         Model,
-        membrane::{VertexRow, contact_geometry::Feature},
-        scratch::{CandidateScratch, GrainRow, Neighbours, PatchForce, PatchForces},
-        state::{N_PATCHES, Patch, Patches, State},
+        law::{self, ContactState},
+        membrane::{MembraneState, VertexRow, contact_geometry::Feature},
+        scratch::{
+            CandidateScratch, ContactFlags, GrainRow, Neighbours, PatchForce, PatchForces, Scratch,
+        },
+        state::{Grains, N_PATCHES, Patch, Patches},
     },
 };
 
@@ -39,11 +42,11 @@ struct Touched {
     triangle: u32,
     feature: Feature,
     distance_squared: Real,
-    /// Its place in `CandidateScratch::found`.
-    place: usize,
+    /// Its index in `CandidateScratch::found`.
+    index: usize,
 }
 
-/// Where a grain touches the sheet.
+/// Where a grain touches the membrane.
 struct Contact {
     triangle: u32,
     weights: [Real; 3],
@@ -51,35 +54,38 @@ struct Contact {
     overlap: Real,
 }
 
-/// Forces of the membrane on all grains near it; carries their springs on by one substep. `rows` are of
-/// the present positions.
+/// Forces of the membrane on all grains near it; carries their springs on by one substep. The rows of grains
+/// and vertices in `scratch` must be those of the present positions. Cohesion does not act here.
 pub fn forces(
     model: &Model,
-    state: &State,
+    grains: &Grains,
+    membrane: &MembraneState,
     springs: &mut [Patches],
-    lists: &mut Neighbours,
-    rows: (&[GrainRow], &[VertexRow]),
-    (candidates, patch_forces): (&mut CandidateScratch, &mut Vec<PatchForces>),
+    scratch: &mut Scratch,
 ) {
+    let Scratch { neighbours: lists, candidates, patch_forces, .. } = scratch;
     patch_forces.resize(springs.len(), PatchForces::NONE);
-    if lists.sheet_grains.is_empty() {
+    if lists.membrane_grains.is_empty() {
         return;
     }
+    let rows: (&[GrainRow], &[VertexRow]) = (&scratch.grain_rows, &scratch.membrane.vertices);
     candidates::look(model, lists, rows, candidates);
     let (lists, candidates) = (&*lists, &*candidates);
-    parallel::for_listed_of_two(&lists.sheet_grains, patch_forces, springs, |s, force, patches| {
+    let listed = &lists.membrane_grains;
+    parallel::for_listed_of_two(listed, patch_forces, springs, |s, force, patches| {
+        let i = listed[s] as usize;
         let mut touched = ArrayVec::new();
-        touching(state, lists, candidates, s, &mut touched);
-        let grain =
-            Grain { model, state, i: lists.sheet_grains[s] as usize, found: &candidates.found };
+        touching(grains.radii[i], lists, candidates, s, &mut touched);
+        let grain = Grain { model, grains, membrane, i, found: &candidates.found };
         grain.meet(&touched, patches, force);
     });
 }
 
-/// A grain near the sheet.
+/// A grain near the membrane.
 struct Grain<'a> {
     model: &'a Model,
-    state: &'a State,
+    grains: &'a Grains,
+    membrane: &'a MembraneState,
     i: usize,
     /// Closest points of candidates.
     found: &'a [[Real; 8]],
@@ -87,41 +93,41 @@ struct Grain<'a> {
 
 impl Grain<'_> {
     fn radius(&self) -> Real {
-        self.state.grains.radii[self.i]
+        self.grains.radii[self.i]
     }
 
-    /// From the closest point to the centre [m].
+    /// From the closest point to the center (m).
     fn arm(&self, contact: &Touched) -> Vec3 {
-        let [.., x, y, z, _] = self.found[contact.place];
+        let [.., x, y, z, _] = self.found[contact.index];
         Vec3::new(x, y, z)
     }
 
     /// Forces of the patches among the triangles that are touched.
     fn meet(&self, touched: &[Touched], patches: &mut Patches, result: &mut PatchForces) {
         let mut minima = ArrayVec::<Minimum, N_PATCHES>::new();
-        for (place, contact) in touched.iter().enumerate() {
+        for (index, contact) in touched.iter().enumerate() {
             if !minima.is_full() && is_local_minimum(self.model, contact, touched) {
-                minima.push(self.minimum(place, contact));
+                minima.push(self.minimum(index, contact));
             }
         }
         let mut shares = [1.0; N_PATCHES];
         if minima.len() > 1 {
-            let mut passes = Passes::new();
-            self.passes(touched, &mut passes);
-            shares = sharing::shares(&minima, &mut passes, self.radius());
+            let mut saddles = Saddles::new();
+            self.saddles(touched, &mut saddles);
+            shares = sharing::shares(&minima, &mut saddles, self.radius());
         }
         let before: ArrayVec<Patch, N_PATCHES> =
             patches.slots[..patches.n].iter().copied().collect();
         patches.n = minima.len();
         result.n = minima.len();
         result.torque = Vec3::zeros();
-        // The deepest come first. What the sheet's nearest point does not see outside is inside, whatever
-        // a fold behind it sees.
-        let nearest = minima.first().map(|it| &touched[it.place]);
+        // The deepest come first. Only the nearest point decides on which side the grain is: a fold behind it
+        // may have the grain on its outer side.
+        let nearest = minima.first().map(|it| &touched[it.index]);
         result.is_outside = nearest.is_some_and(|it| self.is_outside(it, &self.arm(it), touched));
         for (slot, minimum) in minima.iter().enumerate() {
-            let (it, share) = (&touched[minimum.place], shares[slot]);
-            let [_, w0, w1, w2, ..] = self.found[it.place];
+            let (it, share) = (&touched[minimum.index], shares[slot]);
+            let [_, w0, w1, w2, ..] = self.found[it.index];
             let contact = Contact {
                 triangle: it.triangle,
                 weights: [w0, w1, w2],
@@ -138,11 +144,11 @@ impl Grain<'_> {
         }
     }
 
-    /// A contact as a local minimum; `place` is its place among those that are touched.
-    fn minimum(&self, place: usize, contact: &Touched) -> Minimum {
+    /// A contact as a local minimum; `index` is its index among those that are touched.
+    fn minimum(&self, index: usize, contact: &Touched) -> Minimum {
         let distance = contact.distance_squared.sqrt();
         Minimum {
-            place,
+            index,
             normal: self.arm(contact) * distance.recip(),
             overlap: self.radius() - distance,
             distance_squared: contact.distance_squared,
@@ -150,27 +156,27 @@ impl Grain<'_> {
     }
 
     /// Adds the edges between the triangles that the grain overlaps.
-    fn passes(&self, touched: &[Touched], passes: &mut Passes) {
+    fn saddles(&self, touched: &[Touched], saddles: &mut Saddles) {
         let mesh = &self.model.membrane.mesh;
         let mut edges = [[0_u8; 3]; N_TOUCHED * (N_TOUCHED - 1) / 2];
         let mut n_edges = 0;
-        for (place, contact) in touched.iter().enumerate() {
+        for (index, contact) in touched.iter().enumerate() {
             let across = &mesh.neighbours_of_triangle[contact.triangle as usize];
-            for (later, other) in touched.iter().enumerate().skip(place + 1) {
+            for (later, other) in touched.iter().enumerate().skip(index + 1) {
                 let is_across = across.map(|it| it == other.triangle);
-                // Without a branch: whether two of those touched are neighbours follows no rule.
+                // Branch-free: whether two touched triangles are neighbors is not predictable.
                 let edge = u8::from(is_across[1]) + 2 * u8::from(is_across[2]);
-                edges[n_edges] = [short(place), short(later), edge];
+                edges[n_edges] = [short(index), short(later), edge];
                 n_edges += usize::from(is_across[0] | is_across[1] | is_across[2]);
             }
         }
-        for &[place, later, edge] in &edges[..n_edges] {
-            let height_squared = self.height_squared(&touched[usize::from(place)], edge);
-            passes.add([place, later], height_squared);
+        for &[index, later, edge] in &edges[..n_edges] {
+            let height_squared = self.height_squared(&touched[usize::from(index)], edge);
+            saddles.add([index, later], height_squared);
         }
     }
 
-    /// Squared distance of the grain's centre from an edge of a triangle that it touches [m²].
+    /// Squared distance of the grain's center from an edge of a triangle that it touches (m²).
     fn height_squared(&self, contact: &Touched, edge: u8) -> Real {
         if contact.feature == Feature::Edge(edge) {
             return contact.distance_squared;
@@ -178,55 +184,58 @@ impl Grain<'_> {
         let corners = &self.model.membrane.mesh.triangles[contact.triangle as usize];
         let k = usize::from(edge);
         let [from, to] =
-            [k, (k + 1) % 3].map(|corner| &self.state.membrane.positions[corners[corner] as usize]);
-        let (side, arm) = (to - from, self.state.grains.positions[self.i] - from);
+            [k, (k + 1) % 3].map(|corner| &self.membrane.positions[corners[corner] as usize]);
+        let (side, arm) = (to - from, self.grains.positions[self.i] - from);
         let share = (arm.dot(&side) / side.norm_squared()).clamp(0.0, 1.0);
         (arm - side * share).norm_squared()
     }
 
-    /// Force on the grain, and torque [N m].
+    /// Force on the grain, and torque (N m).
     fn of_patch(&self, contact: &Contact, patch: &mut Patch) -> (PatchForce, Vec3) {
-        let Self { model, state, i, .. } = *self;
-        let grains = &state.grains;
+        let Self { model, grains, membrane, i, .. } = *self;
         let vertices = model.membrane.mesh.triangles[contact.triangle as usize];
-        let mut sheet_velocity = Vec3::zeros();
+        let mut membrane_velocity = Vec3::zeros();
         let mut mass = 0.0;
         for (vertex, &weight) in vertices.map(|v| v as usize).into_iter().zip(&contact.weights) {
-            sheet_velocity += state.membrane.velocities[vertex] * weight;
+            membrane_velocity += membrane.velocities[vertex] * weight;
             mass += model.membrane.masses[vertex] * weight;
         }
-        // The contact point lies on the sheet, so that both sides have the same lever.
+        // The contact point lies on the membrane, so that both sides have the same lever.
         let arm = -contact.from_membrane;
-        let velocity = grains.velocities[i] + grains.spins[i].cross(&arm) - sheet_velocity;
-        let touch = Touch {
+        let velocity =
+            grains.velocities[i] + grains.angular_velocities[i].cross(&arm) - membrane_velocity;
+        let contact_state = ContactState {
+            touches: true,
             overlap: contact.overlap,
             normal: patch.normal.into(),
             velocity: velocity.into(),
             radius: self.radius(),
             mass,
         };
-        let force = law::single(&model.membrane_law, &touch, model.substep, &mut patch.spring);
+        let force =
+            law::scalar(&model.membrane_law, &contact_state, model.substep, &mut patch.spring);
         let result = PatchForce {
             triangle: contact.triangle,
             weights: contact.weights,
             force: patch.normal * force.normal + force.tangential,
             overlap: contact.overlap,
             normal: force.normal,
+            flags: ContactFlags::contact(force.slides),
         };
         (result, arm.cross(&force.tangential))
     }
 
-    /// True if the centre is on the outer side of the triangles that share the feature it touches. All
-    /// of them must agree, since around a saddle's vertex some always see the centre on their outer
+    /// True if the center is on the outer side of the triangles that share the feature it touches. All
+    /// of them must agree, since around a saddle's vertex some always see the center on their outer
     /// side.
     fn is_outside(&self, contact: &Touched, from_membrane: &Vec3, touched: &[Touched]) -> bool {
         let triangles = &self.model.membrane.mesh.triangles;
         let sees_outside = |triangle: u32| {
-            let [a, b, c] = triangles[triangle as usize]
-                .map(|vertex| self.state.membrane.positions[vertex as usize]);
+            let [a, b, c] =
+                triangles[triangle as usize].map(|vertex| self.membrane.positions[vertex as usize]);
             (b - a).cross(&(c - a)).dot(from_membrane) > 0.0
         };
-        // Most contacts are inside: one look at their own triangle is enough.
+        // Most contacts are inside; their own triangle is enough to tell.
         if !sees_outside(contact.triangle) {
             return false;
         }
@@ -242,15 +251,14 @@ impl Grain<'_> {
     }
 }
 
-/// Triangles that the `s`-th grain near the sheet overlaps, deepest first.
+/// Triangles that the `s`-th grain near the membrane, of `radius` (m), overlaps, deepest first.
 fn touching(
-    state: &State,
+    radius: Real,
     lists: &Neighbours,
     candidates: &CandidateScratch,
     s: usize,
     touched: &mut ArrayVec<Touched, N_TOUCHED>,
 ) {
-    let radius = state.grains.radii[lists.sheet_grains[s] as usize];
     for a in candidates.awake_starts[s]..candidates.awake_starts[s + 1] {
         let [distance_squared, .., feature] = candidates.found[a];
         if distance_squared >= radius * radius || distance_squared == 0.0 {
@@ -260,7 +268,7 @@ fn touching(
             triangle: lists.triangles[candidates.awake[a] as usize],
             feature: Feature::of_number(feature),
             distance_squared,
-            place: a,
+            index: a,
         };
         let is_deeper = |other: &Touched| distance_squared < other.distance_squared;
         if touched.is_full() {
@@ -271,12 +279,12 @@ fn touching(
         }
         // From the end on, those that are less deep make room.
         touched.push(contact);
-        let mut place = touched.len() - 1;
-        while place > 0 && is_deeper(&touched[place - 1]) {
-            touched[place] = touched[place - 1];
-            place -= 1;
+        let mut index = touched.len() - 1;
+        while index > 0 && is_deeper(&touched[index - 1]) {
+            touched[index] = touched[index - 1];
+            index -= 1;
         }
-        touched[place] = contact;
+        touched[index] = contact;
     }
 }
 

@@ -1,26 +1,26 @@
-//! How one grain's contacts with the sheet share out its force, so that it has no jumps.
+//! How one grain's contacts with the membrane share out its force, so that it has no jumps.
 //!
-//! A grain touches the sheet where its distance to the sheet has local minima. When the grain moves, a
-//! minimum can be lost: it runs over a pass into a deeper place beside it. By then its force must
+//! A grain touches the membrane where its distance to the membrane has local minima. When the grain moves, a
+//! minimum can be lost: it runs over a saddle into a deeper place beside it. By then its force must
 //! have faded out.
 //!
 //! ```text
 //! F_i = c_i F(ξ_i),   c_i = q_i / (q_i + Σ_(j≠i) s_ij q_j),   q_i = ξ_i h_i
 //! h_i = min_j w_ij / (w_ij + w_ji),   w_ij = √(b_ij² − d_i²)
 //!
-//! ξ_i  overlap of minimum i                                                       [m]
-//! d_i  distance of the grain's centre from it                                     [m]
-//! b_ij height of the pass between i and j: the least that the largest distance on a way over the
-//!      sheet from i to j can be; R if every way leaves the grain                  [m]
-//! w_ij what separates i from the pass to j; on flat triangles the way there       [m]
+//! ξ_i  overlap of minimum i                                                       (m)
+//! d_i  distance of the grain's center from it                                     (m)
+//! b_ij height of the saddle between i and j: the least that the largest distance on a way over the
+//!      membrane from i to j can be; R if every way leaves the grain                  (m)
+//! w_ij what separates i from the saddle to j; on flat triangles the way there       (m)
 //! s_ij likeness: 1 if the normals differ by up to 10°, 0.05 from 45° on
 //! ```
 //!
-//! Two minima in a shallow valley have s = 1: they are one patch of a smooth sheet, their c add up to
+//! Two minima in a shallow valley have s = 1: they are one patch of a smooth membrane, their c add up to
 //! 1, and the force passes from one to the other as the grain crosses the valley. Two sides of a fold
 //! have nearly their full force each until one of them is about to be lost. A minimum that is alone
-//! has c = 1: on a flat sheet nothing is shared. All of it is continuous in the grain's place, since
-//! heights of passes are. It is not the gradient of an energy, as little as other rules of sharing;
+//! has c = 1: on a flat membrane nothing is shared. All of it is continuous in the grain's place, since
+//! heights of saddles are. It is not the gradient of an energy, as little as other rules of sharing;
 //! what was measured: a jammed bag comes to rest to 10⁻¹³ J, and an object that swings in it decays.
 //!
 //! Rejected: a share by the distance from the triangle's edge, which cannot tell a ridge, where the
@@ -44,38 +44,38 @@ const HOLD_MIN: Real = 1e-9;
 /// need more.
 pub(super) const N_TOUCHED: usize = 24;
 /// Edges that so many triangles can share.
-const N_PASSES: usize = 3 * N_TOUCHED / 2;
+const N_SADDLES: usize = 3 * N_TOUCHED / 2;
 
-/// A local minimum of a grain's distance to the sheet.
+/// A local minimum of a grain's distance to the membrane.
 #[derive(Clone, Copy)]
 pub(super) struct Minimum {
-    /// Its place in the list of touched triangles.
-    pub(super) place: usize,
+    /// Its index in the list of touched triangles.
+    pub(super) index: usize,
     /// From membrane to grain.
     pub(super) normal: Vec3,
-    /// R − d [m].
+    /// R − d (m).
     pub(super) overlap: Real,
-    /// d² [m²].
+    /// d² (m²).
     pub(super) distance_squared: Real,
 }
 
 /// All edges between touched triangles.
 #[derive(Clone, Copy)]
-pub(super) struct Passes {
+pub(super) struct Saddles {
     n: usize,
-    /// Squared distances of the grain's centre from the edges [m²]; infinite from `n` on.
-    heights_squared: [Real; N_PASSES],
-    /// Places of both triangles in the list of touched ones.
-    between: [[u8; 2]; N_PASSES],
+    /// Squared distances of the grain's center from the edges (m²); infinite from `n` on.
+    heights_squared: [Real; N_SADDLES],
+    /// Indices of both triangles in the list of touched ones.
+    between: [[u8; 2]; N_SADDLES],
 }
 
-impl Passes {
+impl Saddles {
     /// None yet.
     pub(super) const fn new() -> Self {
-        Self { n: 0, heights_squared: [Real::INFINITY; N_PASSES], between: [[0; 2]; N_PASSES] }
+        Self { n: 0, heights_squared: [Real::INFINITY; N_SADDLES], between: [[0; 2]; N_SADDLES] }
     }
 
-    /// Adds an edge between the triangles at two places.
+    /// Adds an edge between the triangles at two indices.
     #[inline(always)]
     pub(super) fn add(&mut self, between: [u8; 2], height_squared: Real) {
         self.heights_squared[self.n] = height_squared;
@@ -97,15 +97,15 @@ impl Passes {
     }
 }
 
-/// A place among few.
-#[expect(clippy::cast_possible_truncation, reason = "places are below N_TOUCHED")]
-pub(super) fn short(place: usize) -> u8 {
-    place as u8
+/// An index among few.
+#[expect(clippy::cast_possible_truncation, reason = "indices are below N_TOUCHED")]
+pub(super) fn short(index: usize) -> u8 {
+    index as u8
 }
 
-/// Share c of each of several minima of a grain of radius R = `radius` [m].
-pub(super) fn shares(minima: &[Minimum], passes: &mut Passes, radius: Real) -> [Real; N_PATCHES] {
-    let heights = heights(minima, passes, radius * radius);
+/// Share c of each of several minima of a grain of radius R = `radius` (m).
+pub(super) fn shares(minima: &[Minimum], saddles: &mut Saddles, radius: Real) -> [Real; N_PATCHES] {
+    let heights = heights(minima, saddles, radius * radius);
     // What depends on two minima, once for both.
     let (mut to_pass, mut likenesses) =
         ([[0.0; N_PATCHES]; N_PATCHES], [[0.0; N_PATCHES]; N_PATCHES]);
@@ -151,30 +151,30 @@ fn hold(i: usize, n: usize, to_pass: &[[Real; N_PATCHES]; N_PATCHES]) -> Real {
     hold.max(HOLD_MIN)
 }
 
-/// b² between all pairs of minima: passes are opened from the lowest up, and what they join is one,
+/// b² between all pairs of minima: saddles are opened from the lowest up, and what they join is one,
 /// until all minima are joined.
 fn heights(
     minima: &[Minimum],
-    passes: &mut Passes,
+    saddles: &mut Saddles,
     radius_squared: Real,
 ) -> [[Real; N_PATCHES]; N_PATCHES] {
     let mut heights = [[radius_squared; N_PATCHES]; N_PATCHES];
     let mut basins: [u8; N_TOUCHED] = std::array::from_fn(short);
     let mut n_apart = minima.len();
     while n_apart > 1 {
-        let (height, between) = passes.take_lowest();
+        let (height, between) = saddles.take_lowest();
         if height >= radius_squared {
             break;
         }
-        let [a, b] = between.map(|place| basins[usize::from(place)]);
+        let [a, b] = between.map(|index| basins[usize::from(index)]);
         if a == b {
             continue;
         }
         let mut joined = false;
         for (i, one) in minima.iter().enumerate() {
-            if basins[one.place] == a {
+            if basins[one.index] == a {
                 for (j, other) in minima.iter().enumerate() {
-                    if basins[other.place] == b {
+                    if basins[other.index] == b {
                         (heights[i][j], heights[j][i]) = (height, height);
                         joined = true;
                     }
@@ -193,24 +193,24 @@ fn heights(
 mod tests {
     use super::*;
 
-    /// Minima in one plane, `angle` apart [rad] as seen from the grain, at these distances over R.
+    /// Minima in one plane, `angle` apart (rad) as seen from the grain, at these distances over R.
     fn two(distances: [Real; 2], angle: Real) -> Vec<Minimum> {
-        let at = |place: usize| {
-            let turn = if place == 0 { 0.0 } else { angle };
+        let at = |index: usize| {
+            let turn = if index == 0 { 0.0 } else { angle };
             Minimum {
-                place,
+                index,
                 normal: Vec3::new(turn.sin(), 0.0, turn.cos()),
-                overlap: 1.0 - distances[place],
-                distance_squared: distances[place].powi(2),
+                overlap: 1.0 - distances[index],
+                distance_squared: distances[index].powi(2),
             }
         };
         vec![at(0), at(1)]
     }
 
     fn shares_over(pass: Real, minima: &[Minimum]) -> [Real; 2] {
-        let mut passes = Passes::new();
-        passes.add([0, 1], pass * pass);
-        let [a, b, ..] = shares(minima, &mut passes, 1.0);
+        let mut saddles = Saddles::new();
+        saddles.add([0, 1], pass * pass);
+        let [a, b, ..] = shares(minima, &mut saddles, 1.0);
         [a, b]
     }
 
@@ -233,17 +233,17 @@ mod tests {
     }
 
     #[test]
-    fn the_lowest_chain_of_passes_counts() {
+    fn the_lowest_chain_of_saddles_counts() {
         // Triangles 0 and 1 hold minima, 2 to 4 lie between them on two ways.
         let minima = two([0.8, 0.85], 0.3);
-        let mut passes = Passes::new();
+        let mut saddles = Saddles::new();
         for (between, height) in
             [([0, 2], 0.9), ([2, 1], 0.97), ([0, 3], 0.93), ([3, 4], 0.86), ([4, 1], 0.91)]
         {
-            passes.add(between, height * height);
+            saddles.add(between, height * height);
         }
         // Oracle: by hand, min(max(0.9, 0.97), max(0.93, 0.86, 0.91)). Tolerance: rounding.
-        let found = heights(&minima, &mut passes, 1.0);
+        let found = heights(&minima, &mut saddles, 1.0);
         assert!((found[0][1].sqrt() - 0.93).abs() < 1e-12);
         assert!((found[1][0].sqrt() - 0.93).abs() < 1e-12);
     }

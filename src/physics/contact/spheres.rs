@@ -8,9 +8,9 @@
 //!
 //! | symbol | meaning | unit |
 //! |---|---|---|
-//! | R, m, x, ω | radius, mass, centre and spin of the grain | m, kg, m, rad/s |
+//! | R, m, x, ω | radius, mass, center and spin of the grain | m, kg, m, rad/s |
 //! | r, m_v, x_v | radius of the spheres, mass and position of the vertex | m, kg, m |
-//! | b | from the grain's centre to the contact point | m |
+//! | b | from the grain's center to the contact point | m |
 //!
 //! Source: Götz (2024), section 3.3, "MFS Partikel", after de Bono, McDowell & Wanatowski (2012);
 //! springs, hinges and the air's load are those of the triangle membrane. A vertex has a position
@@ -22,69 +22,77 @@
 //! Valid as long as the gaps between the spheres are smaller than the grains. What slips through is
 //! found by `neighbours::crossings`.
 
-use super::law::{self, Touch};
 use crate::{
     base::{Real, Vec3, parallel},
     physics::{
         Model,
-        membrane::MembraneContact,
-        scratch::SphereForce,
-        state::{SphereSprings, State},
+        law::{self, ContactState},
+        membrane::{MembraneContact, MembraneState},
+        scratch::{ContactFlags, SphereForce},
+        state::{Grains, ListedSprings},
     },
 };
 
 /// Forces of all vertex spheres on all grains; carries their springs on by one substep.
 pub fn forces(
     model: &Model,
-    state: &State,
-    listed: &mut SphereSprings,
+    grains: &Grains,
+    membrane: &MembraneState,
+    listed: &mut ListedSprings,
     forces: &mut Vec<SphereForce>,
 ) {
     forces.resize(listed.ids.len(), SphereForce::default());
     let MembraneContact::Spheres { radius } = model.membrane.contact else { return };
-    let SphereSprings { ids, springs } = listed;
+    let ListedSprings { ids, springs, .. } = listed;
     parallel::for_each_of_two(forces, springs, |k, force, spring| {
         let [grain, vertex] = ids[k].map(|id| id as usize);
         *force = SphereForce { vertex: ids[k][1], ..SphereForce::default() };
-        touch(model, state, &Pair { grain, vertex, radius }, force, spring);
+        let pair = Pair { model, grains, membrane, grain, vertex, radius };
+        pair.force(force, spring);
     });
 }
 
 /// A grain and a sphere that it may touch.
-struct Pair {
+struct Pair<'a> {
+    model: &'a Model,
+    grains: &'a Grains,
+    membrane: &'a MembraneState,
     grain: usize,
     vertex: usize,
     radius: Real,
 }
 
-#[inline(always)]
-fn touch(model: &Model, state: &State, pair: &Pair, result: &mut SphereForce, spring: &mut Vec3) {
-    let &Pair { grain, vertex, radius } = pair;
-    let grains = &state.grains;
-    let apart = grains.positions[grain] - state.membrane.positions[vertex];
-    let reach = grains.radii[grain] + radius;
-    let distance_squared = apart.norm_squared();
-    if distance_squared >= reach * reach || distance_squared == 0.0 {
-        *spring = Vec3::zeros();
-        return;
+impl Pair<'_> {
+    #[inline(always)]
+    fn force(&self, result: &mut SphereForce, spring: &mut Vec3) {
+        let &Self { model, grains, membrane, grain, vertex, radius } = self;
+        let separation = grains.positions[grain] - membrane.positions[vertex];
+        let reach = grains.radii[grain] + radius;
+        let distance_squared = separation.norm_squared();
+        if distance_squared >= reach * reach || distance_squared == 0.0 {
+            *spring = Vec3::zeros();
+            return;
+        }
+        let distance = distance_squared.sqrt();
+        let overlap = reach - distance;
+        let normal = separation * distance.recip();
+        let arm = normal * -(grains.radii[grain] - overlap / 2.0);
+        let velocity = grains.velocities[grain] + grains.angular_velocities[grain].cross(&arm)
+            - membrane.velocities[vertex];
+        let parallel = |a: Real, b: Real| a * b / (a + b);
+        let contact = ContactState {
+            touches: true,
+            overlap,
+            normal: normal.into(),
+            velocity: velocity.into(),
+            radius: parallel(grains.radii[grain], radius),
+            mass: parallel(grains.masses[grain], model.membrane.masses[vertex]),
+        };
+        let force = law::scalar(&model.membrane_law, &contact, model.substep, spring);
+        result.force = normal * force.normal + force.tangential;
+        result.torque = arm.cross(&force.tangential);
+        result.overlap = overlap;
+        result.normal = force.normal;
+        result.flags = ContactFlags::contact(force.slides);
     }
-    let distance = distance_squared.sqrt();
-    let overlap = reach - distance;
-    let normal = apart * distance.recip();
-    let arm = normal * -(grains.radii[grain] - overlap / 2.0);
-    let velocity = grains.velocities[grain] + grains.spins[grain].cross(&arm)
-        - state.membrane.velocities[vertex];
-    let parallel = |a: Real, b: Real| a * b / (a + b);
-    let touch = Touch {
-        overlap,
-        normal: normal.into(),
-        velocity: velocity.into(),
-        radius: parallel(grains.radii[grain], radius),
-        mass: parallel(grains.masses[grain], model.membrane.masses[vertex]),
-    };
-    let force = law::single(&model.membrane_law, &touch, model.substep, spring);
-    result.force = normal * force.normal + force.tangential;
-    result.torque = arm.cross(&force.tangential);
-    result.overlap = overlap;
-    result.normal = force.normal;
 }

@@ -1,5 +1,4 @@
-//! Contact forces summed for those who are touched: each grain, each vertex, each body, each
-//! wall. Every sum has a fixed order.
+//! Sums of contact forces on each grain, vertex, body and wall. Every sum has a fixed order.
 
 use crate::{
     base::{
@@ -16,7 +15,7 @@ use crate::{
     },
 };
 
-/// Force [N] and torque [N m] of all contacts on grain `i`.
+/// Force (N) and torque (N m) of all contacts on grain `i`.
 pub fn on_grain(grains: &Grains, scratch: &Scratch, i: usize) -> (Vec3, Vec3) {
     let mut sum = [[0.0; 8]];
     lanes::widest(PairSums { scratch, radii: &grains.radii, first: i, sums: &mut sum });
@@ -27,11 +26,11 @@ pub fn on_grain(grains: &Grains, scratch: &Scratch, i: usize) -> (Vec3, Vec3) {
 pub struct PairSums<'a> {
     /// Where the forces are.
     pub scratch: &'a Scratch,
-    /// Radii of all grains [m].
+    /// Radii of all grains (m).
     pub radii: &'a [Real],
     /// The first grain.
     pub first: usize,
-    /// One row per grain [N], [N m].
+    /// One row per grain (N), (N m).
     pub sums: &'a mut [[Real; 8]],
 }
 
@@ -40,13 +39,13 @@ impl Kernel for PairSums<'_> {
     fn run<L: Lanes>(self) {
         let lists = &self.scratch.neighbours;
         let rows: &[[Real; 8]] = bytemuck::cast_slice(&self.scratch.pair_forces);
-        // Told where the compiler does not see it: it would make an addition and a subtraction of each
-        // row's parts, one waiting for the other.
+        // Hidden from the compiler, which would otherwise turn each row into an addition and a subtraction,
+        // one waiting for the other.
         let reversed = std::hint::black_box(-1.0);
         for (i, written) in (self.first..).zip(self.sums) {
             let mut sum = [0.0; 8];
             let radius = self.radii[i];
-            // A pair without contact has rows of zeros, which is cheaper than asking.
+            // The row of a pair that is not in contact is zero: adding it is cheaper than a branch.
             let first = lists.first_starts[i] as usize..lists.first_starts[i + 1] as usize;
             for row in &rows[first] {
                 sum = with_row(sum, row, 1.0, radius);
@@ -60,7 +59,7 @@ impl Kernel for PairSums<'_> {
     }
 }
 
-/// Force and torque of a grain of `radius` [m] with a row of `PairForce` added.
+/// Force and torque of a grain of `radius` (m) with a row of `PairForce` added.
 #[inline(always)]
 fn with_row(sum: [Real; 8], row: &[Real; 8], sign: Real, radius: Real) -> [Real; 8] {
     let lever = row[6] / 2.0 - radius;
@@ -68,7 +67,7 @@ fn with_row(sum: [Real; 8], row: &[Real; 8], sign: Real, radius: Real) -> [Real;
     std::array::from_fn(|c| sum[c] + row[c] * factors[c])
 }
 
-/// What sheet, spheres and walls add to the sum of the pairs of grain `i`.
+/// What membrane, spheres and walls add to the sum of the pairs of grain `i`.
 #[inline(always)]
 pub fn with_others(scratch: &Scratch, i: usize, of_pairs: &[Real; 8]) -> (Vec3, Vec3) {
     let lists = &scratch.neighbours;
@@ -83,16 +82,15 @@ pub fn with_others(scratch: &Scratch, i: usize, of_pairs: &[Real; 8]) -> (Vec3, 
     }
     let spheres = lists.sphere_starts[i] as usize..lists.sphere_starts[i + 1] as usize;
     for sphere in &scratch.sphere_forces[spheres] {
-        if sphere.overlap > 0.0 {
+        if sphere.flags.touches() {
             force += sphere.force;
             torque += sphere.torque;
         }
     }
     let walls = lists.wall_starts[i] as usize..lists.wall_starts[i + 1] as usize;
-    let n_grains = lists.wall_starts.len() - 1;
-    for &[w, _] in &lists.walls[walls] {
-        let wall = &scratch.wall_forces[w as usize * n_grains + i];
-        if wall.normal > 0.0 {
+    for &k in &lists.wall_contacts[walls] {
+        let wall = &scratch.wall_forces[k as usize];
+        if wall.flags.touches() {
             force += wall.force;
             torque += wall.arm.cross(&wall.force);
         }
@@ -108,10 +106,10 @@ pub fn on_membrane(model: &Model, controls: &Controls, scratch: &mut Scratch) {
     let Scratch { sample_forces, body_wrenches, leaked, .. } = scratch;
     vertex_forces.clear();
     vertex_forces.resize(n_vertices, Vec3::zeros());
-    for sphere in sphere_forces.iter().filter(|it| it.overlap > 0.0) {
+    for sphere in sphere_forces.iter().filter(|it| it.flags.touches()) {
         vertex_forces[sphere.vertex as usize] -= sphere.force;
     }
-    for &grain in &neighbours.sheet_grains {
+    for &grain in &neighbours.membrane_grains {
         let grain = grain as usize;
         let patches = &patch_forces[grain];
         if patches.is_outside && leaked.is_none() {
@@ -136,14 +134,14 @@ pub fn on_membrane(model: &Model, controls: &Controls, scratch: &mut Scratch) {
         };
         for &v in &near.vertices {
             let sample = &samples[v as usize];
-            if sample.overlap > 0.0 {
+            if sample.flags.touches() {
                 vertex_forces[v as usize] += sample.force;
                 react(sample);
             }
         }
         for &t in &near.facets {
             let sample = &samples[n_vertices + t as usize];
-            if sample.overlap > 0.0 {
+            if sample.flags.touches() {
                 for vertex in mesh.triangles[t as usize] {
                     vertex_forces[vertex as usize] += sample.force / 3.0;
                 }
@@ -157,7 +155,7 @@ pub fn on_membrane(model: &Model, controls: &Controls, scratch: &mut Scratch) {
 /// and weight less what accelerates them, and the pressure on the lids of the rims it holds.
 pub fn on_walls(model: &Model, controls: &Controls, state: &State, scratch: &mut Scratch) {
     let mesh = &model.membrane.mesh;
-    let Scratch { neighbours, wall_wrenches, wall_forces, membrane, vertex_forces, .. } = scratch;
+    let Scratch { wall_wrenches, wall_forces, membrane, vertex_forces, .. } = scratch;
     wall_wrenches.clear();
     wall_wrenches.resize(model.walls.len(), Wrench::zero());
     let mut add = |wall: usize, point: &Vec3, force: Vec3| {
@@ -165,11 +163,9 @@ pub fn on_walls(model: &Model, controls: &Controls, state: &State, scratch: &mut
         let arm = point - state.walls[wall].pose.translation.vector;
         wall_wrenches[wall].torque += arm.cross(&force);
     };
-    let n_grains = state.grains.len();
-    for &[w, i] in &neighbours.walls {
-        let (w, i) = (w as usize, i as usize);
-        let contact = &wall_forces[w * n_grains + i];
-        if contact.normal > 0.0 {
+    for (contact, ids) in wall_forces.iter().zip(&state.springs.walls.ids) {
+        if contact.flags.touches() {
+            let [w, i] = ids.map(|id| id as usize);
             add(w, &(state.grains.positions[i] + contact.arm), -contact.force);
         }
     }
@@ -192,12 +188,12 @@ pub fn on_walls(model: &Model, controls: &Controls, state: &State, scratch: &mut
     }
 }
 
-/// Where `wall` holds vertex `v` [m].
+/// Where `wall` holds vertex `v` (m).
 pub fn held_position(model: &Model, wall: &BodyMotion, v: usize) -> Vec3 {
     wall.pose.rotation * model.held_positions[v] + wall.pose.translation.vector
 }
 
-/// Velocity of a point fixed to `wall` [m/s].
+/// Velocity of a point fixed to `wall` (m/s).
 pub fn wall_velocity(wall: &BodyMotion, point: &Vec3) -> Vec3 {
     wall.twist.at(&(point - wall.pose.translation.vector))
 }

@@ -50,7 +50,7 @@ pub struct MembraneMaterial {
     pub bending_damping: Real,
 }
 
-/// What of the membrane grains touch.
+/// Which surface of the membrane grains touch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum MembraneContact {
     /// Its triangles: a closed surface without thickness.
@@ -81,10 +81,10 @@ impl MembraneMaterial {
     }
 }
 
-/// The membrane as it stays during a run.
+/// The parameters of the membrane, which stay during a run.
 #[derive(Clone, Debug)]
 pub struct MembraneModel {
-    /// Who neighbours whom, and the reference shape.
+    /// Connectivity and reference shape.
     pub mesh: Mesh,
     /// What the membrane is made of; of several parts, the first.
     pub material: MembraneMaterial,
@@ -220,8 +220,8 @@ impl MembraneModel {
         Self::new(mesh, material)
     }
 
-    /// A membrane of `material` in the shape of `mesh`, free of stress there; the carrier holds its rims, and
-    /// grains touch its triangles.
+    /// A membrane of `material` in the shape of `mesh`, free of stress there. The carrier holds its
+    /// rims, and grains touch its triangles.
     pub fn new(mesh: Mesh, material: MembraneMaterial) -> Self {
         let mass_per_area = material.density * material.thickness;
         let masses: Vec<Real> = mesh.vertex_areas().iter().map(|a| a * mass_per_area).collect();

@@ -12,8 +12,8 @@ use crate::{
     },
 };
 
-/// Builds the lists anew if they may have become incomplete. `travel` is how far the vertices have
-/// gone in all, at most and relative to the carrier [m].
+/// Rebuilds the lists if they may have become incomplete. `travel` is an upper bound of the distance that any
+/// vertex has moved in total, relative to the carrier (m).
 pub(super) fn refresh(
     model: &Model,
     controls: &Controls,
@@ -80,7 +80,7 @@ fn is_complete(
     lists.is_built && lists.near.len() == controls.bodies.len() && is_near.all(|it| it)
 }
 
-/// Signed distance of a point [m], or something less that is not below `enough` [m].
+/// Signed distance of a point (m), or a lower bound of it that is at least `enough` (m).
 fn distance_at_least(body: &BodyModel, motion: &BodyMotion, point: &Vec3, enough: Real) -> Real {
     let arm = point - motion.pose.translation.vector;
     let beyond = arm.norm() - body.bounding_radius;

@@ -3,7 +3,7 @@
 use crate::base::{Real, Vec3};
 
 /// Grains sorted into cubic cells.
-pub(super) struct CellGrid {
+pub(crate) struct CellGrid {
     low: Vec3,
     cell: Real,
     n_cells: [usize; 3],
@@ -17,8 +17,8 @@ pub(super) struct CellGrid {
 const N_CELLS_MAX: Real = 128.0;
 
 impl CellGrid {
-    /// Sorts `positions` into cells of at least `cell` [m].
-    pub(super) fn new(positions: &[Vec3], cell: Real) -> Self {
+    /// Sorts `positions` into cells of at least `cell` (m).
+    pub(crate) fn new(positions: &[Vec3], cell: Real) -> Self {
         let mut low = Vec3::repeat(Real::INFINITY);
         let mut high = Vec3::repeat(Real::NEG_INFINITY);
         for position in positions {
@@ -65,7 +65,7 @@ impl CellGrid {
     }
 
     /// Calls `visit` with every grain in a cell that the box from `low` to `high` touches.
-    pub(super) fn visit(&self, low: &Vec3, high: &Vec3, mut visit: impl FnMut(u32)) {
+    pub(crate) fn visit(&self, low: &Vec3, high: &Vec3, mut visit: impl FnMut(u32)) {
         // A box beside the grid would clamp to its outer cells: cheap, and never wrong.
         let (from, to) = (self.cell_of(low), self.cell_of(high));
         for z in from[2]..=to[2] {
@@ -92,7 +92,7 @@ fn index(value: Real) -> usize {
 
 /// An index as the 32-bit id that lists hold.
 #[expect(clippy::cast_possible_truncation, reason = "the scene allows far fewer grains than 2^32")]
-pub(super) fn id(index: usize) -> u32 {
+pub(crate) fn id(index: usize) -> u32 {
     index as u32
 }
 

@@ -1,10 +1,10 @@
-//! Has the centre of a grain crossed the sheet?
+//! Has the center of a grain crossed the membrane?
 //!
-//! Asked at every build of the lists, of the grains whose centre is closer to the sheet than the
-//! skin. Between two builds grain and sheet together move by less than the skin, so nothing can
-//! cross and get out of that reach unseen. The sign of the distance to the nearest point is that of
-//! the normal of the face, of the mean normal at an edge, of the mean weighted with angles at a
-//! vertex (Bærentzen & Aanæs 2005), exact for every closed surface. Beside a rim nobody crosses.
+//! Checked at every build of the lists, for grains whose center is closer to the membrane than the skin.
+//! Between two builds grain and membrane together move by less than the skin, so no grain can cross and leave
+//! that distance undetected. The sign of the distance to the nearest point is given by the normal of the face,
+//! the mean normal at an edge, or the angle-weighted mean at a vertex (Bærentzen & Aanæs 2005), which is exact
+//! for every closed surface. Grains beside a rim do not count.
 
 use std::collections::BTreeMap;
 
@@ -20,17 +20,17 @@ use crate::{
     },
 };
 
-/// Triangles that one thread looks at at a time.
+/// Number of triangles in one parallel task.
 const CHUNK: usize = 128;
 
-/// A grain near the sheet.
+/// A grain near the membrane.
 struct Near {
     grain: u32,
     distance_squared: Real,
     is_outside: bool,
 }
 
-/// The first grain whose centre is on the outer side of the sheet.
+/// The first grain whose center is on the outer side of the membrane.
 pub(super) fn first(model: &Model, grid: &CellGrid, state: &State) -> Option<usize> {
     let n_triangles = model.membrane.mesh.triangles.len();
     let mut chunks: Vec<Vec<Near>> = Vec::new();
@@ -69,17 +69,17 @@ fn near_triangle(
             return;
         }
         let closest = closest_on_triangle(position, corners);
-        let from_sheet = position - closest.point;
-        let distance_squared = from_sheet.norm_squared();
+        let from_membrane = position - closest.point;
+        let distance_squared = from_membrane.norm_squared();
         if distance_squared < model.skin * model.skin {
             let normal = outward(model, &state.membrane.positions, triangle, closest.feature);
-            let is_outside = normal.is_some_and(|normal| normal.dot(&from_sheet) > 0.0);
+            let is_outside = normal.is_some_and(|normal| normal.dot(&from_membrane) > 0.0);
             found.push(Near { grain, distance_squared, is_outside });
         }
     });
 }
 
-/// A normal on whose side whatever is nearest to the feature lies; `None` on a rim.
+/// A normal that tells on which side of the feature the nearest grains lie; `None` on a rim.
 fn outward(model: &Model, positions: &[Vec3], triangle: usize, feature: Feature) -> Option<Vec3> {
     let mesh = &model.membrane.mesh;
     let unit = |t: u32| area_normal(positions, &mesh.triangles[t as usize]).normalize();
@@ -101,7 +101,7 @@ fn outward(model: &Model, positions: &[Vec3], triangle: usize, feature: Feature)
     }
 }
 
-/// Angle of a triangle at one of its vertices [rad].
+/// Angle of a triangle at one of its vertices (rad).
 fn angle_at(vertex: u32, positions: &[Vec3], triangle: &[u32; 3]) -> Real {
     let at = |id: u32| positions[id as usize];
     let sides: Vec<Vec3> =

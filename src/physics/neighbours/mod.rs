@@ -1,11 +1,13 @@
-//! Who may touch whom: lists with a skin, built anew only when something has moved far enough.
+//! Lists of possible contacts. They reach beyond contact by the range of the law and by a skin, and are rebuilt
+//! only when something has moved far enough to use the skin up.
 //!
-//! Distances are taken relative to the carrier, the first wall, so that carrying the whole gripper through the
-//! room costs no rebuild. Who moves grains, vertices or walls otherwise than `integrate` does, or puts
-//! other bodies in, sets `Neighbours::is_built` to false. History outlives rebuilds: pairs stay sorted, and springs move by merge.
+//! Displacements are relative to the carrier, the first wall, so that moving the whole gripper through the room
+//! causes no rebuild. Code that moves grains, vertices or walls other than by `integrate`, or changes the
+//! bodies, must set `Neighbours::is_built` to false. Contact history survives rebuilds: lists are sorted, so one
+//! merge of the old and the new list carries it over.
 
 mod body_list;
-mod cell_grid;
+pub(crate) mod cell_grid;
 mod crossings;
 mod skin;
 mod sphere_list;
@@ -21,7 +23,7 @@ use super::{
 };
 use crate::base::Real;
 
-/// Builds the lists anew if they may have become incomplete.
+/// Rebuilds the lists if they may have become incomplete.
 pub fn refresh(model: &Model, controls: &Controls, state: &mut State, scratch: &mut Scratch) {
     let Scratch { neighbours: lists, sample_forces, .. } = scratch;
     lists.bodies.is_built &= lists.is_built;
@@ -30,7 +32,7 @@ pub fn refresh(model: &Model, controls: &Controls, state: &mut State, scratch: &
     refresh_grains(model, state, scratch);
 }
 
-/// The same for all that has to do with grains.
+/// The same for all lists of grains.
 fn refresh_grains(model: &Model, state: &mut State, scratch: &mut Scratch) {
     let lists = &mut scratch.neighbours;
     let used = 2.0 * used(model, state, lists);
@@ -40,14 +42,17 @@ fn refresh_grains(model: &Model, state: &mut State, scratch: &mut Scratch) {
         lists.n_since_build += 1;
         return;
     }
-    // Nothing is known of motion before the first build, nor of what others have moved.
+    // The motion before the first build, or by other code, is unknown.
     lists.skin = if lists.is_built { skin::cheapest(model, lists, used) } else { model.skin };
     // In a periodic box there is no membrane, so the wrapped grid serves the pairs alone.
     let positions = match &model.period {
         Some(period) => verlet_list::wrap(&state.grains.positions, period),
         None => state.grains.positions.clone(),
     };
-    let grid = cell_grid::CellGrid::new(&positions, 2.0 * model.radius_max + lists.skin);
+    let grid = cell_grid::CellGrid::new(
+        &positions,
+        2.0 * model.radius_max + model.grain_law.range() + lists.skin,
+    );
     verlet_list::build(model, &grid, &positions, state, lists);
     match model.membrane.contact {
         MembraneContact::Triangles => {
@@ -62,7 +67,7 @@ fn refresh_grains(model: &Model, state: &mut State, scratch: &mut Scratch) {
     }
     forget_patches(lists, &mut state.springs.patches, &mut scratch.patch_forces);
     wall_list::build(model, state, lists, &mut scratch.wall_forces);
-    weigh_pairs(state, lists);
+    update_pair_masses(state, lists);
     lists.grain_positions.clone_from(&state.grains.positions);
     lists.vertex_positions.clone_from(&state.membrane.positions);
     lists.carrier_position = state.carrier_position();
@@ -74,18 +79,18 @@ fn refresh_grains(model: &Model, state: &mut State, scratch: &mut Scratch) {
     lists.n_builds += 1;
 }
 
-/// How far anybody has come or grown since the last build [m].
+/// The most that anything has moved or grown since the last build (m).
 fn used(model: &Model, state: &State, lists: &Neighbours) -> Real {
     if !lists.is_built {
         return 0.0;
     }
     let (moved, walls) =
         (lists.displacement_squared_max.sqrt(), wall_list::displacement(model, state, lists));
-    // What is no number is further than all.
+    // NaN counts as farther than everything.
     lists.growth_max + if moved < walls { walls } else { moved }
 }
 
-/// Grains without candidates have no patches: nobody looks at them until the next build.
+/// Grains without candidates have no patches until the next build.
 fn forget_patches(lists: &Neighbours, springs: &mut [Patches], forces: &mut Vec<PatchForces>) {
     forces.resize(springs.len(), PatchForces::NONE);
     for (i, (patches, forces)) in springs.iter_mut().zip(forces).enumerate() {
@@ -95,8 +100,8 @@ fn forget_patches(lists: &Neighbours, springs: &mut [Patches], forces: &mut Vec<
     }
 }
 
-/// Effective radii and masses of the listed pairs; to be called again whenever radii or masses change.
-pub fn weigh_pairs(state: &State, lists: &mut Neighbours) {
+/// Updates effective radii and masses of the listed pairs. Call it whenever radii or masses change.
+pub fn update_pair_masses(state: &State, lists: &mut Neighbours) {
     let parallel = |a: f64, b: f64| a * b / (a + b);
     let of_pairs = |quantity: &[f64]| {
         let ids = state.pair_ids.iter().map(|ids| ids.map(|id| id as usize));

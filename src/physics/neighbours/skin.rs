@@ -1,5 +1,4 @@
-//! How thick the skin of the lists is. A thin one lists fewer pairs that do not touch, and is used up
-//! sooner.
+//! Thickness of the skin of the lists. A thin skin lists fewer pairs that do not touch, but is used up sooner.
 //!
 //! ```text
 //! cost of a substep = 1 + a s / d + b v / s,   least at   s = √(b/a · d v)
@@ -13,8 +12,8 @@
 //! | a | what a skin of a diameter would cost in each substep, in substeps | – |
 //! | b | what building the lists costs, in substeps | – |
 //!
-//! `v` is what was seen since the last build, so no clock has a say. Which pairs are listed besides
-//! those that touch changes no bit.
+//! `v` is measured since the last build, so no clock is involved. Results do not depend on which pairs are
+//! listed besides those in contact.
 
 use crate::{
     base::Real,
@@ -23,25 +22,25 @@ use crate::{
 
 /// b/a: measured with boxes at rest and flowing.
 const BUILD_OVER_SKIN: Real = 10.0;
-/// Substeps after which a skin that has proved too thick is given up.
+/// Substeps after which a skin that is too thick is replaced.
 const PROBATION: u64 = 100;
 /// How much too thick it must be for that.
 const TOO_THICK: Real = 2.0;
 /// The thinnest skin, as a share of the model's, which is the thickest.
 const THINNEST: Real = 1.0 / 8.0;
 
-/// The skin [m] that costs least if it goes on as since the last build, in which `used` [m] of the skin
+/// The skin (m) that costs least if it goes on as since the last build, in which `used` (m) of the skin
 /// were used up.
 pub(super) fn cheapest(model: &Model, lists: &Neighbours, used: Real) -> Real {
     let n = lists.n_since_build.max(1);
     #[expect(clippy::cast_precision_loss, reason = "a count of substeps")]
     let per_substep = used / n as Real;
     let skin = (BUILD_OVER_SKIN * 2.0 * model.radius_max * per_substep).sqrt();
-    // What is no number is as thick as can be.
+    // NaN gives the thickest skin.
     if skin < model.skin { skin.max(THINNEST * model.skin) } else { model.skin }
 }
 
-/// True if lists that are still complete are better built anew with a thinner skin.
+/// True if complete lists should be rebuilt with a thinner skin.
 pub(super) fn is_too_thick(model: &Model, lists: &Neighbours, used: Real) -> bool {
     lists.n_since_build == PROBATION && TOO_THICK * cheapest(model, lists, used) < lists.skin
 }
@@ -50,7 +49,7 @@ pub(super) fn is_too_thick(model: &Model, lists: &Neighbours, used: Real) -> boo
 mod tests {
     use super::*;
     use crate::{
-        physics::{SystemBuilder, contact::law::Surface},
+        physics::{SystemBuilder, law::Surface},
         scene::Material,
     };
 
@@ -66,7 +65,7 @@ mod tests {
         Neighbours { is_built: true, skin, n_since_build, ..Neighbours::default() }
     }
 
-    /// Oracle: the cost in the file's head, looked for among many skins.
+    /// Oracle: the cost formula above, evaluated for many skins.
     #[test]
     fn no_skin_costs_less() {
         let model = model();
@@ -81,7 +80,7 @@ mod tests {
 
     #[test]
     fn it_stays_within_its_limits() {
-        // Oracle: the limits; what is no number is the worst case.
+        // Oracle: the limits; NaN is the worst case.
         let model = model();
         let of = |used: Real| cheapest(&model, &lists(model.skin, 1000), used);
         let equal = |a: Real, b: Real| a.to_bits() == b.to_bits();

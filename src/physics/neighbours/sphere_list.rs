@@ -3,17 +3,17 @@
 
 use super::{
     cell_grid::{CellGrid, id},
-    verlet_list::carry_springs,
+    verlet_list::carried_springs,
 };
 use crate::{
     base::{Real, Vec3, parallel},
-    physics::{Model, State, scratch::Neighbours, state::SphereSprings},
+    physics::{Model, State, scratch::Neighbours, state::ListedSprings},
 };
 
-/// Vertices whose grains one thread looks up at a time.
+/// Number of vertices in one parallel task.
 const CHUNK: usize = 128;
 
-/// Lists all spheres of `radius` [m] closer to a grain than contact plus skin; springs of those
+/// Lists all spheres of `radius` (m) closer to a grain than contact plus skin; springs of those
 /// listed before are kept.
 pub(super) fn build(
     model: &Model,
@@ -41,13 +41,13 @@ pub(super) fn build(
     }
     lists.sphere_starts = starts;
     let before = &state.springs.spheres;
-    let springs = carry_springs(&before.ids, &before.springs, &ids);
-    state.springs.spheres = SphereSprings { ids, springs };
+    let springs = carried_springs(&before.ids, &before.springs, &ids);
+    state.springs.spheres = ListedSprings { ids, springs, memories: Vec::new() };
 }
 
 /// No sphere for any grain.
 pub(super) fn clear(state: &mut State, lists: &mut Neighbours) {
-    state.springs.spheres = SphereSprings::default();
+    state.springs.spheres = ListedSprings::default();
     lists.sphere_starts = vec![0; state.grains.len() + 1];
 }
 

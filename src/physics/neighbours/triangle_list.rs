@@ -6,7 +6,7 @@ use crate::{
     physics::{Model, State, membrane::contact_geometry::closest_on_triangle, scratch::Neighbours},
 };
 
-/// Triangles whose grains one thread looks up at a time.
+/// Number of triangles in one parallel task.
 const CHUNK: usize = 128;
 
 /// Lists, for each grain, the triangles closer than contact plus skin, ascending.
@@ -37,7 +37,7 @@ pub(super) fn build(model: &Model, grid: &CellGrid, state: &State, lists: &mut N
         lists.candidate_grains[*slot as usize] = *grain;
         *slot += 1;
     }
-    lists.sheet_grains = (0..n_grains).filter(|&i| starts[i] < starts[i + 1]).map(id).collect();
+    lists.membrane_grains = (0..n_grains).filter(|&i| starts[i] < starts[i + 1]).map(id).collect();
     lists.wake_at = vec![0.0; lists.triangles.len()];
     lists.travel = 0.0;
     lists.triangle_starts = starts;
@@ -47,7 +47,7 @@ pub(super) fn build(model: &Model, grid: &CellGrid, state: &State, lists: &mut N
 pub(super) fn clear(state: &State, lists: &mut Neighbours) {
     lists.triangles.clear();
     lists.candidate_grains.clear();
-    lists.sheet_grains.clear();
+    lists.membrane_grains.clear();
     lists.wake_at.clear();
     lists.triangle_starts = vec![0; state.grains.len() + 1];
 }

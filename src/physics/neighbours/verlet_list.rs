@@ -1,4 +1,4 @@
-//! Pairs of grains that may touch, sorted, with the springs of the pairs that go on.
+//! Sorted list of pairs of grains that may be in contact, with the history of pairs listed before.
 
 use super::cell_grid::{CellGrid, id};
 use crate::{
@@ -6,7 +6,7 @@ use crate::{
     physics::{Model, State, scratch::Neighbours},
 };
 
-/// Grains whose partners one thread looks up at a time.
+/// Number of grains in one parallel task.
 const CHUNK: usize = 128;
 
 /// The images of `positions` in the box from the origin to `period`.
@@ -15,8 +15,8 @@ pub(super) fn wrap(positions: &[Vec3], period: &Vec3) -> Vec<Vec3> {
     positions.iter().map(into_box).collect()
 }
 
-/// Lists all pairs closer than contact plus skin; springs of pairs listed before are kept. The grains
-/// are at `positions`, which are those of `grid`.
+/// Lists all pairs closer than contact plus the range of their law plus skin; what pairs listed before
+/// remember is kept. The grains are at `positions`, which are those of `grid`.
 pub(super) fn build(
     model: &Model,
     grid: &CellGrid,
@@ -25,7 +25,8 @@ pub(super) fn build(
     lists: &mut Neighbours,
 ) {
     let radii = &state.grains.radii;
-    let search = Search { model, skin: lists.skin, grid, positions, radii };
+    let beyond = model.grain_law.range() + lists.skin;
+    let search = Search { model, beyond, grid, positions, radii };
     let mut chunks = vec![Vec::new(); radii.len().div_ceil(CHUNK)];
     parallel::for_each(&mut chunks, |chunk, found| {
         for i in chunk * CHUNK..radii.len().min((chunk + 1) * CHUNK) {
@@ -33,17 +34,18 @@ pub(super) fn build(
         }
     });
     let ids = chunks.concat();
-    let springs = carry_springs(&state.pair_ids, &state.springs.pairs, &ids);
+    let springs = &mut state.springs;
+    springs.pairs = carried_springs(&state.pair_ids, &springs.pairs, &ids);
+    springs.pair_memories = carried_memories(&state.pair_ids, &springs.pair_memories, &ids);
     index_by_grain(&ids, radii.len(), lists);
     state.pair_ids = ids;
-    state.springs.pairs = springs;
 }
 
-/// All that is needed to look for partners.
+/// Input of the search for partners.
 struct Search<'a> {
     model: &'a Model,
-    /// Distance beyond contact [m].
-    skin: Real,
+    /// Distance beyond contact (m).
+    beyond: Real,
     grid: &'a CellGrid,
     positions: &'a [Vec3],
     radii: &'a [Real],
@@ -64,13 +66,13 @@ impl Search<'_> {
     /// Those near `position`, where grain `i` or an image of it is.
     fn around(&self, i: usize, position: &Vec3, found: &mut Vec<[u32; 2]>) {
         let (model, radius) = (self.model, self.radii[i]);
-        let reach = Vec3::repeat(radius + model.radius_max + self.skin);
+        let reach = Vec3::repeat(radius + model.radius_max + self.beyond);
         self.grid.visit(&(position - reach), &(position + reach), |other| {
             let j = other as usize;
             if j <= i {
                 return;
             }
-            let cut = radius + self.radii[j] + self.skin;
+            let cut = radius + self.radii[j] + self.beyond;
             if (self.positions[j] - position).norm_squared() < cut * cut {
                 found.push([id(i), other]);
             }
@@ -80,7 +82,7 @@ impl Search<'_> {
     /// Those near the images of grain `i` that reach into the box. No partner is near two of them,
     /// since the box is wide enough.
     fn around_images(&self, i: usize, position: &Vec3, period: &Vec3, found: &mut Vec<[u32; 2]>) {
-        let reach = self.radii[i] + self.model.radius_max + self.skin;
+        let reach = self.radii[i] + self.model.radius_max + self.beyond;
         let shifts = [0, 1, 2].map(|k| {
             let back = position[k] + reach > period[k];
             let ahead = position[k] < reach;
@@ -96,40 +98,64 @@ impl Search<'_> {
     }
 }
 
-/// Springs for the new list: both lists are sorted, so one walk over both finds them.
-pub(super) fn carry_springs(old_ids: &[[u32; 2]], old: &[Vec3], ids: &[[u32; 2]]) -> Vec<Vec3> {
+/// Where the contacts `ids` stood among `old_ids`: both lists are sorted, so one walk over both finds them.
+fn carried(old_ids: &[[u32; 2]], ids: &[[u32; 2]]) -> impl Iterator<Item = Option<usize>> {
     let mut k = 0;
-    ids.iter()
-        .map(|pair| {
-            while k < old_ids.len() && old_ids[k] < *pair {
-                k += 1;
+    ids.iter().map(move |pair| {
+        while k < old_ids.len() && old_ids[k] < *pair {
+            k += 1;
+        }
+        (k < old_ids.len() && old_ids[k] == *pair).then_some(k)
+    })
+}
+
+/// Springs of the contacts `ids`, zero for those that are new.
+pub(super) fn carried_springs(old_ids: &[[u32; 2]], old: &[Vec3], ids: &[[u32; 2]]) -> Vec<Vec3> {
+    carried(old_ids, ids).map(|k| k.map_or_else(Vec3::zeros, |k| old[k])).collect()
+}
+
+/// What else the contacts `ids` remember, zero for those that are new.
+pub(super) fn carried_memories(old_ids: &[[u32; 2]], old: &[Real], ids: &[[u32; 2]]) -> Vec<Real> {
+    let width = old.len() / old_ids.len().max(1);
+    let mut memories = vec![0.0; width * ids.len()];
+    if width > 0 {
+        for (memory, k) in memories.chunks_exact_mut(width).zip(carried(old_ids, ids)) {
+            if let Some(k) = k {
+                memory.copy_from_slice(&old[k * width..(k + 1) * width]);
             }
-            if k < old_ids.len() && old_ids[k] == *pair { old[k] } else { Vec3::zeros() }
-        })
-        .collect()
+        }
+    }
+    memories
 }
 
 /// For each grain: its pairs as first, which are contiguous, and as second.
 fn index_by_grain(ids: &[[u32; 2]], n_grains: usize, lists: &mut Neighbours) {
-    let mut starts = [vec![0_u32; n_grains + 1], vec![0_u32; n_grains + 1]];
-    for pair in ids {
-        for side in 0..2 {
-            starts[side][pair[side] as usize + 1] += 1;
-        }
+    lists.first_starts = starts(ids.iter().map(|pair| pair[0]), n_grains);
+    (lists.second_starts, lists.second_pairs) = index_by_second(ids, n_grains);
+}
+
+/// Where the entries of each grain begin in a list that is sorted by grain, and where the last ones end.
+fn starts(grains: impl Iterator<Item = u32>, n_grains: usize) -> Vec<u32> {
+    let mut starts = vec![0_u32; n_grains + 1];
+    for grain in grains {
+        starts[grain as usize + 1] += 1;
     }
-    for side in &mut starts {
-        for i in 0..n_grains {
-            side[i + 1] += side[i];
-        }
+    for i in 0..n_grains {
+        starts[i + 1] += starts[i];
     }
-    let [first_starts, second_starts] = starts;
-    let mut next = second_starts.clone();
-    lists.second_pairs = vec![0; ids.len()];
+    starts
+}
+
+/// The contacts `ids` by their second number: where those of each grain begin, and their indices, ascending
+/// for each grain.
+pub(super) fn index_by_second(ids: &[[u32; 2]], n_grains: usize) -> (Vec<u32>, Vec<u32>) {
+    let starts = starts(ids.iter().map(|pair| pair[1]), n_grains);
+    let mut next = starts.clone();
+    let mut indices = vec![0; ids.len()];
     for (k, pair) in ids.iter().enumerate() {
         let slot = &mut next[pair[1] as usize];
-        lists.second_pairs[*slot as usize] = id(k);
+        indices[*slot as usize] = id(k);
         *slot += 1;
     }
-    lists.first_starts = first_starts;
-    lists.second_starts = second_starts;
+    (starts, indices)
 }

@@ -1,47 +1,53 @@
 //! Grains that a wall may touch.
 
-use super::cell_grid::id;
+use super::{
+    cell_grid::id,
+    verlet_list::{carried_memories, carried_springs, index_by_second},
+};
 use crate::{
     base::Real,
     physics::{
         Model, State,
         scratch::{Neighbours, WallForce},
+        state::ListedSprings,
     },
 };
 
-/// Lists the walls that each grain is closer to than contact plus skin.
+/// Lists, wall by wall, the grains closer than contact plus the range of the wall's law plus skin; what
+/// contacts listed before remember is kept.
 pub(super) fn build(
     model: &Model,
-    state: &State,
+    state: &mut State,
     lists: &mut Neighbours,
-    wall_forces: &mut [WallForce],
+    wall_forces: &mut Vec<WallForce>,
 ) {
-    let n_grains = state.grains.len();
-    for &[w, i] in &lists.walls {
-        if let Some(force) = wall_forces.get_mut(w as usize * n_grains + i as usize) {
-            *force = WallForce::default();
-        }
-    }
-    lists.wall_starts.clear();
-    lists.wall_starts.push(0);
-    lists.walls.clear();
+    let mut ids = Vec::new();
     lists.wall_extents.clear();
-    lists.wall_extents.resize(model.walls.len(), 0.0);
-    for (i, position) in state.grains.positions.iter().enumerate() {
-        for (w, (wall, motion)) in model.walls.iter().zip(&state.walls).enumerate() {
+    for (w, (wall, motion)) in model.walls.iter().zip(&state.walls).enumerate() {
+        let shape = wall.shape.placed(motion);
+        let beyond = wall.law.range() + lists.skin;
+        let mut extent: Real = 0.0;
+        for (i, position) in state.grains.positions.iter().enumerate() {
             let arm = position - motion.pose.translation.vector;
-            lists.wall_extents[w] = lists.wall_extents[w].max(arm.norm() + lists.skin);
-            let cut = state.grains.radii[i] + lists.skin;
-            if wall.shape.distance(motion, &arm).is_some_and(|(distance, _)| distance < cut) {
-                lists.walls.push([w, i].map(id));
+            extent = extent.max(arm.norm() + lists.skin);
+            let cut = state.grains.radii[i] + beyond;
+            if shape.distance(&arm).is_some_and(|(distance, _)| distance < cut) {
+                ids.push([w, i].map(id));
             }
         }
-        lists.wall_starts.push(id(lists.walls.len()));
+        lists.wall_extents.push(extent);
     }
+    (lists.wall_starts, lists.wall_contacts) = index_by_second(&ids, state.grains.len());
+    let before = &state.springs.walls;
+    let springs = carried_springs(&before.ids, &before.springs, &ids);
+    let memories = carried_memories(&before.ids, &before.memories, &ids);
+    wall_forces.clear();
+    wall_forces.resize(ids.len(), WallForce::default());
+    state.springs.walls = ListedSprings { ids, springs, memories };
     lists.walls_at_build.clone_from(&state.walls);
 }
 
-/// How far any wall has come towards the grains since the last build, relative to the carrier [m].
+/// How far any wall has come towards the grains since the last build, relative to the carrier (m).
 pub(super) fn displacement(model: &Model, state: &State, lists: &Neighbours) -> Real {
     let carried = state.carrier_position() - lists.carrier_position;
     let walls = model.walls.iter().zip(&lists.walls_at_build).zip(&state.walls);

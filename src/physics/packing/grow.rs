@@ -23,14 +23,13 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::pressure::normal_pressure;
 use crate::{
-    base::Real,
-    physics::{
-        Model, System,
-        contact::law::PairLaw,
-        measure::{real, real_of, stress},
-        neighbours::weigh_pairs,
+    base::{
+        Real,
+        real::{real, real_of},
     },
+    physics::{Model, System, law::PairLaw, neighbours::update_pair_masses},
 };
 
 /// Growth per relaxation time √(m/(p d)).
@@ -197,7 +196,7 @@ impl Growth {
         let grown = self.progress.scale * (self.recipe.rate * dt * push.clamp(-1.0, 1.0)).exp();
         self.resize(system, grown.min(self.recipe.scale_last));
         system.step();
-        let pressure = stress::normal_pressure(&system.state, &system.scratch, self.recipe.volume);
+        let pressure = normal_pressure(&system.state, &system.scratch, self.recipe.volume);
         self.progress.pressure = pressure;
         self.progress.n_substeps += 1;
         self.judge();
@@ -277,18 +276,16 @@ pub fn resize(system: &mut System, final_radii: &[Real], scale: Real) {
         model.radius_max = model.radius_max.max(*radius);
     }
     // The lists of neighbours stay complete only until a grain has grown too far.
-    weigh_pairs(state, &mut scratch.neighbours);
+    update_pair_masses(state, &mut scratch.neighbours);
 }
 
 /// Mean overlap of touching grains over their distance at first touch.
 pub fn mean_overlap(system: &System) -> Real {
     let radii = &system.state.grains.radii;
     let (mut sum, mut n_contacts) = (0.0, 0);
-    for (pair, [i, j]) in system.scratch.pair_forces.iter().zip(&system.state.pair_ids) {
-        if pair.overlap > 0.0 {
-            sum += pair.overlap / (radii[*i as usize] + radii[*j as usize]);
-            n_contacts += 1;
-        }
+    for (pair, [i, j]) in system.scratch.touching_pairs(&system.state) {
+        sum += pair.overlap / (radii[*i as usize] + radii[*j as usize]);
+        n_contacts += 1;
     }
     sum / real(n_contacts.max(1))
 }
@@ -304,8 +301,7 @@ mod tests {
         physics::{
             SystemBuilder,
             builder::Wall,
-            contact::law::Surface,
-            measure::grain_volume,
+            law::Surface,
             packing::{Room, first_scale, scatter, sphere_volume},
             state::Grains,
         },
@@ -373,7 +369,8 @@ mod tests {
             }
         }
         let jammed = growth.progress();
-        let solid = grain_volume(&system.state) / EDGE.powi(3);
+        let grains = system.state.grains.radii.iter();
+        let solid = grains.map(|&r| sphere_volume(r)).sum::<Real>() / EDGE.powi(3);
         assert_eq!(jammed.grown, Grown::Jammed);
         assert!((std::f64::consts::FRAC_PI_6..0.63).contains(&solid), "{solid}");
         assert!((jammed.pressure / 500.0 - 1.0).abs() < 0.2, "{}", jammed.pressure);

@@ -15,6 +15,7 @@
 
 pub mod grow;
 pub mod numbering; // neighbours in space, neighbours in memory
+pub mod pressure; // what grains press with
 pub mod scatter;
 
 pub use grow::{Grown, Growth, Laws, Recipe};

@@ -5,8 +5,8 @@
 use std::collections::BTreeMap;
 
 use crate::{
-    base::{Real, Vec3, random::Random},
-    physics::{contact::grains::closest_image, measure::real},
+    base::{Real, Vec3, random::Random, real::real},
+    physics::contact::grains::closest_image,
 };
 
 /// Candidates for one grain before it is given up.

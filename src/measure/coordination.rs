@@ -5,9 +5,8 @@
 //! Taking rattlers away takes contacts from their neighbours, so this is repeated until all have
 //! enough. Isostatic counts without rattlers: 6 without friction, 4 with infinite friction.
 
-use super::real;
 use crate::{
-    base::Real,
+    base::{Real, real::real},
     physics::{Scratch, State},
 };
 
@@ -36,14 +35,11 @@ pub fn coordination(state: &State, scratch: &Scratch, n_needed: usize) -> Coordi
     for (i, patches) in scratch.patch_forces.iter().enumerate() {
         supports[i] += patches.n;
     }
-    for (k, wall) in scratch.wall_forces.iter().enumerate() {
-        supports[k % n_grains] += usize::from(wall.normal > 0.0);
+    for (_, [_, i]) in scratch.touching_walls(state) {
+        supports[i] += 1;
     }
-    let touching = scratch.pair_forces.iter().zip(&state.pair_ids);
-    let pairs: Vec<[usize; 2]> = touching
-        .filter(|(pair, _)| pair.overlap > 0.0)
-        .map(|(_, ids)| ids.map(|id| id as usize))
-        .collect();
+    let touching = scratch.touching_pairs(state);
+    let pairs: Vec<[usize; 2]> = touching.map(|(_, ids)| ids.map(|id| id as usize)).collect();
     of_contacts(&pairs, &supports, n_needed)
 }
 

@@ -1,13 +1,34 @@
-//! What can be read off a state: energies, volumes, coordination, validity. Changes nothing.
+//! What can be read off a state: energies, volumes, contacts, fields, structure. Changes nothing.
+//!
+//! Fields, radial distribution functions and Voronoi cells take plain slices of positions and radii, so
+//! they serve any system and any recording:
+//!
+//! ```
+//! use jamgrip::{base::Vec3, measure::{fields::Overlaps, grid::Grid}};
+//!
+//! let (positions, radii) = ([Vec3::new(0.5, 0.5, 0.5)], [0.25]);
+//! let grid = Grid::aligned(&Vec3::zeros(), &Vec3::repeat(1.0), [2, 1, 1])?;
+//! let overlaps = Overlaps::new(&grid, &positions, &radii, None);
+//! let velocity = overlaps.mean(&[Vec3::new(0.0, 0.0, 0.1)]);
+//! assert_eq!(velocity[0], Some(Vec3::new(0.0, 0.0, 0.1)));
+//! # Ok::<(), jamgrip::measure::grid::GridError>(())
+//! ```
 
+pub mod cell_stress; // stress, cell by cell
 pub mod coordination; // who carries load
+pub mod fields; // density, velocity, displacement, cell by cell
+pub mod grid; // the cells
+mod near; // who is close by
 pub mod overlap; // sphere and box, exactly
 pub mod rest; // is it at rest?
 pub mod stress; // what the contacts carry
 pub mod structure; // how grains are arranged
+pub mod voronoi; // the space that belongs to each grain
 
-use super::{Model, Scratch, State, membrane::pressure};
-use crate::base::Real;
+use crate::{
+    base::{Real, real::real},
+    physics::{Model, Scratch, State, membrane::pressure},
+};
 
 /// State of the packing.
 #[derive(Clone, Copy, Debug, Default)]
@@ -24,9 +45,9 @@ pub struct Packing {
     pub jammed_fraction: Real,
     /// Share of sliding contacts among contacts between grains.
     pub sliding_fraction: Real,
-    /// Largest overlap between grains [m].
+    /// Largest overlap between grains (m).
     pub overlap_max: Real,
-    /// Largest overlap between grain and membrane [m].
+    /// Largest overlap between grain and membrane (m).
     pub membrane_overlap_max: Real,
 }
 
@@ -35,15 +56,11 @@ pub fn packing(state: &State, scratch: &Scratch) -> Packing {
     let n_grains = state.grains.len();
     let mut packing = Packing::default();
     let mut touching = vec![0_usize; n_grains];
-    let mut n_sliding = 0_usize;
-    for (pair, ids) in scratch.pair_forces.iter().zip(&state.pair_ids) {
-        if pair.overlap > 0.0 {
-            packing.n_grain_contacts += 1;
-            n_sliding += usize::from(pair.signed_normal < 0.0);
-            packing.overlap_max = packing.overlap_max.max(pair.overlap);
-            for id in ids {
-                touching[*id as usize] += 1;
-            }
+    for (pair, ids) in scratch.touching_pairs(state) {
+        packing.n_grain_contacts += 1;
+        packing.overlap_max = packing.overlap_max.max(pair.overlap);
+        for id in ids {
+            touching[*id as usize] += 1;
         }
     }
     for (i, patches) in scratch.patch_forces.iter().enumerate() {
@@ -54,29 +71,29 @@ pub fn packing(state: &State, scratch: &Scratch) -> Packing {
         }
     }
     for (sphere, ids) in scratch.sphere_forces.iter().zip(&state.springs.spheres.ids) {
-        if sphere.overlap > 0.0 {
+        if sphere.flags.touches() {
             packing.n_membrane_contacts += 1;
             touching[ids[0] as usize] += 1;
             packing.membrane_overlap_max = packing.membrane_overlap_max.max(sphere.overlap);
         }
     }
-    for (k, wall) in scratch.wall_forces.iter().enumerate() {
-        touching[k % n_grains] += usize::from(wall.normal > 0.0);
+    for (_, [_, i]) in scratch.touching_walls(state) {
+        touching[i] += 1;
     }
-    packing.n_body_contacts = scratch.sample_forces.iter().filter(|s| s.overlap > 0.0).count();
+    packing.n_body_contacts = scratch.sample_forces.iter().filter(|s| s.flags.touches()).count();
     let share = |n: usize, of: usize| if of == 0 { 0.0 } else { real(n) / real(of) };
     packing.coordination_number = share(touching.iter().sum(), n_grains);
     packing.jammed_fraction = share(touching.iter().filter(|&&n| n >= 4).count(), n_grains);
-    packing.sliding_fraction = share(n_sliding, packing.n_grain_contacts);
+    packing.sliding_fraction = share(scratch.n_sliding_pairs(), packing.n_grain_contacts);
     packing
 }
 
-/// Sum of normal force magnitudes on each grain [N].
+/// Sum of normal force magnitudes on each grain (N).
 pub fn normal_forces(state: &State, scratch: &Scratch) -> Vec<Real> {
     let mut forces = vec![0.0; state.grains.len()];
     for (pair, ids) in scratch.pair_forces.iter().zip(&state.pair_ids) {
         for id in ids {
-            forces[*id as usize] += pair.signed_normal.abs();
+            forces[*id as usize] += pair.normal;
         }
     }
     for (i, patches) in scratch.patch_forces.iter().enumerate() {
@@ -86,20 +103,20 @@ pub fn normal_forces(state: &State, scratch: &Scratch) -> Vec<Real> {
     for (sphere, ids) in scratch.sphere_forces.iter().zip(&state.springs.spheres.ids) {
         forces[ids[0] as usize] += sphere.normal;
     }
-    for (k, wall) in scratch.wall_forces.iter().enumerate() {
-        forces[k % state.grains.len()] += wall.normal;
+    for (wall, [_, i]) in scratch.touching_walls(state) {
+        forces[i] += wall.normal;
     }
     forces
 }
 
-/// Kinetic energy of grains and membrane [J].
+/// Kinetic energy of grains and membrane (J).
 pub fn kinetic_energy(model: &Model, state: &State) -> Real {
     let grains = &state.grains;
     let of_grains: Real = (0..grains.len())
         .map(|i| {
             let inertia = 0.4 * grains.masses[i] * grains.radii[i].powi(2);
             0.5 * grains.masses[i] * grains.velocities[i].norm_squared()
-                + 0.5 * inertia * grains.spins[i].norm_squared()
+                + 0.5 * inertia * grains.angular_velocities[i].norm_squared()
         })
         .sum();
     let masses = &model.membrane.masses;
@@ -109,29 +126,17 @@ pub fn kinetic_energy(model: &Model, state: &State) -> Real {
     of_grains + of_membrane
 }
 
-/// Volume of all grains [m³].
+/// Volume of all grains (m³).
 pub fn grain_volume(state: &State) -> Real {
     state.grains.radii.iter().map(|r| 4.0 / 3.0 * std::f64::consts::PI * r.powi(3)).sum()
 }
 
-/// Mass of grains and membrane [kg].
+/// Mass of grains and membrane (kg).
 pub fn mass(model: &Model, state: &State) -> Real {
     state.grains.masses.iter().sum::<Real>() + model.membrane.mass()
 }
 
-/// Volume enclosed by membrane and flange [m³].
+/// Volume enclosed by membrane and flange (m³).
 pub fn enclosed_volume(model: &Model, state: &State) -> Real {
     pressure::volume(&model.membrane.mesh, &state.membrane.positions)
-}
-
-/// A number of substeps, or of anything that is counted for long, as a real number.
-#[expect(clippy::cast_precision_loss, reason = "counts stay far below 2^53")]
-pub fn real_of(count: u64) -> Real {
-    count as Real
-}
-
-/// A count as a real number.
-#[expect(clippy::cast_precision_loss, reason = "counts stay far below 2^53")]
-pub fn real(count: usize) -> Real {
-    count as Real
 }

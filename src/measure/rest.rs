@@ -9,13 +9,9 @@
 //! Source of u and I: da Cruz et al. (2005); of the criteria: E_kin/U below 1e-6 as well, since a
 //! grain in flight has no unbalanced force.
 
-use super::real;
 use crate::{
-    base::Real,
-    physics::{
-        Model, Scratch, State,
-        contact::{law::PairLaw, sums},
-    },
+    base::{Real, real::real},
+    physics::{Model, Scratch, State, contact::sums, law::PairLaw, state::ListedSprings},
 };
 
 /// Mean force on a grain over the mean force in its contacts; 0 without contacts.
@@ -24,12 +20,11 @@ pub fn unbalanced_force(model: &Model, state: &State, scratch: &Scratch) -> Real
     let net: Real = (0..grains.len())
         .map(|i| (sums::on_grain(grains, scratch, i).0 + model.gravity * grains.masses[i]).norm())
         .sum();
-    let touching = scratch.pair_forces.iter().filter(|pair| pair.overlap > 0.0);
-    let of_pairs = touching.map(|pair| pair.force.norm());
+    let touching = scratch.touching_pairs(state);
+    let of_pairs = touching.map(|(pair, _)| pair.force.norm());
     let of_patches = (scratch.patch_forces.iter())
         .flat_map(|patches| patches.contacts[..patches.n].iter().map(|it| it.force.norm()));
-    let walls = scratch.wall_forces.iter().filter(|wall| wall.normal > 0.0);
-    let of_walls = walls.map(|wall| wall.force.norm());
+    let of_walls = scratch.touching_walls(state).map(|(wall, _)| wall.force.norm());
     let mut n_contacts = 0;
     let mut sum = 0.0;
     for force in of_pairs.chain(of_patches).chain(of_walls) {
@@ -42,7 +37,7 @@ pub fn unbalanced_force(model: &Model, state: &State, scratch: &Scratch) -> Real
     (net / real(grains.len())) / (sum / real(n_contacts))
 }
 
-/// Energy stored in the contacts of grains with each other, with walls and with the membrane [J].
+/// Energy stored in the contacts of grains with each other, with walls and with the membrane (J).
 /// The membrane's friction springs are left out.
 pub fn elastic_energy(model: &Model, state: &State, scratch: &Scratch) -> Real {
     let radii = &state.grains.radii;
@@ -60,25 +55,26 @@ pub fn elastic_energy(model: &Model, state: &State, scratch: &Scratch) -> Real {
             energy += stored(&model.membrane_law, radius, patch.overlap, 0.0);
         }
     }
-    let n_grains = radii.len();
-    for (k, (contact, spring)) in scratch.wall_forces.iter().zip(&state.springs.walls).enumerate() {
+    let ListedSprings { ids, springs, .. } = &state.springs.walls;
+    for ((contact, ids), spring) in scratch.wall_forces.iter().zip(ids).zip(springs) {
         if contact.overlap > 0.0 {
-            let law = &model.walls[k / n_grains].law;
-            energy += stored(law, radii[k % n_grains], contact.overlap, spring.norm_squared());
+            let [w, i] = ids.map(|id| id as usize);
+            let law = &model.walls[w].law;
+            energy += stored(law, radii[i], contact.overlap, spring.norm_squared());
         }
     }
     energy
 }
 
-/// Energy of one contact [J].
+/// Energy of one contact (J).
 fn stored(law: &PairLaw, radius: Real, overlap: Real, stretch_squared: Real) -> Real {
     let contact_radius = (radius * overlap).sqrt();
     let normal = 8.0 / 15.0 * law.modulus * contact_radius * overlap * overlap;
     normal + 0.5 * (16.0 / 3.0 * law.shear_modulus * contact_radius) * stretch_squared
 }
 
-/// Inertial number at the strain rate [1/s] of grains with `diameter` [m] and `density` [kg/m³]
-/// under `pressure` [Pa].
+/// Inertial number at the strain rate (1/s) of grains with `diameter` (m) and `density` (kg/m³)
+/// under `pressure` (Pa).
 pub fn inertial_number(strain_rate: Real, diameter: Real, density: Real, pressure: Real) -> Real {
     strain_rate.abs() * diameter * (density / pressure).sqrt()
 }

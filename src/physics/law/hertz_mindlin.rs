@@ -27,165 +27,85 @@
 //! carried along when the pair turns about an axis across the normal; about the normal itself it is
 //! not turned, as in the source.
 
-use crate::{
-    base::{
-        Real, Vec3,
-        lanes::{Lanes, Mask, Vector},
-    },
-    scene::{self, Material},
+use super::{
+    ContactState, NoCohesion, NormalForce, NormalPart, Parts, TangentialForce, TangentialPart,
+};
+use crate::base::{
+    Real,
+    lanes::{Lanes, Mask, Vector},
 };
 
-/// Constants of one pair of materials.
+/// The law of this file.
+pub type HertzMindlin = Parts<Hertz, Mindlin, NoCohesion>;
+
+/// Viscoelastic Hertz: the force along the normal.
 #[derive(Clone, Copy, Debug)]
-pub struct PairLaw {
-    /// Effective Young's modulus E* [Pa].
+pub struct Hertz {
+    /// Effective Young's modulus E* (Pa).
     pub modulus: Real,
-    /// Effective shear modulus G* [Pa].
+    /// Dissipation time A (s).
+    pub dissipation_time: Real,
+}
+
+impl NormalForce for Hertz {
+    #[inline(always)]
+    fn force<L: Lanes>(&self, contact: &ContactState<L>) -> NormalPart<L> {
+        let contact_radius = (contact.radius * contact.overlap).sqrt();
+        let v_n = contact.normal.dot(contact.velocity);
+        let elastic_and_viscous = contact.overlap - L::splat(1.5 * self.dissipation_time) * v_n;
+        let hertz = L::splat(4.0 / 3.0 * self.modulus) * contact_radius * elastic_and_viscous;
+        NormalPart { force: hertz.max(L::splat(0.0)), contact_radius, velocity: v_n }
+    }
+
+    fn stiffness(&self, radius: Real, force: Real) -> Real {
+        let overlap = (0.75 * force / (self.modulus * radius.sqrt())).powf(2.0 / 3.0);
+        2.0 * self.modulus * (radius * overlap).sqrt()
+    }
+}
+
+/// A spring with history, a damper while it sticks, and Coulomb's limit: the tangential force.
+#[derive(Clone, Copy, Debug)]
+pub struct Mindlin {
+    /// Effective shear modulus G* (Pa).
     pub shear_modulus: Real,
     /// Coulomb friction μ.
     pub friction: Real,
-    /// Dissipation time A [s].
-    pub dissipation_time: Real,
     /// Tangential damping γ_t.
     pub tangential_damping: Real,
 }
 
-impl PairLaw {
-    /// The law between two materials.
-    pub fn between(first: &Material, second: &Material, surface: Surface) -> Self {
-        let normal = |m: &Material| (1.0 - m.poisson_ratio.powi(2)) / m.youngs_modulus;
-        let shear = |m: &Material| {
-            (2.0 - m.poisson_ratio) * 2.0 * (1.0 + m.poisson_ratio) / m.youngs_modulus
-        };
-        Self {
-            modulus: 1.0 / (normal(first) + normal(second)),
-            shear_modulus: 1.0 / (shear(first) + shear(second)),
-            friction: surface.friction,
-            dissipation_time: surface.dissipation_time,
-            tangential_damping: surface.tangential_damping,
+impl TangentialForce for Mindlin {
+    #[inline(always)]
+    fn force<L: Lanes>(
+        &self,
+        contact: &ContactState<L>,
+        normal: &NormalPart<L>,
+        dt: Real,
+        spring: &mut Vector<L>,
+    ) -> TangentialPart<L> {
+        let v_t = contact.velocity - contact.normal * normal.velocity;
+        let mut xi_t = into_tangent_plane(*spring, contact.normal) + v_t * L::splat(dt);
+        let k_t = L::splat(8.0 * self.shear_modulus) * normal.contact_radius;
+        let k = L::splat(2.0 / 3.0) * k_t;
+        let limit = L::splat(self.friction) * normal.force;
+        // Squares are compared: most contacts stick, and then no root is needed.
+        let stretch_squared = xi_t.dot(xi_t);
+        let slides = (limit * limit).le(k * k * stretch_squared);
+        let damping = L::splat(self.tangential_damping) * (contact.mass * k_t).sqrt();
+        let mut tangential = -xi_t * k - v_t * damping;
+        let squared = tangential.dot(tangential);
+        let is_clipped = (limit * limit).lt(squared).and(slides.not());
+        if is_clipped.any() {
+            tangential = (tangential * (limit / squared.sqrt())).or_where(is_clipped, tangential);
         }
-    }
-
-    /// The law of one material against something much stiffer.
-    pub fn against_rigid(material: &Material, surface: Surface) -> Self {
-        let rigid = Material { youngs_modulus: Real::INFINITY, ..*material };
-        Self::between(material, &rigid, surface)
-    }
-}
-
-/// What two surfaces have in common.
-#[derive(Clone, Copy, Debug)]
-pub struct Surface {
-    /// Coulomb friction μ.
-    pub friction: Real,
-    /// Dissipation time A [s].
-    pub dissipation_time: Real,
-    /// Tangential damping γ_t.
-    pub tangential_damping: Real,
-}
-
-impl Surface {
-    /// Among the grains of a scene, and of grains with walls.
-    pub fn of_grains(grains: &scene::Grains) -> Self {
-        Self {
-            friction: grains.friction,
-            dissipation_time: grains.dissipation_time,
-            tangential_damping: grains.tangential_damping,
+        if slides.any() {
+            let is_stretched = slides.and(L::splat(0.0).lt(stretch_squared));
+            xi_t = (xi_t * (limit / (k * stretch_squared.sqrt()))).or_where(is_stretched, xi_t);
+            tangential = (-xi_t * k).or_where(slides, tangential);
         }
+        *spring = xi_t;
+        TangentialPart { force: tangential, slides }
     }
-
-    /// Of a scene's membrane with something, with which it has this friction.
-    pub fn of_membrane(membrane: &scene::Membrane, friction: Real) -> Self {
-        Self {
-            friction,
-            dissipation_time: membrane.dissipation_time,
-            tangential_damping: membrane.tangential_damping,
-        }
-    }
-}
-
-/// Where and how fast two bodies touch, in each lane.
-#[derive(Clone, Copy, Debug)]
-pub struct Touch<L> {
-    /// Overlap ξ [m], positive.
-    pub overlap: L,
-    /// Unit normal, from the second body to the first.
-    pub normal: Vector<L>,
-    /// Velocity of the first body relative to the second at the contact point [m/s].
-    pub velocity: Vector<L>,
-    /// Effective radius R* [m].
-    pub radius: L,
-    /// Effective mass m* [kg].
-    pub mass: L,
-}
-
-/// Force on the first body, in each lane.
-#[derive(Clone, Copy, Debug)]
-pub struct Force<L, M> {
-    /// Normal force F_n [N], at least zero.
-    pub normal: L,
-    /// Tangential force [N].
-    pub tangential: Vector<L>,
-    /// True while the contact slides.
-    pub slides: M,
-}
-
-/// Force on the first body; `spring` ξ_t [m] is carried on by one substep of `dt` [s].
-#[inline(always)]
-pub fn force<L: Lanes>(
-    law: &PairLaw,
-    touch: &Touch<L>,
-    dt: Real,
-    spring: &mut Vector<L>,
-) -> Force<L, L::Mask> {
-    let contact_radius = (touch.radius * touch.overlap).sqrt();
-    let v_n = touch.normal.dot(touch.velocity);
-    let v_t = touch.velocity - touch.normal * v_n;
-    let elastic_and_viscous = touch.overlap - L::splat(1.5 * law.dissipation_time) * v_n;
-    let hertz = L::splat(4.0 / 3.0 * law.modulus) * contact_radius * elastic_and_viscous;
-    let normal = hertz.max(L::splat(0.0));
-
-    let mut xi_t = into_tangent_plane(*spring, touch.normal) + v_t * L::splat(dt);
-    let k_t = L::splat(8.0 * law.shear_modulus) * contact_radius;
-    let k = L::splat(2.0 / 3.0) * k_t;
-    let limit = L::splat(law.friction) * normal;
-    // Squares are compared: most contacts stick, and then no root is needed.
-    let stretch_squared = xi_t.dot(xi_t);
-    let slides = (limit * limit).le(k * k * stretch_squared);
-    let damping = L::splat(law.tangential_damping) * (touch.mass * k_t).sqrt();
-    let mut tangential = -xi_t * k - v_t * damping;
-    let squared = tangential.dot(tangential);
-    let is_clipped = (limit * limit).lt(squared).and(slides.not());
-    if is_clipped.any() {
-        tangential = (tangential * (limit / squared.sqrt())).or_where(is_clipped, tangential);
-    }
-    if slides.any() {
-        let is_stretched = slides.and(L::splat(0.0).lt(stretch_squared));
-        xi_t = (xi_t * (limit / (k * stretch_squared.sqrt()))).or_where(is_stretched, xi_t);
-        tangential = (-xi_t * k).or_where(slides, tangential);
-    }
-    *spring = xi_t;
-    Force { normal, tangential, slides }
-}
-
-/// The same for a single contact.
-#[inline(always)]
-pub fn single(law: &PairLaw, touch: &Touch<Real>, dt: Real, spring: &mut Vec3) -> Single {
-    let mut xi_t = Vector::from(*spring);
-    let force = force(law, touch, dt, &mut xi_t);
-    *spring = xi_t.into();
-    Single { normal: force.normal, tangential: force.tangential.into(), slides: force.slides }
-}
-
-/// Force on the first body of a single contact.
-#[derive(Clone, Copy, Debug)]
-pub struct Single {
-    /// Normal force F_n [N], at least zero.
-    pub normal: Real,
-    /// Tangential force [N].
-    pub tangential: Vec3,
-    /// True while the contact slides.
-    pub slides: bool,
 }
 
 /// The spring turned into the tangent plane, its length kept.
@@ -207,6 +127,11 @@ fn into_tangent_plane<L: Lanes>(spring: Vector<L>, normal: Vector<L>) -> Vector<
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{
+        base::Vec3,
+        physics::law::{PairLaw, Surface, scalar},
+        scene::Material,
+    };
 
     fn grain() -> Material {
         Material { youngs_modulus: 1e8, poisson_ratio: 0.245, density: 2000.0 }
@@ -225,14 +150,15 @@ mod tests {
         loop {
             // Velocity Verlet, so that the oracle's error is not the integrator's.
             let force_at = |overlap: Real, closing: Real, spring: &mut Vec3| {
-                let touch = Touch {
+                let contact = ContactState {
                     overlap: overlap.max(1e-300),
                     normal: Vec3::z().into(),
                     velocity: (Vec3::z() * -closing).into(),
                     radius: radius / 2.0,
+                    touches: true,
                     mass: mass / 2.0,
                 };
-                single(law, &touch, dt, spring).normal
+                scalar(law, &contact, dt, spring).normal
             };
             let a = force_at(overlap, closing, &mut spring) / (mass / 2.0);
             let half = closing - a * dt / 2.0;
@@ -283,14 +209,15 @@ mod tests {
         let mut spring = Vec3::zeros();
         let velocity = Vec3::new(0.05, 0.02, 0.0);
         for step in 0..1000 {
-            let touch = Touch {
+            let contact = ContactState {
                 overlap: 1e-5,
                 normal: Vec3::z().into(),
                 velocity: velocity.into(),
                 radius: 1e-3,
+                touches: true,
                 mass: 3e-5,
             };
-            let f = single(&law, &touch, 1e-6, &mut spring);
+            let f = scalar(&law, &contact, 1e-6, &mut spring);
             assert!(f.tangential.norm() <= 0.25 * f.normal * (1.0 + 1e-12));
             if step > 900 {
                 assert!(f.slides);
@@ -306,19 +233,23 @@ mod tests {
         let law = law(7e-6, 0.25);
         let turn = nalgebra::Rotation3::from_euler_angles(0.3, -1.1, 2.0);
         let (normal, velocity) = (Vec3::new(0.0, 0.6, 0.8), Vec3::new(0.05, 0.02, -0.1));
-        let touch = Touch {
+        let contact = ContactState {
             overlap: 1e-5,
             normal: normal.into(),
             velocity: velocity.into(),
             radius: 1e-3,
+            touches: true,
             mass: 3e-5,
         };
-        let turned =
-            Touch { normal: (turn * normal).into(), velocity: (turn * velocity).into(), ..touch };
+        let turned = ContactState {
+            normal: (turn * normal).into(),
+            velocity: (turn * velocity).into(),
+            ..contact
+        };
         let mut spring = Vec3::new(1e-7, 2e-7, -1.5e-7);
         let mut spring_turned = turn * spring;
-        let f = single(&law, &touch, 1e-6, &mut spring);
-        let g = single(&law, &turned, 1e-6, &mut spring_turned);
+        let f = scalar(&law, &contact, 1e-6, &mut spring);
+        let g = scalar(&law, &turned, 1e-6, &mut spring_turned);
         assert!((turn * f.tangential - g.tangential).norm() < 1e-12 * f.normal);
         assert!((f.normal - g.normal).abs() < 1e-12 * f.normal);
         assert!((turn * spring - spring_turned).norm() < 1e-18);

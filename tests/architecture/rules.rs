@@ -1,0 +1,149 @@
+//! Who may use what: the tables. Paths are those of files and folders from the repository's root, so
+//! that moving a file means replacing its path here; an entry that applies to nothing is a failure.
+
+/// The whole library and program.
+const ANYWHERE: &[&str] = &["src/"];
+
+/// Other people's crates, and the files or folders that may name them. The longest path decides.
+pub(crate) const FOREIGN: &[(&str, &[&str])] = &[
+    ("rapier3d_f64", &["src/cosim/rapier_world.rs", "src/cosim/volume.rs"]),
+    (
+        "rapier3d_f64::parry",
+        &[
+            "src/cosim/rapier_world.rs",
+            "src/cosim/volume.rs",
+            "src/physics/boundary/polyhedron.rs",
+            "src/physics/boundary/tests.rs",
+        ],
+    ),
+    ("arrayvec", &["src/physics/"]),
+    ("rayon", &["src/base/parallel.rs"]),
+    ("rayon::ThreadPool", ANYWHERE),
+    ("rayon::ThreadPoolBuildError", ANYWHERE),
+    ("libc", &["src/base/parallel.rs"]),
+    ("rand_chacha", &["src/base/random.rs"]),
+    ("xxhash_rust", &["src/base/digest.rs", "src/bag/chain.rs", "src/cosim/saved_state.rs"]),
+    ("serde_saphyr", &["src/scene/yaml.rs"]),
+    ("stl_io", &["src/scene/mesh_file.rs"]),
+    ("tobj", &["src/scene/mesh_file.rs"]),
+    ("urdf_rs", &["src/scene/urdf.rs"]),
+    ("regex", &["src/simulator/filters.rs"]),
+    ("byteorder", &["src/wire/", "src/ros/"]),
+    ("cdr_encoding", &["src/wire/", "src/simulator/", "src/ros/"]),
+    ("ros2_client", &["src/ros/"]),
+    ("rustdds", &["src/ros/"]),
+    ("smol", &["src/ros/"]),
+    ("iceoryx2", &["src/shm/"]),
+    (
+        "mcap",
+        &[
+            "src/bag/writer.rs",
+            "src/bag/reader.rs",
+            "src/bag/index.rs",
+            "src/bag/recover.rs",
+            "src/bag/check.rs",
+        ],
+    ),
+    ("zstd", &["src/bag/writer.rs", "src/bag/reader.rs"]),
+    ("indicatif", &["src/host/progress_bar.rs", "src/runner/progress.rs"]),
+    ("comfy_table", &["src/node/summary.rs", "src/runner/table.rs"]),
+    ("plotters", &["src/report/"]),
+    ("maud", &["src/report/page.rs", "src/runner/report.rs", "src/replay/page.rs"]),
+    ("csv", &["src/runner/folder.rs", "src/benchmarks/history_csv.rs"]),
+    ("ctrlc", &["src/host/shutdown.rs", "src/node/launch.rs"]),
+    ("clap", &["src/bin/jamgrip/"]),
+    ("env_logger", &["src/bin/jamgrip/main.rs"]),
+];
+
+/// Crates that any file may use.
+pub(crate) const FREE: &[&str] =
+    &["nalgebra", "serde", "serde_bytes", "serde_json", "postcard", "thiserror", "bytemuck", "log"];
+
+/// What the modules of `rooms` may not name, apart from the files `except`.
+pub(crate) struct Ban {
+    pub(crate) rooms: &'static [&'static str],
+    pub(crate) paths: &'static [&'static str],
+    pub(crate) except: &'static [&'static str],
+    pub(crate) why: &'static str,
+}
+
+/// Rooms whose results depend on nothing but their arguments.
+const PURE: &[&str] = &[
+    "base",
+    "physics",
+    "cosim",
+    "command",
+    "session",
+    "snapshot",
+    "controller",
+    "experiments",
+    "measure",
+];
+const CLOCKS: &[&str] = &["std::time::Instant", "std::time::SystemTime"];
+const SOCKETS: &[&str] = &["std::net", "std::os", "rustdds", "ros2_client", "iceoryx2"];
+
+pub(crate) const BANS: &[Ban] = &[
+    Ban {
+        rooms: PURE,
+        paths: &["std::fs", "std::env", "std::process", "std::io", "log", "env_logger"],
+        except: &[],
+        why: "the core has no files, environment or logs",
+    },
+    Ban { rooms: PURE, paths: SOCKETS, except: &[], why: "the core has no sockets" },
+    Ban { rooms: PURE, paths: CLOCKS, except: &[], why: "the core reads no clock" },
+    Ban {
+        rooms: PURE,
+        paths: &["std::thread"],
+        except: &["src/base/parallel.rs"],
+        why: "threads of the core are in one file",
+    },
+    Ban {
+        rooms: &["scene"],
+        paths: &["std::thread", "std::process", "log", CLOCKS[0]],
+        except: &[],
+        why: "a scene depends on its files alone",
+    },
+    Ban {
+        rooms: &["scene", "wire", "simulator"],
+        paths: SOCKETS,
+        except: &[],
+        why: "sockets belong to the transports",
+    },
+    Ban {
+        rooms: &["wire", "simulator"],
+        paths: &["std::thread", CLOCKS[0], CLOCKS[1]],
+        except: &[],
+        why: "no clock and no thread",
+    },
+    Ban {
+        rooms: &["controller"],
+        paths: &["crate::physics", "crate::cosim", "crate::session"],
+        except: &[],
+        why: "a controller knows what one in another process would know",
+    },
+];
+
+/// Files and folders with unsafe code.
+pub(crate) const UNSAFE: &[&str] = &["src/base/parallel.rs", "src/base/lanes/"];
+
+/// Written by a program, not by people.
+pub(crate) const GENERATED: &[&str] = &["src/wire/messages/generated.rs"];
+
+/// Files whose numbers are read by everyone: each says its unit.
+pub(crate) const DATA_FILES: &[&str] = &[
+    "src/scene/mod.rs",
+    "src/snapshot/mod.rs",
+    "src/physics/model.rs",
+    "src/physics/state.rs",
+    "src/physics/controls.rs",
+    "src/physics/scratch.rs",
+];
+
+/// True if `file` is one of `places`, or in a folder among them.
+pub(crate) fn is_in(file: &str, places: &[&str]) -> bool {
+    places.iter().any(
+        |place| {
+            if place.ends_with('/') { file.starts_with(place) } else { file == *place }
+        },
+    )
+}
