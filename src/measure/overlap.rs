@@ -7,10 +7,10 @@
 //! S       = R² (2π − Σ (a/R) φ_a − Σ atan2(R h_ab, −a b))           (Gauss–Bonnet)
 //! h_ab    = √(R² − a² − b²)
 //!
-//! R    radius of the sphere, whose center is the origin             [m]
-//! S    area of the sphere's part of the surface                     [m²]
-//! A_a  area of the part of the surface in the plane x = a           [m²]
-//! φ_a  angle of the arc that bounds both                            [rad]
+//! R    radius of the sphere, whose center is the origin             (m)
+//! S    area of the sphere's part of the surface                     (m²)
+//! A_a  area of the part of the surface in the plane x = a           (m²)
+//! φ_a  angle of the arc that bounds both                            (rad)
 //! ```
 //!
 //! Negative coordinates are mirrored: what lies beyond −a and what lies beyond a make up the ball

@@ -4,9 +4,9 @@
 //! g(r)  = ⟨pairs at r … r + Δ⟩ / (ρ_n 4/3 π ((r + Δ)³ − r³))        center to center, → 1 far away
 //! g₄₂(r) = 1/N Σ_i n_i(r) / (4π (r/R̄)²)                             Götz (2024), eq. 42
 //!
-//! n_i(r)  grains that the sphere of radius r about grain i cuts       [-]
-//! ρ_n     grains per volume                                          [1/m³]
-//! R̄       mean radius                                                [m]
+//! n_i(r)  grains that the sphere of radius r about grain i cuts       (-)
+//! ρ_n     grains per volume                                          (1/m³)
+//! R̄       mean radius                                                (m)
 //! ```
 //!
 //! In a bounded sample only the part of each shell inside the sample counts: its exact volume replaces

@@ -14,7 +14,7 @@ const DEFAULT: &str = include_str!("../../launch_configs/pick_and_lift.yaml");
 
 /// Builds a [`Scene`] from a base scene and changed keys.
 ///
-/// Keys and values are those of scene files: `docs/scene.md` lists them.
+/// Keys and values are those of scene files; `docs/scene_keys.md` lists them.
 ///
 /// ```
 /// use jamgrip::Scene;
