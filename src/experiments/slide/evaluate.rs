@@ -117,6 +117,19 @@ fn triangles(scene: &SlideScene, records: &[CaseRecord<'_>], rows: &mut Vec<Row>
         Expected::at_most(5e-3),
         worst(records, &names, ripple),
     );
+    triangle_contact(scene, records, &names, rows);
+}
+
+/// Height and stick length over triangles, compared with the contact law.
+fn triangle_contact(
+    scene: &SlideScene,
+    records: &[CaseRecord<'_>],
+    names: &[&str],
+    rows: &mut Vec<Row>,
+) {
+    let mut add = |text: RowText<'_>, expected: Expected, measured: Option<Real>| {
+        rows.extend(measured.map(|it| Row::new(&text, expected, it)));
+    };
     let radius = scene.ball.radius;
     let sag =
         |it: &CaseRecord<'_>| expected::overlap(&it.case.law(scene), radius, it.case.weight(scene));
@@ -129,7 +142,7 @@ fn triangles(scene: &SlideScene, records: &[CaseRecord<'_>], rows: &mut Vec<Row>
             reason: "0.1 % of the overlap, as for the force",
         },
         Expected::at_most(1e-3),
-        worst(records, &names, |it| it.spread("height").range() / sag(it)),
+        worst(records, names, |it| it.spread("height").range() / sag(it)),
     );
     add(
         RowText {
@@ -140,7 +153,7 @@ fn triangles(scene: &SlideScene, records: &[CaseRecord<'_>], rows: &mut Vec<Row>
             reason: "0.1 %: one contact at rest, without oscillation",
         },
         Expected::within(0.0, 1e-3),
-        worst(records, &names, |it| ((radius - it.spread("height").mean) / sag(it) - 1.0).abs()),
+        worst(records, names, |it| ((radius - it.spread("height").mean) / sag(it) - 1.0).abs()),
     );
     add(
         RowText {
@@ -172,7 +185,6 @@ fn stick(scene: &SlideScene, it: &CaseRecord<'_>) -> Real {
 fn hard_spheres(scene: &SlideScene, records: &[CaseRecord<'_>], rows: &mut Vec<Row>) {
     let reach = scene.ball.radius + scene.membrane.sphere_radius;
     let edge = scene.membrane.edge;
-    let friction = scene.membrane.friction;
     let paths = [
         ("hard_spheres_rows", "C8.particle_bridge", 2.0, edge / 2.0, "bridge, l = s/2"),
         (
@@ -209,6 +221,14 @@ fn hard_spheres(scene: &SlideScene, records: &[CaseRecord<'_>], rows: &mut Vec<R
             it.spread("height").range(),
         ));
     }
+    hard_sphere_friction(scene, records, rows);
+}
+
+/// Friction on hard spheres, where the ball touches one of them.
+fn hard_sphere_friction(scene: &SlideScene, records: &[CaseRecord<'_>], rows: &mut Vec<Row>) {
+    let reach = scene.ball.radius + scene.membrane.sphere_radius;
+    let edge = scene.membrane.edge;
+    let friction = scene.membrane.friction;
     let Some(it) = named(records, "hard_spheres_rows") else { return };
     for (id, share, position) in [
         ("C8.particle_descending", 0.25, "a quarter period after the top of a sphere"),
