@@ -89,7 +89,7 @@ impl Client {
     ) -> Result<(), String> {
         let full = format!("{}/{name}", self.options.prefix);
         if !self.clients.contains_key(name) {
-            let spec = ServiceSpec { name: full.clone(), service_type: service_type };
+            let spec = ServiceSpec { name: full.clone(), service_type };
             let client = RosClient::open(&self.node, &spec, self.options.mapping);
             let mut client = client.map_err(|it| it.to_string())?;
             let deadline = now() + self.options.timeout;

@@ -306,7 +306,7 @@ impl<R: Read> Reader<R> {
         let record = body.map_or(Err(McapError::UnexpectedEof), |it| parse_record(opcode, it));
         match record {
             Ok(record) => {
-                if let Some(item) = self.to_item(record.into_owned()) {
+                if let Some(item) = self.item_of(record.into_owned()) {
                     self.queue.push_back(item);
                 }
             }
@@ -318,7 +318,7 @@ impl<R: Read> Reader<R> {
     }
 
     /// Converts a record to an item; schemas and repeated channels yield none.
-    fn to_item(&mut self, record: Record<'static>) -> Option<Item> {
+    fn item_of(&mut self, record: Record<'static>) -> Option<Item> {
         match record {
             Record::Header(header) => Some(Item::Header(header)),
             Record::Schema { header, data } => {
@@ -410,7 +410,7 @@ impl<R: Read> Reader<R> {
             // The checksum does not tell which of the messages are valid.
             records.retain(|it| !matches!(it, Record::Message { .. }));
         }
-        let items: Vec<Item> = records.into_iter().filter_map(|it| self.to_item(it)).collect();
+        let items: Vec<Item> = records.into_iter().filter_map(|it| self.item_of(it)).collect();
         let n_messages = items.iter().filter(|it| matches!(it, Item::Message(_))).count();
         self.queue.push_back(Item::Chunk(ChunkSummary { offset, header, n_messages }));
         self.queue.extend(items);

@@ -209,7 +209,7 @@ fn replies_are_sent_when_commands_are_done() {
     let (sender, listener) = mpsc::channel();
     let send = |command| {
         let (reply, response) = mpsc::channel();
-        sender.send(CommandRequest { command: command, reply: Some(reply) }).unwrap();
+        sender.send(CommandRequest { command, reply: Some(reply) }).unwrap();
         response
     };
     let (status, five) = (send(PlayerCommand::Status), send(PlayerCommand::Burst(5)));
