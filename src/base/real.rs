@@ -47,9 +47,9 @@ pub fn whole(value: Real) -> usize {
 /// Linear and angular velocity of a body, world axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Twist {
-    /// Velocity of the frame's origin [m/s].
+    /// Velocity of the frame's origin (m/s).
     pub linear: Vec3,
-    /// Angular velocity [rad/s].
+    /// Angular velocity (rad/s).
     pub angular: Vec3,
 }
 
@@ -59,7 +59,7 @@ impl Twist {
         Self { linear: Vec3::zeros(), angular: Vec3::zeros() }
     }
 
-    /// Velocity of the material point at `arm` [m] from the frame's origin [m/s].
+    /// Velocity of the material point at `arm` (m) from the frame's origin (m/s).
     pub fn at(&self, arm: &Vec3) -> Vec3 {
         self.linear + self.angular.cross(arm)
     }
@@ -68,9 +68,9 @@ impl Twist {
 /// A force and a torque about a stated point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wrench {
-    /// Force [N].
+    /// Force (N).
     pub force: Vec3,
-    /// Torque about the stated point [N m].
+    /// Torque about the stated point (N m).
     pub torque: Vec3,
 }
 

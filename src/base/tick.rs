@@ -10,7 +10,7 @@ impl Tick {
         Self(self.0 + 1)
     }
 
-    /// Simulated time at the end of this tick [ns], for ticks of `tick_ns` nanoseconds.
+    /// Simulated time at the end of this tick (ns), for ticks of `tick_ns` nanoseconds.
     pub fn time_ns(self, tick_ns: u64) -> u64 {
         self.0 * tick_ns
     }

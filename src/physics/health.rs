@@ -32,7 +32,7 @@ fn beyond(limit: Option<Real>) -> String {
     limit.map(|limit| format!(", beyond {limit:e}")).unwrap_or_default()
 }
 
-/// No grain and no vertex of a working gripper is faster than this [m/s].
+/// No grain and no vertex of a working gripper is faster than this (m/s).
 const SPEED_MAX: Real = 50.0;
 
 /// Checks speeds, finiteness and leaks at the end of `tick`.

@@ -29,12 +29,12 @@ pub fn advance(model: &Model, controls: &Controls, scratch: &mut Scratch, state:
     state.walls.clone_from(&controls.walls);
 }
 
-/// Where the carrier is at the end of this substep [m].
+/// Where the carrier is at the end of this substep (m).
 fn carried_to(controls: &Controls) -> Vec3 {
     controls.walls.get(CARRIER).map_or_else(Vec3::zeros, |it| it.pose.translation.vector)
 }
 
-/// What grains and free vertices gain with the carrier in this substep [m/s], so that heavier ones
+/// What grains and free vertices gain with the carrier in this substep (m/s), so that heavier ones
 /// follow it as the real ones do; see `cosim::compile::density_scaling`.
 fn carried_along(model: &Model, controls: &Controls, state: &State) -> Vec3 {
     let gained = match (controls.walls.get(CARRIER), state.walls.get(CARRIER)) {
@@ -46,16 +46,16 @@ fn carried_along(model: &Model, controls: &Controls, state: &State) -> Vec3 {
 
 /// What the carrier and gravity do to all.
 struct Carried {
-    /// Velocity that grains and free vertices gain [m/s].
+    /// Velocity that grains and free vertices gain (m/s).
     gain: Vec3,
-    /// How far the carrier goes in this substep [m].
+    /// How far the carrier goes in this substep (m).
     step: Vec3,
-    /// How far it has come since the lists were built [m].
+    /// How far it has come since the lists were built (m).
     since_build: Vec3,
 }
 
 impl Carried {
-    /// Squared displacements relative to the carrier [m²], since the lists were built and in this
+    /// Squared displacements relative to the carrier (m²), since the lists were built and in this
     /// substep, added to the largest ones. What is no number is the largest.
     #[inline(always)]
     fn record_displacement(
@@ -74,7 +74,7 @@ impl Carried {
     }
 }
 
-/// Returns the largest squared displacements [m²].
+/// Returns the largest squared displacements (m²).
 fn advance_grains(
     model: &Model,
     scratch: &Scratch,
@@ -109,7 +109,7 @@ fn advance_grains(
     )
 }
 
-/// Returns the largest squared displacements [m²].
+/// Returns the largest squared displacements (m²).
 fn advance_membrane(
     model: &Model,
     controls: &Controls,

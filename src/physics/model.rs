@@ -10,7 +10,7 @@ use crate::base::{Pose, Real, Vec3};
 /// Everything that does not change. `SystemBuilder` makes one.
 #[derive(Clone, Debug)]
 pub struct Model {
-    /// Inertia of grains and membrane over their real one, 1 as a rule.
+    /// Ratio of the inertia of grains and membrane to the real one; usually 1.
     pub density_scaling: Real,
     /// Gravity as grains and membrane feel it (m/s²): the real one over `density_scaling`.
     pub gravity: Vec3,

@@ -77,8 +77,8 @@ impl Grains {
 pub struct Springs {
     /// Of each listed pair of grains, zero without contact (m). Written by `contact::grains`.
     pub pairs: Vec<Vec3>,
-    /// What else each listed pair of grains remembers; nothing under a law without cohesion. Written by
-    /// `contact::grains`.
+    /// Further history of each listed pair, such as whether a liquid bridge exists, as a number of the law's
+    /// own; empty for laws without such a history. Written by `contact::grains`.
     pub pair_memories: Vec<Real>,
     /// Membrane contacts of each grain. Written by `contact::membrane`.
     pub patches: Vec<Patches>,
@@ -112,7 +112,7 @@ pub struct ListedSprings {
     pub ids: Vec<[u32; 2]>,
     /// Zero without contact (m).
     pub springs: Vec<Vec3>,
-    /// What else each contact remembers; nothing under a law without cohesion.
+    /// Further history of each contact, as a number of the law's own; empty for laws without it.
     pub memories: Vec<Real>,
 }
 

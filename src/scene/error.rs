@@ -19,7 +19,7 @@ pub enum SceneError {
     #[error(transparent)]
     Syntax(#[from] SyntaxError),
     /// An override is not `key=value`.
-    #[error("--set {text}: not of the form key=value; for example, write --set object.friction=0")]
+    #[error("override `{text}`: not of the form key=value; for example, write `object.friction=0`")]
     NotAnOverride {
         /// The override as given.
         text: String,

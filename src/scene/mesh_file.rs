@@ -25,7 +25,12 @@ pub(super) enum MeshError {
     /// The format is not supported.
     #[error("is neither .stl nor .obj")]
     UnknownFormat,
+    /// Built without the feature that reads meshes.
+    #[cfg(not(feature = "meshes"))]
+    #[error("needs a jamgrip that was built with feature `meshes`")]
+    NoFeature,
     /// The file is malformed.
+    #[cfg(feature = "meshes")]
     #[error("cannot be read as a mesh: {reason}")]
     Malformed {
         /// The message of the parser.
@@ -87,6 +92,18 @@ fn open(file: &Path) -> Result<BufReader<File>, MeshError> {
         .map_err(|error| MeshError::Unreadable { reason: error.to_string() })
 }
 
+#[cfg(not(feature = "meshes"))]
+fn read_stl(file: &Path) -> Result<Corners, MeshError> {
+    open(file)?;
+    Err(MeshError::NoFeature)
+}
+
+#[cfg(not(feature = "meshes"))]
+fn read_obj(file: &Path) -> Result<Corners, MeshError> {
+    read_stl(file)
+}
+
+#[cfg(feature = "meshes")]
 fn read_stl(file: &Path) -> Result<Corners, MeshError> {
     let mut reader = open(file)?;
     let mesh = stl_io::read_stl(&mut reader)
@@ -98,6 +115,7 @@ fn read_stl(file: &Path) -> Result<Corners, MeshError> {
     Ok(mesh.faces.iter().map(|face| face.vertices.map(point)).collect())
 }
 
+#[cfg(feature = "meshes")]
 fn read_obj(file: &Path) -> Result<Corners, MeshError> {
     let options = tobj::LoadOptions { triangulate: true, ..Default::default() };
     // Material files hold only colors, which are not used.

@@ -4,6 +4,7 @@
 //! with their units and limits, `check` applies rules that involve several keys. All errors are
 //! reported at once. `print` writes a scene.
 
+pub mod builder; // a base scene with changed keys
 pub mod error; // errors in scenes
 pub mod json; // YAML to JSON
 pub mod print; // scene to text
@@ -15,16 +16,19 @@ pub mod text; // text to scene
 
 mod check;
 mod extent;
+pub(crate) mod keys;
 mod mesh_file;
 mod read;
 pub(crate) mod schema;
 mod schema_outputs;
 mod tree;
+#[cfg(feature = "meshes")]
 mod urdf;
 pub(crate) mod unset;
 pub(crate) mod visit;
 mod yaml;
 
+pub use builder::SceneBuilder;
 pub use error::SceneError;
 pub use print::to_yaml;
 pub use text::{load, parse};

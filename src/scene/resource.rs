@@ -8,7 +8,7 @@ use std::{
 use super::{
     Object, Scene,
     error::{DiagnosticKind, SceneError},
-    text, urdf,
+    text,
 };
 
 /// Formats of objects, as file name extensions.
@@ -46,18 +46,29 @@ pub fn object(uri: &str, string: &str, folder: &Path) -> Result<Object, Resource
         let (path, text) = open(uri, folder)?;
         let inside = path.parent().unwrap_or(folder).to_owned();
         return match path.extension().and_then(|it| it.to_str()) {
-            Some("urdf") => urdf::read(&text, &inside, &default_object()?),
+            Some("urdf") => urdf(&text, &inside),
             Some("yaml" | "yml") => of_scene(&text, uri, &inside),
             _ => Err(ResourceError::UnsupportedFormat(uri.to_owned())),
         };
     }
     if string.contains("<robot") {
-        urdf::read(string, folder, &default_object()?)
+        urdf(string, folder)
     } else if string.trim_start().starts_with('<') {
         Err(ResourceError::UnsupportedFormat("text that starts with `<`".to_owned()))
     } else {
         of_scene(string, "resource_string", folder)
     }
+}
+
+#[cfg(feature = "meshes")]
+fn urdf(text: &str, folder: &Path) -> Result<Object, ResourceError> {
+    super::urdf::read(text, folder, &default_object()?)
+}
+
+#[cfg(not(feature = "meshes"))]
+fn urdf(_: &str, _: &Path) -> Result<Object, ResourceError> {
+    let why = "URDF needs a jamgrip that was built with feature `meshes`";
+    Err(ResourceError::Unsupported(why.to_owned()))
 }
 
 /// Loads a scene from a file, or from text if no file is named. With `ignores_assets`, an object whose
@@ -169,6 +180,7 @@ fn of_scene(text: &str, source: &str, folder: &Path) -> Result<Object, ResourceE
 }
 
 /// An object with default values.
+#[cfg(feature = "meshes")]
 fn default_object() -> Result<Object, ResourceError> {
     let text = "name: defaults\nobject: { shape: { sphere: { radius: 10 mm } } }\n";
     of_scene(text, "the defaults", Path::new(""))

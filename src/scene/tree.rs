@@ -11,7 +11,7 @@ use crate::base::Real;
 /// A location in a source text.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Location {
-    /// File name, or the `--set` argument.
+    /// The file or the override.
     pub source: Arc<str>,
     /// Line, from 1; 0 means the whole source.
     pub line: u64,

@@ -15,7 +15,7 @@ const RADIUS: Real = 2e-3;
 
 /// Runs `test` on one thread, which is fastest for so few grains.
 fn on_one_thread(test: impl FnOnce() + Send) {
-    parallel::lead(&parallel::pool(1).unwrap(), test);
+    parallel::lead(&parallel::ThreadPool::new(1).unwrap(), test);
 }
 
 /// Overlap (m) at which the plate carries a grain's weight: Hertz, ξ = (m g / k)^(2/3).

@@ -79,7 +79,7 @@ fn resultant(rig: &Rig, contacts: &[PatchForce]) -> (Vec3, Vec3) {
 
 /// Runs `test` on one thread, which is fastest for so few grains.
 pub(crate) fn on_one_thread(test: impl FnOnce() + Send) {
-    parallel::pool(1).unwrap().install(test);
+    parallel::lead(&parallel::ThreadPool::new(1).unwrap(), test);
 }
 
 /// Three paths over the patch, as start and displacement: along edges, along heights through vertices,

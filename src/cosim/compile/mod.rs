@@ -5,8 +5,6 @@
 
 mod density_scaling;
 
-use std::sync::Arc;
-
 pub use density_scaling::ScaledScene;
 
 use super::{
@@ -18,6 +16,7 @@ use crate::{
     base::{
         Pose, Real, Vec3,
         digest::Digest,
+        parallel::ThreadPool,
         real::{Twist, count, real},
     },
     physics::{
@@ -91,7 +90,7 @@ pub struct Compiled {
     /// Limits of the flange's motion.
     pub limits: Limits,
     /// Threads of the solver.
-    pub pool: Arc<rayon::ThreadPool>,
+    pub pool: ThreadPool,
 }
 
 /// A compiled scene without its thread pool.
@@ -145,10 +144,10 @@ impl Compiled {
     ///
     /// # Errors
     /// If the substep is too long or a shape is unusable.
-    pub fn new(scene: &Scene, pool: &Arc<rayon::ThreadPool>) -> Result<Self, CompileError> {
+    pub fn new(scene: &Scene, pool: &ThreadPool) -> Result<Self, CompileError> {
         let Gripper { model, plan, bulks } = gripper(scene)?;
         let limits = Limits::new(&scene.flange);
-        Ok(Self { scene: scene.clone(), model, plan, bulks, limits, pool: Arc::clone(pool) })
+        Ok(Self { scene: scene.clone(), model, plan, bulks, limits, pool: pool.clone() })
     }
 
     /// Cache key of the settled start state: exactly what the filling depends on.

@@ -3,7 +3,6 @@
 use super::*;
 use crate::{
     base::digest::Digest,
-    cosim::saved_state,
     physics::{
         boundary::{
             motion::{Hinge, Load, Servo, Turn, WallMotion},
@@ -77,9 +76,8 @@ fn a_servo_presses_a_grain_and_a_break_changes_no_bit() {
     for step in 0..60_000 {
         whole.step();
         if step == 20_000 {
-            let state = saved_state::read(&saved_state::write(&whole.state)).unwrap();
-            assert_eq!(state.wall_memory.len(), 2);
-            resumed.restart(state);
+            assert_eq!(whole.state.wall_memory.len(), 2);
+            resumed.restart(whole.state.clone());
         } else if 20_000 < step {
             resumed.step();
         }

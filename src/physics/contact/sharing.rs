@@ -193,7 +193,7 @@ fn heights(
 mod tests {
     use super::*;
 
-    /// Minima in one plane, `angle` apart [rad] as seen from the grain, at these distances over R.
+    /// Minima in one plane, `angle` apart (rad) as seen from the grain, at these distances over R.
     fn two(distances: [Real; 2], angle: Real) -> Vec<Minimum> {
         let at = |index: usize| {
             let turn = if index == 0 { 0.0 } else { angle };

@@ -29,9 +29,9 @@ use crate::base::lanes::{Lanes, Mask, Vector};
 /// The geometry of a hinge at one instant, in each lane.
 #[derive(Clone, Copy, Debug)]
 pub struct Fold<L> {
-    /// −∂θ/∂r_1 [1/m].
+    /// −∂θ/∂r_1 (1/m).
     pub u1: Vector<L>,
-    /// −∂θ/∂r_2 [1/m].
+    /// −∂θ/∂r_2 (1/m).
     pub u2: Vector<L>,
     /// Where the foot of r1 lies along the edge: 0 at r4, −1 at r3.
     pub a1: L,

@@ -25,7 +25,7 @@ pub struct Spring {
     pub rest_length: Real,
     /// Stiffness k (N/m).
     pub stiffness: Real,
-    /// Damping 2 γ √(k m*) [N s/m].
+    /// Damping 2 γ √(k m*) (N s/m).
     pub damping: Real,
 }
 
@@ -36,7 +36,7 @@ impl Spring {
         Self { rest_length, stiffness, damping: 2.0 * damping_ratio * (stiffness * mass).sqrt() }
     }
 
-    /// Rest length (m), stiffness (N/m) and damping [N s/m].
+    /// Rest length (m), stiffness (N/m) and damping (N s/m).
     pub fn numbers(&self) -> [Real; 3] {
         [self.rest_length, self.stiffness, self.damping]
     }

@@ -7,7 +7,7 @@ use crate::{
     physics::{Scratch, State},
 };
 
-/// Mean pressure [Pa] of the normal forces of the last substep in `volume` [m³].
+/// Mean pressure (Pa) of the normal forces of the last substep in `volume` (m³).
 pub fn normal_pressure(state: &State, scratch: &Scratch, volume: Real) -> Real {
     let radii = &state.grains.radii;
     let mut sum = 0.0;
