@@ -13,7 +13,7 @@ use crate::{
         Pose, Real, Vec3,
         real::{Twist, real},
     },
-    cosim::refused::ChangeError,
+    cosim::change_error::ChangeError,
     physics::{
         Model, Scratch, State, System,
         boundary::{

@@ -9,7 +9,7 @@ mod change; // discontinuous changes between ticks
 pub mod compile;
 pub mod flange;
 pub mod rapier_world;
-pub mod refused; // why a change is rejected
+pub mod change_error; // why a change is rejected
 pub mod saved_state;
 pub mod volume; // overlap of simple volumes
 

@@ -5,7 +5,7 @@ use std::error::Error;
 use super::schedule::Parts;
 use crate::{
     command::{Command, change::Change},
-    cosim::refused::ChangeError,
+    cosim::change_error::ChangeError,
     physics::{health::Diverged, membrane::mesh::Mesh},
     session::Session,
     simulator::WorldAccess,

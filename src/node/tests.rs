@@ -12,7 +12,7 @@ use crate::{
         real::{Twist, Wrench},
     },
     command::{Command, CommandCounts, change::Change},
-    cosim::refused::ChangeError,
+    cosim::change_error::ChangeError,
     io::{
         fanout::Delivery,
         sink::Sink,

@@ -72,7 +72,7 @@ pub enum DiagnosticKind {
     #[error(transparent)]
     Quantity(#[from] QuantityError),
     /// The value is out of range.
-    #[error("{found} is out of range, it must be {limit}; for example, write `{example}`")]
+    #[error("{found} is out of range: it must be {limit}; for example, write `{example}`")]
     OutOfRange {
         /// What was found.
         found: String,

@@ -115,17 +115,17 @@ impl Limits<Vec<Real>> for Range {
     }
 }
 
-/// A whole number.
+/// An integer.
 impl Limits<u64> for RangeInclusive<u64> {
     fn visit(self, walk: &mut impl Visitor, key: &'static str, value: &mut u64) {
-        walk.whole(key, *self.start(), *self.end(), value);
+        walk.integer(key, *self.start(), *self.end(), value);
     }
 }
 
-/// A whole number that counts things in memory.
+/// An integer as `usize`.
 impl Limits<usize> for RangeInclusive<u64> {
     fn visit(self, walk: &mut impl Visitor, key: &'static str, value: &mut usize) {
-        schema::whole_usize(walk, key, (*self.start(), *self.end()), value);
+        schema::integer_usize(walk, key, (*self.start(), *self.end()), value);
     }
 }
 

@@ -89,11 +89,11 @@ impl Visitor for Printer {
         self.line(key, &format!("[{}]", numbers.join(", ")));
     }
 
-    fn whole(&mut self, key: &'static str, _min: u64, _max: u64, value: &mut u64) {
+    fn integer(&mut self, key: &'static str, _min: u64, _max: u64, value: &mut u64) {
         self.line(key, &value.to_string());
     }
 
-    fn whole_or(
+    fn integer_or(
         &mut self,
         key: &'static str,
         word: &'static str,

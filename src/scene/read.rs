@@ -164,7 +164,7 @@ impl<'a> Reader<'a> {
         None
     }
 
-    fn parse_whole(&mut self, node: &Node, key: &str, (min, max): (u64, u64)) -> Option<u64> {
+    fn parse_integer(&mut self, node: &Node, key: &str, (min, max): (u64, u64)) -> Option<u64> {
         let Value::Integer(number) = node.value else {
             self.wrong_type(node, key, "an integer", "1");
             return None;
@@ -329,12 +329,12 @@ impl Visitor for Reader<'_> {
         *value = items.iter().filter_map(|item| self.parse_number(item, key, range)).collect();
     }
 
-    fn whole(&mut self, key: &'static str, min: u64, max: u64, value: &mut u64) {
-        let found = self.take(key).and_then(|node| self.parse_whole(node, key, (min, max)));
+    fn integer(&mut self, key: &'static str, min: u64, max: u64, value: &mut u64) {
+        let found = self.take(key).and_then(|node| self.parse_integer(node, key, (min, max)));
         *value = found.unwrap_or(0);
     }
 
-    fn whole_or(
+    fn integer_or(
         &mut self,
         key: &'static str,
         word: &'static str,
@@ -342,7 +342,7 @@ impl Visitor for Reader<'_> {
         value: &mut Option<u64>,
     ) {
         let node = self.take(key).filter(|node| !is_word(node, word));
-        *value = node.and_then(|node| self.parse_whole(node, key, (0, max)));
+        *value = node.and_then(|node| self.parse_integer(node, key, (0, max)));
     }
 
     fn flag(&mut self, key: &'static str, value: &mut bool) {

@@ -374,11 +374,11 @@ impl Visitor for Collector {
         self.add(key, Kind::Numbers(range, None));
     }
 
-    fn whole(&mut self, key: &'static str, min: u64, max: u64, _value: &mut u64) {
+    fn integer(&mut self, key: &'static str, min: u64, max: u64, _value: &mut u64) {
         self.add(key, Kind::Integer(min, max, None));
     }
 
-    fn whole_or(
+    fn integer_or(
         &mut self,
         key: &'static str,
         word: &'static str,

@@ -25,7 +25,7 @@ pub(crate) fn scene(walk: &mut impl Visitor, scene: &mut Scene) {
     walk.doc("Name of the scene; part of the name of its recordings.");
     walk.text("name", &mut scene.name);
     walk.doc("Seed of all random numbers. The same scene, seed and commands give the same bits.");
-    walk.whole("seed", 0, u64::MAX, &mut scene.seed);
+    walk.integer("seed", 0, u64::MAX, &mut scene.seed);
     walk.doc("Gravitational acceleration, in the world frame.");
     walk.vector("gravity", Quantity::any(&ACCELERATION), &mut scene.gravity);
     walk.doc("Time stepping.");
@@ -86,7 +86,7 @@ pub(crate) fn material(walk: &mut impl Visitor, material: &mut Material) {
 
 pub(crate) fn grains(walk: &mut impl Visitor, grains: &mut Grains) {
     walk.doc("Number of grains.");
-    whole_usize(walk, "count", (1, 200_000), &mut grains.count);
+    integer_usize(walk, "count", (1, 200_000), &mut grains.count);
     let radius = Quantity { dimension: &LENGTH, range: Range::AboveUpTo(0.0, LENGTH_MAX) };
     walk.doc("Smallest radius; radii are uniformly distributed.");
     walk.quantity("radius_min", radius, &mut grains.radius_min);
@@ -111,7 +111,7 @@ pub(crate) fn membrane(walk: &mut impl Visitor, membrane: &mut Membrane) {
     walk.doc("Radius of the hemisphere.");
     walk.quantity("radius", length, &mut membrane.radius);
     walk.doc("Subdivision frequency of the icosphere; must be even. 16 gives 1321 vertices.");
-    whole_usize(walk, "frequency", (2, 64), &mut membrane.frequency);
+    integer_usize(walk, "frequency", (2, 64), &mut membrane.frequency);
     walk.doc("Thickness.");
     walk.quantity("thickness", length, &mut membrane.thickness);
     material(walk, &mut membrane.material);
@@ -333,7 +333,7 @@ fn lockstep(walk: &mut impl Visitor, it: &mut Lockstep) {
     let chosen = walk.choice("lockstep", &known, current);
     (it.is_on, it.follows_clock) = (chosen == "wait_command", chosen == "external_clock");
     walk.doc("Ticks per command in lockstep.");
-    walk.whole("steps_per_command", 1, 1_000_000, &mut it.steps_per_command);
+    walk.integer("steps_per_command", 1, 1_000_000, &mut it.steps_per_command);
     let wall = Quantity::above_zero(&TIME);
     walk.doc("Wall-clock time to wait for a command in lockstep.");
     walk.quantity_or("command_timeout", "unlimited", wall, &mut it.timeout);
@@ -387,14 +387,14 @@ fn pick_and_lift(walk: &mut impl Visitor, it: &mut PickAndLift) {
 }
 
 /// An integer as `usize`.
-pub(crate) fn whole_usize(
+pub(crate) fn integer_usize(
     walk: &mut impl Visitor,
     key: &'static str,
     (min, max): (u64, u64),
     value: &mut usize,
 ) {
     let mut wide = *value as u64;
-    walk.whole(key, min, max, &mut wide);
+    walk.integer(key, min, max, &mut wide);
     *value = usize::try_from(wide).unwrap_or(usize::MAX);
 }
 

@@ -119,10 +119,10 @@ pub(crate) trait Visitor: Sized {
     fn plain_numbers(&mut self, key: &'static str, range: Range, value: &mut Vec<Real>);
 
     /// An integer.
-    fn whole(&mut self, key: &'static str, min: u64, max: u64, value: &mut u64);
+    fn integer(&mut self, key: &'static str, min: u64, max: u64, value: &mut u64);
 
     /// An integer, or `word` for none.
-    fn whole_or(
+    fn integer_or(
         &mut self,
         key: &'static str,
         word: &'static str,

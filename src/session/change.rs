@@ -4,7 +4,7 @@ use super::{Compiled, Session, no_forces};
 use crate::{
     base::{Tick, real::Wrench},
     command::change::{Change, Scope, SettledScene, TunableParameter},
-    cosim::{compile::retune, refused::ChangeError},
+    cosim::{change_error::ChangeError, compile::retune},
     physics::boundary::body::BodyMotion,
     scene::Object,
 };

@@ -16,7 +16,7 @@ use crate::{
         apply::{self, object_frame},
         change::Change,
     },
-    cosim::{rapier_world::TABLE_HALF, refused::ChangeError},
+    cosim::{change_error::ChangeError, rapier_world::TABLE_HALF},
     physics::boundary::shape::Aabb,
     snapshot::Snapshot,
     wire::{

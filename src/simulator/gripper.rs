@@ -8,7 +8,7 @@
 use super::{Simulator, World, goals::GoalId, services::Action};
 use crate::{
     command::{Command, change::Change},
-    cosim::refused::ChangeError,
+    cosim::change_error::ChangeError,
     snapshot::Snapshot,
     wire::{
         cdr::Cdr,

@@ -38,7 +38,7 @@ use self::{
 use crate::{
     base::real::Twist,
     command::{Command, change::Change},
-    cosim::refused::ChangeError,
+    cosim::change_error::ChangeError,
     io::server::{Outgoing, RequestId, ServiceRequest},
     physics::boundary::shape::Aabb,
     scene::{Scene, resource::FolderState},

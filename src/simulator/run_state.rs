@@ -3,7 +3,7 @@
 use super::{DecodeError, Simulator, World, failed, goals::GoalId, ok};
 use crate::{
     command::change::{Change, Scope},
-    cosim::refused::ChangeError,
+    cosim::change_error::ChangeError,
     io::server::RequestId,
     scene::resource::FORMATS,
     wire::{

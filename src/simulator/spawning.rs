@@ -11,7 +11,7 @@ use super::{
 };
 use crate::{
     command::change::Change,
-    cosim::{compile::body, refused::ChangeError},
+    cosim::{change_error::ChangeError, compile::body},
     scene::{
         Object,
         resource::{self, FolderState, ResourceError},

@@ -6,7 +6,7 @@ use jamgrip::{
         Command,
         change::{Change, Scope, SettledScene},
     },
-    cosim::{FLANGE, refused::ChangeError},
+    cosim::{FLANGE, change_error::ChangeError},
     scene::{Object, Shape},
     session::Session,
 };

@@ -4,7 +4,7 @@ use std::{path::Path, process::Command, time::Duration};
 
 use jamgrip::{
     command::change::Change,
-    cosim::refused::ChangeError,
+    cosim::change_error::ChangeError,
     io::server::{RequestId, ServiceRequest, ServiceSpec},
     ros::{
         node::RosNode,

@@ -13,7 +13,7 @@ use crate::{
         packing::{Boxed, Phase},
     },
     command::{Command, change::Change},
-    cosim::refused::ChangeError,
+    cosim::change_error::ChangeError,
     host::clock::{Stopwatch, wall_ns},
     node::plant::Plant,
     physics::{System, health::Diverged},

@@ -28,7 +28,7 @@ pub enum ChangeError {
     /// The object cannot be simulated.
     #[error("{0}")]
     Unusable(String),
-    /// The run was resumed in the middle, and its initial state is unknown.
+    /// The run was resumed, and its initial state is unknown.
     #[error("this run was resumed and its initial state is unknown: reset only the time")]
     StartUnknown,
     /// No scene is loaded.
