@@ -83,7 +83,7 @@ pub(crate) trait Keys: Section + Unset {
     fn unfit(&self) -> Vec<(&'static str, String, &'static str)>;
 }
 
-/// Reads a scene of another kind from layers of text.
+/// Reads a scene of an experiment from layers of text.
 ///
 /// # Errors
 /// As for `load`.
@@ -230,8 +230,8 @@ mod tests {
     #[test]
     fn all_errors_are_reported_in_the_order_of_the_text() {
         let text = "name: x\ngrains:\n  radius_min: -2 mm\n  radiusmax: 2 mm\n  count: many\n";
-        let complaint = error_text(text, &[]);
-        let lines: Vec<&str> = complaint.lines().collect();
+        let found = error_text(text, &[]);
+        let lines: Vec<&str> = found.lines().collect();
         let expected = [
             "x.yaml: object.shape: is missing",
             "x.yaml: object.position: is missing",
@@ -239,7 +239,7 @@ mod tests {
             "x.yaml:4:3: grains.radiusmax: unknown key; did you mean `radius_max`",
             "x.yaml:5:10: grains.count: expected an integer, found `many`",
         ];
-        assert_eq!(lines.len(), expected.len(), "{text}");
+        assert_eq!(lines.len(), expected.len(), "{found}");
         for (line, expected) in lines.iter().zip(expected) {
             assert!(line.starts_with(expected), "{line}\n{expected}");
         }

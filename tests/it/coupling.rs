@@ -124,7 +124,7 @@ fn momentum_changes_by_the_forces_of_flange_objects_and_gravity() {
 
 /// Grains and membrane have 16 times their inertia, but the flange accelerates the real mass.
 #[test]
-fn a_flange_accelerates_the_real_mass_of_heavier_grains() {
+fn a_flange_accelerates_the_real_mass_with_density_scaling() {
     check_momentum(16.0);
 }
 
