@@ -16,7 +16,7 @@ use crate::{
         membrane::{
             CARRIER_ID, FREE, MembraneMaterial, MembraneModel,
             bar::Bar,
-            mesh::{Mesh, MeshFault},
+            mesh::{Mesh, MeshError},
             pressure,
         },
         model::ChamberModel,
@@ -83,7 +83,7 @@ pub enum BeamError {
     Build(#[from] BuildError),
     /// The membrane is none.
     #[error(transparent)]
-    Mesh(#[from] MeshFault),
+    Mesh(#[from] MeshError),
 }
 
 /// The beam from its saved state, under vacuum.
@@ -138,7 +138,7 @@ pub(super) fn grow() -> Result<State, BeamError> {
     Ok(system.state)
 }
 
-fn membrane() -> Result<MembraneModel, MeshFault> {
+fn membrane() -> Result<MembraneModel, MeshError> {
     Ok(MembraneModel::new(Mesh::bar(&BAR)?, MEMBRANE))
 }
 

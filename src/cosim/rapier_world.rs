@@ -246,7 +246,7 @@ impl RapierWorld {
 /// Pose of an object's centre of mass where its scene puts it.
 pub fn centre_pose(object: &Object, bulk: &Bulk) -> Pose {
     let mut pose = object.pose;
-    pose.translation.vector += object.pose.rotation * bulk.centre_of_mass;
+    pose.translation.vector += object.pose.rotation * bulk.center_of_mass;
     pose
 }
 

@@ -78,7 +78,7 @@ pub struct BodyModel {
 /// The surface of a body, in its own frame.
 #[derive(Clone, Debug)]
 pub enum BodySurface {
-    /// A closed shape about the centre of mass.
+    /// A closed shape about the center of mass.
     Shape(Box<Surface>),
     /// Everything below z = 0.
     HalfSpace,

@@ -25,7 +25,7 @@ use crate::{
         boundary::{
             body::BodyMotion,
             motion::WallMotion,
-            shape::{Bulk, ShapeFault, Surface},
+            shape::{Bulk, ShapeError, Surface},
             wall::WallShape,
         },
         builder::{BuildError, Membrane, Vertices, Wall},
@@ -64,14 +64,14 @@ pub enum CompileError {
     },
     /// The bag cannot be meshed.
     #[error("membrane: {0}")]
-    Membrane(#[from] crate::physics::membrane::mesh::MeshFault),
+    Membrane(#[from] crate::physics::membrane::mesh::MeshError),
     /// An object's shape cannot be used.
     #[error("object `{name}`: {fault}")]
     Object {
         /// Its name.
         name: String,
         /// What is wrong with it.
-        fault: ShapeFault,
+        fault: ShapeError,
     },
     /// The parts of the gripper do not fit each other.
     #[error("gripper: {0}")]
@@ -269,7 +269,7 @@ pub fn critical_step_with(scene: &Scene, model: &Model, body: &BodyModel) -> Rea
     critical_step(scene, &model.membrane, &Laws::new(scene), std::slice::from_ref(body))
 }
 
-fn surface(shape: &Shape) -> Result<Surface, ShapeFault> {
+fn surface(shape: &Shape) -> Result<Surface, ShapeError> {
     Ok(match shape {
         Shape::Sphere { radius } => Surface::Sphere { radius: *radius },
         Shape::Box { size } => Surface::cuboid(size),

@@ -6,7 +6,7 @@
 
 use crate::{
     base::{Real, Vec3},
-    physics::membrane::mesh::{Mesh, MeshFault},
+    physics::membrane::mesh::{Mesh, MeshError},
 };
 
 /// A direction in which the lattice repeats itself, as the steps i, j that make one period.
@@ -39,7 +39,7 @@ impl Patch {
     ///
     /// # Errors
     /// If there are none.
-    pub(super) fn between(edge: Real, low: &Vec3, high: &Vec3) -> Result<Self, MeshFault> {
+    pub(super) fn between(edge: Real, low: &Vec3, high: &Vec3) -> Result<Self, MeshError> {
         let n = count(((high - low).norm() + low.norm()) / edge) + 2;
         let is_inside = |cell: (i32, i32)| {
             let at = place(cell, edge);

@@ -20,7 +20,7 @@ use crate::{
         membrane::{
             FREE, MembraneContact, MembraneModel,
             critical_step::critical_step_at,
-            mesh::{Mesh, MeshFault},
+            mesh::{Mesh, MeshError},
         },
         packing::{Room, first_scale, scatter, sphere_volume},
         state::Grains,
@@ -198,7 +198,7 @@ fn net(setup: &Setup, choice: Choice) -> super::scene::Net {
 }
 
 /// The membrane in its straight shape.
-fn membrane(setup: &Setup, choice: Choice) -> Result<MembraneModel, MeshFault> {
+fn membrane(setup: &Setup, choice: Choice) -> Result<MembraneModel, MeshError> {
     let size = &setup.cases[choice.size];
     let net = net(setup, choice);
     let mesh = Mesh::tube(size.radius, size.height, net.n_around, net.n_rows)?;

@@ -3,12 +3,12 @@
 pub use crate::base::real::Wrench;
 use crate::base::{Pose, Vec3, real::Twist};
 
-/// How a rigid body moves during the next substeps. The frame's origin is the centre of mass.
+/// How a rigid body moves during the next substeps. The frame's origin is the center of mass.
 #[derive(Clone, Copy, Debug)]
 pub struct BodyMotion {
     /// Pose in the world.
     pub pose: Pose,
-    /// Velocity of the centre of mass and angular velocity, world axes (m/s), (rad/s).
+    /// Velocity of the center of mass and angular velocity, world axes (m/s), (rad/s).
     pub twist: Twist,
 }
 

@@ -21,10 +21,10 @@ use parry::query::PointQueryWithLocation;
 use parry::shape::{TriMesh, TriMeshFlags, TrianglePointLocation};
 use parry::transformation::try_convex_hull;
 
-use super::shape::{Aabb, Bulk, ShapeFault, Signed};
+use super::shape::{Aabb, Bulk, ShapeError, Signed};
 use crate::base::{Mat3, Quat, Real, Vec3};
 
-/// A closed, outward oriented surface of triangles around its centre of mass.
+/// A closed, outward oriented surface of triangles around its center of mass.
 #[derive(Clone, Debug)]
 pub struct Polyhedron {
     tree: TriMesh,
@@ -32,17 +32,17 @@ pub struct Polyhedron {
     normals: Vec<Vec3>,
     bounding_radius: Real,
     volume: Real,
-    /// Centre of mass in the frame in which the shape was given (m).
-    centre_of_mass: Vec3,
-    /// ∫ x xᵀ dV about the centre of mass (m⁵).
+    /// Center of mass in the frame in which the shape was given (m).
+    center_of_mass: Vec3,
+    /// ∫ x xᵀ dV about the center of mass (m⁵).
     second_moment: Mat3,
 }
 
 impl Polyhedron {
     /// The convex hull of `points`.
-    pub(super) fn hull(points: &[Vec3]) -> Result<Self, ShapeFault> {
+    pub(super) fn hull(points: &[Vec3]) -> Result<Self, ShapeError> {
         check_finite(points)?;
-        let fault = ShapeFault::NoHull { n_points: points.len() };
+        let fault = ShapeError::NoHull { n_points: points.len() };
         let points: Vec<Vector> = points.iter().map(|&p| p.into()).collect();
         let (vertices, triangles) = try_convex_hull(&points).map_err(|_| fault.clone())?;
         let vertices: Vec<Vec3> = vertices.into_iter().map(Into::into).collect();
@@ -51,30 +51,30 @@ impl Polyhedron {
     }
 
     /// A mesh as given; equal vertices are merged.
-    pub(super) fn new(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Result<Self, ShapeFault> {
+    pub(super) fn new(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Result<Self, ShapeError> {
         check_finite(vertices)?;
         let n_vertices = vertices.len();
         for (t, triangle) in triangles.iter().enumerate() {
             if let Some(&vertex) = triangle.iter().find(|&&v| n_vertices <= v as usize) {
-                return Err(ShapeFault::NoSuchVertex { triangle: t, vertex, n_vertices });
+                return Err(ShapeError::NoSuchVertex { triangle: t, vertex, n_vertices });
             }
         }
         let (vertices, triangles) = merged(vertices, triangles);
         check_closed(&triangles)?;
-        let (volume, centre_of_mass, second_moment) = moments(&vertices, &triangles);
-        let size = vertices.iter().map(|v| (v - centre_of_mass).norm()).fold(0.0, Real::max);
+        let (volume, center_of_mass, second_moment) = moments(&vertices, &triangles);
+        let size = vertices.iter().map(|v| (v - center_of_mass).norm()).fold(0.0, Real::max);
         // Rounding of a flat surface with two sides stays far below this.
         if volume <= 1e-9 * size * size * size {
-            return Err(ShapeFault::InsideOut);
+            return Err(ShapeError::InsideOut);
         }
-        let centred: Vec<Vector> = vertices.iter().map(|v| (v - centre_of_mass).into()).collect();
-        let tree = TriMesh::with_flags(centred, triangles, TriMeshFlags::ORIENTED)
-            .map_err(|_| ShapeFault::InsideOut)?;
+        let centerd: Vec<Vector> = vertices.iter().map(|v| (v - center_of_mass).into()).collect();
+        let tree = TriMesh::with_flags(centerd, triangles, TriMeshFlags::ORIENTED)
+            .map_err(|_| ShapeError::InsideOut)?;
         let normal = |triangle: parry::shape::Triangle| {
             triangle.normal().map_or_else(Vec3::zeros, Vec3::from)
         };
         let normals = tree.triangles().map(normal).collect();
-        Ok(Self { tree, normals, bounding_radius: size, volume, centre_of_mass, second_moment })
+        Ok(Self { tree, normals, bounding_radius: size, volume, center_of_mass, second_moment })
     }
 
     /// Signed distance of `p` from the surface.
@@ -114,7 +114,7 @@ impl Polyhedron {
         sum.try_normalize(1e-12).unwrap_or(self.normals[face])
     }
 
-    /// Radius of a sphere about the centre of mass that holds all vertices (m).
+    /// Radius of a sphere about the center of mass that holds all vertices (m).
     pub fn bounding_radius(&self) -> Real {
         self.bounding_radius
     }
@@ -130,7 +130,7 @@ impl Polyhedron {
         aabb
     }
 
-    /// Vertices around the centre of mass (m).
+    /// Vertices around the center of mass (m).
     pub fn vertices(&self) -> impl Iterator<Item = Vec3> {
         self.tree.vertices().iter().map(|&v| v.into())
     }
@@ -151,16 +151,16 @@ impl Polyhedron {
         Bulk {
             volume: self.volume,
             mass: density * self.volume,
-            centre_of_mass: self.centre_of_mass,
+            center_of_mass: self.center_of_mass,
             principal_inertia: eigen.eigenvalues * density,
             principal_axes: Quat::from_rotation_matrix(&Rotation3::from_matrix_unchecked(axes)),
         }
     }
 }
 
-fn check_finite(vertices: &[Vec3]) -> Result<(), ShapeFault> {
+fn check_finite(vertices: &[Vec3]) -> Result<(), ShapeError> {
     match vertices.iter().position(|v| !v.iter().all(|x| x.is_finite())) {
-        Some(vertex) => Err(ShapeFault::NotFinite { vertex }),
+        Some(vertex) => Err(ShapeError::NotFinite { vertex }),
         None => Ok(()),
     }
 }
@@ -187,7 +187,7 @@ fn ordered(x: Real) -> i64 {
 }
 
 /// Every directed edge must meet exactly one that runs the other way.
-fn check_closed(triangles: &[[u32; 3]]) -> Result<(), ShapeFault> {
+fn check_closed(triangles: &[[u32; 3]]) -> Result<(), ShapeError> {
     let sides = |&[a, b, c]: &[u32; 3]| [(a, b), (b, c), (c, a)];
     let mut edges: Vec<(u32, u32)> = triangles.iter().flat_map(sides).collect();
     edges.sort_unstable();
@@ -200,10 +200,10 @@ fn check_closed(triangles: &[[u32; 3]]) -> Result<(), ShapeFault> {
             is_twice || edges.binary_search(&(b, a)).is_err()
         })
         .count();
-    if n_open == 0 && n_edges > 0 { Ok(()) } else { Err(ShapeFault::NotClosed { n_open, n_edges }) }
+    if n_open == 0 && n_edges > 0 { Ok(()) } else { Err(ShapeError::NotClosed { n_open, n_edges }) }
 }
 
-/// Volume, centre of mass, and ∫ x xᵀ dV about it.
+/// Volume, center of mass, and ∫ x xᵀ dV about it.
 fn moments(vertices: &[Vec3], triangles: &[[u32; 3]]) -> (Real, Vec3, Mat3) {
     // From a point of the surface rounding stays small however far away the origin is.
     let origin = vertices[0];
@@ -216,6 +216,6 @@ fn moments(vertices: &[Vec3], triangles: &[[u32; 3]]) -> (Real, Vec3, Mat3) {
         let squares = a * a.transpose() + b * b.transpose() + c * c.transpose();
         second += (squares + t * t.transpose()) * (s / 120.0);
     }
-    let centre = first / volume;
-    (volume, origin + centre, second - centre * centre.transpose() * volume)
+    let center = first / volume;
+    (volume, origin + center, second - center * center.transpose() * volume)
 }

@@ -1,6 +1,6 @@
 //! The surface of a rigid object: how far a point is from it, which way is out, what it weighs.
 //!
-//! Every surface stands in the frame of its centre of mass. Sphere, box, cylinder and capsule are
+//! Every surface stands in the frame of its center of mass. Sphere, box, cylinder and capsule are
 //! closed forms, axes along z: exact signed distances inside and outside, with a normal that is
 //! the gradient of the distance and does not depend on how small the distance is. Convex hulls
 //! and meshes are one thing here, a closed polyhedron.
@@ -12,7 +12,7 @@ use thiserror::Error;
 pub use super::polyhedron::Polyhedron;
 use crate::base::{Quat, Real, Vec3};
 
-/// A closed surface around its centre of mass.
+/// A closed surface around its center of mass.
 #[derive(Clone, Debug)]
 pub enum Surface {
     /// A sphere.
@@ -67,9 +67,9 @@ pub struct Bulk {
     pub volume: Real,
     /// Mass (kg).
     pub mass: Real,
-    /// Centre of mass in the frame in which the shape was given (m).
-    pub centre_of_mass: Vec3,
-    /// Principal moments of inertia about the centre of mass (kg m²).
+    /// Center of mass in the frame in which the shape was given (m).
+    pub center_of_mass: Vec3,
+    /// Principal moments of inertia about the center of mass (kg m²).
     pub principal_inertia: Vec3,
     /// Turns principal axes into the axes of the shape.
     pub principal_axes: Quat,
@@ -86,7 +86,7 @@ pub struct Aabb {
 
 /// Why points or triangles are no solid.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
-pub enum ShapeFault {
+pub enum ShapeError {
     /// Points in one plane, or too few.
     #[error("{n_points} points span no volume; a convex hull needs at least 4 that do")]
     NoHull {
@@ -141,19 +141,19 @@ impl Surface {
         Self::Capsule { radius, half_length: (0.5 * height - radius).max(0.0) }
     }
 
-    /// The convex hull of `points` (m), moved to its centre of mass.
+    /// The convex hull of `points` (m), moved to its center of mass.
     ///
     /// # Errors
     /// If the points span no volume.
-    pub fn convex_hull(points: &[Vec3]) -> Result<Self, ShapeFault> {
+    pub fn convex_hull(points: &[Vec3]) -> Result<Self, ShapeError> {
         Ok(Self::Polyhedron(Box::new(Polyhedron::hull(points)?)))
     }
 
-    /// A closed mesh with outward normals, moved to its centre of mass.
+    /// A closed mesh with outward normals, moved to its center of mass.
     ///
     /// # Errors
     /// If the mesh is open, inconsistent or inside out.
-    pub fn mesh(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Result<Self, ShapeFault> {
+    pub fn mesh(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Result<Self, ShapeError> {
         Ok(Self::Polyhedron(Box::new(Polyhedron::new(vertices, triangles)?)))
     }
 
@@ -171,7 +171,7 @@ impl Surface {
         }
     }
 
-    /// Radius of a sphere about the centre of mass that holds the surface (m).
+    /// Radius of a sphere about the center of mass that holds the surface (m).
     pub fn bounding_radius(&self) -> Real {
         match self {
             Self::Sphere { radius } => *radius,
@@ -219,7 +219,7 @@ impl Surface {
         Bulk {
             volume,
             mass,
-            centre_of_mass: Vec3::zeros(),
+            center_of_mass: Vec3::zeros(),
             principal_inertia: per_mass * mass,
             principal_axes: Quat::identity(),
         }
@@ -231,7 +231,7 @@ fn capsule_bulk(radius: Real, half_length: Real) -> (Real, Vec3) {
     let (r, l) = (radius, half_length);
     let (straight, round) = (2.0 * PI * r * r * l, 4.0 / 3.0 * PI * r * r * r);
     let tilt = straight * (r * r / 4.0 + l * l / 3.0)
-        // Half balls about their own centres of mass, moved out to l + 3/8 r.
+        // Half balls about their own centers of mass, moved out to l + 3/8 r.
         + round * (0.4 * r * r + l * l + 0.75 * l * r);
     let spin = straight * r * r / 2.0 + round * 0.4 * r * r;
     let volume = straight + round;
@@ -241,7 +241,7 @@ fn capsule_bulk(radius: Real, half_length: Real) -> (Real, Vec3) {
 #[inline]
 fn ball(p: &Vec3, radius: Real) -> Signed {
     let length = p.norm();
-    // At the very centre every way is out.
+    // At the very center every way is out.
     let normal = if length > 0.0 { p / length } else { Vec3::x() };
     Signed { distance: length - radius, normal }
 }

@@ -4,7 +4,7 @@ use rapier3d_f64::parry;
 
 use parry::shape::{Ball, Capsule, Cuboid, Cylinder, Shape};
 
-use super::shape::{ShapeFault, Signed, Surface};
+use super::shape::{ShapeError, Signed, Surface};
 use crate::base::random::{Random, Stream};
 use crate::base::{Real, Vec3};
 use crate::physics::membrane::mesh::Mesh;
@@ -24,11 +24,11 @@ fn points(n: usize, size: Real) -> Vec<Vec3> {
     (0..n).map(|_| Vec3::from_fn(|_, _| random.between(-size, size))).collect()
 }
 
-/// A cube with edge `size` about `centre`, its triangles outward.
-fn cube(size: Real, centre: Vec3) -> (Vec<Vec3>, Vec<[u32; 3]>) {
+/// A cube with edge `size` about `center`, its triangles outward.
+fn cube(size: Real, center: Vec3) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let corner = |k: u32| {
         let side = |bit: u32| if k >> bit & 1 == 1 { 0.5 * size } else { -0.5 * size };
-        centre + Vec3::new(side(0), side(1), side(2))
+        center + Vec3::new(side(0), side(1), side(2))
     };
     let faces =
         [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
@@ -119,7 +119,7 @@ fn normals_hold_at_no_distance() {
                 assert!((near.normal.norm() - 1.0).abs() < 1e-14);
             }
         }
-        // Oracle: even at the centre there is a way out of length one.
+        // Oracle: even at the center there is a way out of length one.
         assert!((surface.distance(&Vec3::zeros()).normal.norm() - 1.0).abs() < 1e-15);
     }
 }
@@ -163,11 +163,11 @@ fn a_fine_mesh_is_nearly_its_sphere() {
         }
         let (found, oracle) = (surface.bulk(1200.0), sphere.bulk(1200.0));
         // Oracle: closed forms. Tolerance: volume is missing up to 3·102 µm/R = 1.5 %, inertia 5/3
-        // of that; the centre is a symmetry point.
+        // of that; the center is a symmetry point.
         assert!((found.mass / oracle.mass - 1.0).abs() < 0.015, "{found:?}");
         let ratio = found.principal_inertia.component_div(&oracle.principal_inertia);
         assert!((ratio - Vec3::repeat(1.0)).amax() < 0.026, "{ratio}");
-        assert!(found.centre_of_mass.norm() < 1e-15);
+        assert!(found.center_of_mass.norm() < 1e-15);
         assert!((surface.bounding_radius() - 0.02).abs() < 1e-12);
     }
 }
@@ -198,10 +198,10 @@ fn bulk_is_that_of_the_closed_forms() {
 fn a_turned_and_shifted_box_keeps_its_inertia() {
     let size = Vec3::new(0.03, 0.05, 0.02);
     let turn = crate::base::Quat::from_euler_angles(0.4, -0.7, 1.1);
-    let centre = Vec3::new(0.3, -0.1, 0.2);
+    let center = Vec3::new(0.3, -0.1, 0.2);
     let (corners, triangles) = cube(1.0, Vec3::zeros());
     let corners: Vec<Vec3> =
-        corners.iter().map(|c| turn * c.component_mul(&size) + centre).collect();
+        corners.iter().map(|c| turn * c.component_mul(&size) + center).collect();
     let found = Surface::mesh(&corners, &triangles).unwrap().bulk(700.0);
     let oracle = Surface::cuboid(&size).bulk(700.0);
     let tensor = |turn: crate::base::Quat, i: &Vec3| {
@@ -213,7 +213,7 @@ fn a_turned_and_shifted_box_keeps_its_inertia() {
     // Oracle: the box's closed form, turned. Tolerance: rounding, with cancellation of the shift.
     assert!((found.mass / oracle.mass - 1.0).abs() < 1e-12);
     assert!(difference.amax() < 1e-12 * expected.amax(), "{difference}");
-    assert!((found.centre_of_mass - centre).norm() < 1e-14);
+    assert!((found.center_of_mass - center).norm() < 1e-14);
 }
 
 #[test]
@@ -222,14 +222,14 @@ fn no_solid_no_surface() {
     let fault = |triangles: &[[u32; 3]]| Surface::mesh(&vertices, triangles).unwrap_err();
     // Oracle: the one fault of each list.
     let turned: Vec<_> = triangles.iter().map(|&[a, b, c]| [a, c, b]).collect();
-    assert_eq!(fault(&turned), ShapeFault::InsideOut);
-    assert!(matches!(fault(&[[0, 1, 9]]), ShapeFault::NoSuchVertex { vertex: 9, .. }));
-    assert!(matches!(fault(&[]), ShapeFault::NotClosed { .. }));
+    assert_eq!(fault(&turned), ShapeError::InsideOut);
+    assert!(matches!(fault(&[[0, 1, 9]]), ShapeError::NoSuchVertex { vertex: 9, .. }));
+    assert!(matches!(fault(&[]), ShapeError::NotClosed { .. }));
     triangles.pop();
-    assert_eq!(fault(&triangles), ShapeFault::NotClosed { n_open: 3, n_edges: 33 });
+    assert_eq!(fault(&triangles), ShapeError::NotClosed { n_open: 3, n_edges: 33 });
     let flat: Vec<Vec3> = vertices.iter().map(|v| Vec3::new(v.x, v.y, 0.0)).collect();
-    assert_eq!(Surface::convex_hull(&flat).unwrap_err(), ShapeFault::NoHull { n_points: 8 });
-    assert!(matches!(Surface::convex_hull(&[]).unwrap_err(), ShapeFault::NoHull { .. }));
+    assert_eq!(Surface::convex_hull(&flat).unwrap_err(), ShapeError::NoHull { n_points: 8 });
+    assert!(matches!(Surface::convex_hull(&[]).unwrap_err(), ShapeError::NoHull { .. }));
 }
 
 #[test]

@@ -11,7 +11,7 @@ use crate::{
     base::{Real, Vec3},
     physics::membrane::{
         contact_geometry::{Feature, closest_on_triangle},
-        mesh::{Mesh, MeshFault},
+        mesh::{Mesh, MeshError},
     },
 };
 
@@ -19,7 +19,7 @@ use crate::{
 #[derive(Clone, Debug, PartialEq)]
 pub struct Triangles {
     mesh: Arc<Mesh>,
-    /// Centre of a sphere around each triangle (m), and its radius (m).
+    /// Center of a sphere around each triangle (m), and its radius (m).
     spheres: Vec<(Vec3, Real)>,
     bounding_radius: Real,
 }
@@ -43,7 +43,7 @@ impl Triangles {
     ///
     /// # Errors
     /// If the facets are not a consistently oriented surface with rims that do not touch.
-    pub fn new(vertices: Vec<Vec3>, facets: Vec<[u32; 3]>) -> Result<Self, MeshFault> {
+    pub fn new(vertices: Vec<Vec3>, facets: Vec<[u32; 3]>) -> Result<Self, MeshError> {
         Ok(Self::of(Arc::new(Mesh::new(vertices, facets)?)))
     }
 
@@ -51,9 +51,9 @@ impl Triangles {
     pub fn of(mesh: Arc<Mesh>) -> Self {
         let sphere = |triangle: &[u32; 3]| {
             let [a, b, c] = triangle.map(|v| mesh.positions[v as usize]);
-            let centre = (a + b + c) / 3.0;
-            let radius = [a, b, c].iter().map(|p| (p - centre).norm()).fold(0.0, Real::max);
-            (centre, radius)
+            let center = (a + b + c) / 3.0;
+            let radius = [a, b, c].iter().map(|p| (p - center).norm()).fold(0.0, Real::max);
+            (center, radius)
         };
         let spheres = mesh.triangles.iter().map(sphere).collect();
         let bounding_radius = mesh.positions.iter().map(|p| p.norm()).fold(0.0, Real::max);
@@ -70,7 +70,7 @@ impl Triangles {
         self.bounding_radius
     }
 
-    /// A sphere around a triangle: centre (m) and radius (m), wall frame. For lists of candidates.
+    /// A sphere around a triangle: center (m) and radius (m), wall frame. For lists of candidates.
     pub fn sphere_around(&self, triangle: u32) -> (Vec3, Real) {
         self.spheres[triangle as usize]
     }
@@ -94,7 +94,7 @@ impl Triangles {
     /// vertex that is the closest part of all triangles around it. These are the contacts of a
     /// grain of that radius.
     pub fn within(&self, point: &Vec3, reach: Real) -> Vec<Nearest> {
-        let is_close = |(centre, radius): &(Vec3, Real)| (point - centre).norm() < reach + radius;
+        let is_close = |(center, radius): &(Vec3, Real)| (point - center).norm() < reach + radius;
         let candidates = (0..).zip(&self.spheres).filter(|(_, sphere)| is_close(sphere));
         let found: Vec<Nearest> = candidates
             .map(|(t, _)| self.nearest(t, point))
@@ -192,7 +192,7 @@ mod tests {
             assert!((found[0].normal - Vec3::z()).norm() < 1e-14);
         }
         assert!((surface.bounding_radius() - 2.0).abs() < 1e-14);
-        let (centre, radius) = surface.sphere_around(0);
-        assert!(radius < 0.6 && centre.z == 0.0);
+        let (center, radius) = surface.sphere_around(0);
+        assert!(radius < 0.6 && center.z == 0.0);
     }
 }

@@ -139,7 +139,7 @@ impl WallShape {
     }
 }
 
-/// From the axis or the centre there is no nearest point of the wall.
+/// From the axis or the center there is no nearest point of the wall.
 #[inline(always)]
 fn inside(radius: Real, outward: Vec3) -> Option<(Real, Vec3)> {
     let length = outward.norm();

@@ -2,7 +2,7 @@
 
 use crate::{
     base::Real,
-    physics::{boundary::motion::BadMotion, membrane::mesh::MeshFault},
+    physics::{boundary::motion::BadMotion, membrane::mesh::MeshError},
 };
 
 /// Why parts do not make a system: where, what value, which limit, and what to do.
@@ -129,7 +129,7 @@ pub enum BuildError {
         /// The membrane.
         membrane: usize,
         /// What is wrong.
-        error: MeshFault,
+        error: MeshError,
     },
     /// A rim that no wall holds.
     #[error(

@@ -5,7 +5,7 @@ use crate::{
     base::{Pose, Vec3},
     physics::membrane::{
         FREE, MembraneContact, MembraneMaterial, MembraneModel,
-        mesh::{Mesh, MeshFault},
+        mesh::{Mesh, MeshError},
         shape::MembraneShape,
     },
 };
@@ -38,7 +38,7 @@ impl Membrane {
     ///
     /// # Errors
     /// If the shape is no surface.
-    pub fn new(shape: &MembraneShape, material: MembraneMaterial) -> Result<Self, MeshFault> {
+    pub fn new(shape: &MembraneShape, material: MembraneMaterial) -> Result<Self, MeshError> {
         Ok(Self::of(MembraneModel::new(shape.mesh()?, material)))
     }
 
@@ -50,7 +50,7 @@ impl Membrane {
         shape: &MembraneShape,
         pose: &Pose,
         material: MembraneMaterial,
-    ) -> Result<Self, MeshFault> {
+    ) -> Result<Self, MeshError> {
         let Mesh { mut positions, triangles, .. } = shape.mesh()?;
         positions.iter_mut().for_each(|p| *p = pose.rotation * *p + pose.translation.vector);
         Ok(Self::of(MembraneModel::new(Mesh::new(positions, triangles)?, material)))

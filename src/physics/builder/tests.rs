@@ -151,8 +151,8 @@ fn several_membranes_share_a_system() {
     assert!((membrane.mass() / mass - 4.0 / 3.0).abs() < 1e-12);
     assert_eq!((first.start, first.end, second.end), (0, second.start, membrane.mesh.n_vertices()));
     let positions = &system.state.membrane.positions[second];
-    let centre = positions.iter().sum::<Vec3>() / positions.len() as Real;
-    assert!((centre - pose.translation.vector).norm() < 1e-12);
+    let center = positions.iter().sum::<Vec3>() / positions.len() as Real;
+    assert!((center - pose.translation.vector).norm() < 1e-12);
 }
 
 #[test]

@@ -31,7 +31,7 @@ use crate::{
     },
 };
 
-/// Cosine of the angle to its former normal within which a patch is recognised (45°).
+/// Cosine of the angle to its former normal within which a patch is recognized (45°).
 const SAME_HISTORY: Real = 0.7;
 /// Squared distances that differ by less than this share are equal.
 const EQUAL: Real = 1e-9;

@@ -183,7 +183,7 @@ pub fn on_walls(model: &Model, controls: &Controls, state: &State, scratch: &mut
         let holder = model.membrane.holders[rim[0] as usize];
         if holder != FREE {
             let lid = pressure::lid_area_vector(rim, positions);
-            add(holder as usize, &pressure::lid_centre(rim, positions), lid * state.gauge);
+            add(holder as usize, &pressure::lid_center(rim, positions), lid * state.gauge);
         }
     }
 }

@@ -175,7 +175,7 @@ mod tests {
     #[test]
     fn elastic_impact_is_hertzian() {
         // Oracle: Hertz, ξ_max = (5 m* v² / 4 k)^(2/5), T = 2.943275 ξ_max / v.
-        // Tolerance 0.1 %: 2000 steps per collision leave a discretisation error of that order.
+        // Tolerance 0.1 %: 2000 steps per collision leave a discretization error of that order.
         let law = law(0.0, 0.0);
         let (radius, v): (Real, Real) = (2e-3, 1.0);
         let mass = 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3) * grain().density / 2.0;

@@ -16,14 +16,14 @@
 use std::ops::Range;
 
 use super::icosphere::coherent;
-use super::mesh::{Mesh, MeshFault, index};
+use super::mesh::{Mesh, MeshError, index};
 use super::tube::cosine_and_sine;
 use crate::base::{Real, Vec3};
 
 /// Places per side of a ring within another: one less at either end.
 const FEWER: usize = 2;
 
-/// Size and net of a bar along z, centred on the origin.
+/// Size and net of a bar along z, centerd on the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bar {
     /// Width of each side (m).
@@ -43,10 +43,10 @@ impl Mesh {
     ///
     /// # Errors
     /// If there are fewer than two vertices on a side or fewer than two rows.
-    pub fn bar(bar: &Bar) -> Result<Self, MeshFault> {
+    pub fn bar(bar: &Bar) -> Result<Self, MeshError> {
         let Bar { length, n_side, n_rows, .. } = *bar;
         if n_side < 2 || n_rows < 2 {
-            return Err(MeshFault::TooFew { n_around: 4 * n_side, n_rows });
+            return Err(MeshError::TooFew { n_around: 4 * n_side, n_rows });
         }
         let mut net = Net { bar, positions: Vec::new(), triangles: Vec::new() };
         let z_of = |row: usize| length * (row as Real / (n_rows - 1) as Real - 0.5);
@@ -144,7 +144,7 @@ impl Net<'_> {
 }
 
 /// The point `part`/`whole` of the way around a square with rounded corners, from the middle of a side,
-/// counterclockwise: x and y (m); its sides are `half` (m) from the centre.
+/// counterclockwise: x and y (m); its sides are `half` (m) from the center.
 fn on_contour(part: usize, whole: usize, half: Real, radius: Real) -> (Real, Real) {
     let quarter = whole / 4;
     let straight = half - radius;

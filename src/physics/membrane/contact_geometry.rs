@@ -16,7 +16,7 @@
 use crate::base::{
     Real, Vec3,
     lanes::{Lanes, Mask, Vector},
-    real::whole,
+    real::to_index,
 };
 
 /// Where a weight counts as zero: far above rounding, far below anything that can be seen.
@@ -46,7 +46,7 @@ impl Feature {
             Feature::Edge(2),
             Feature::Face,
         ];
-        ALL[whole(number)]
+        ALL[to_index(number)]
     }
 
     /// Face 3, edge 2, vertex 1: of contacts with neighbouring triangles the highest stands.

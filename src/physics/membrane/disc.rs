@@ -1,4 +1,4 @@
-//! A flat disc of nearly equilateral triangles: a centre and rings around it.
+//! A flat disc of nearly equilateral triangles: a center and rings around it.
 //!
 //! Ring k has 6 k vertices at the radius k R/n. In each sixth, k vertices of a ring face k − 1 of
 //! the ring within:
@@ -8,11 +8,11 @@
 //!             \ / \ /         edge across          R/n                    to 1.45 R/n
 //!   ring 1     o---o          the longest lie across large rings at the ends of a sixth
 //!               \ /
-//!   centre       o
+//!   center       o
 //! ```
 
 use super::icosphere::coherent;
-use super::mesh::{Mesh, MeshFault, index};
+use super::mesh::{Mesh, MeshError, index};
 use super::tube::cosine_and_sine;
 use crate::base::{Real, Vec3};
 
@@ -21,21 +21,21 @@ const N_SIXTHS: usize = 6;
 
 impl Mesh {
     /// A flat disc of `radius` (m) around the origin in the plane z = 0, its normals along z, with
-    /// `n_rings` rings of vertices around the centre: 1 + 3 n (n + 1) vertices, 6 n of them on the
+    /// `n_rings` rings of vertices around the center: 1 + 3 n (n + 1) vertices, 6 n of them on the
     /// rim, and 6 n² triangles.
     ///
     /// # Errors
     /// If there is no ring.
-    pub fn disc(radius: Real, n_rings: usize) -> Result<Self, MeshFault> {
+    pub fn disc(radius: Real, n_rings: usize) -> Result<Self, MeshError> {
         if n_rings == 0 {
-            return Err(MeshFault::TooFewRings { n_rings });
+            return Err(MeshError::TooFewRings { n_rings });
         }
         let mut positions = vec![Vec3::zeros()];
         for ring in 1..=n_rings {
-            let from_centre = radius * ring as Real / n_rings as Real;
+            let from_center = radius * ring as Real / n_rings as Real;
             for place in 0..N_SIXTHS * ring {
                 let (cosine, sine) = cosine_and_sine(place as Real / (N_SIXTHS * ring) as Real);
-                positions.push(Vec3::new(from_centre * cosine, from_centre * sine, 0.0));
+                positions.push(Vec3::new(from_center * cosine, from_center * sine, 0.0));
             }
         }
         // Rings before this one have 6 (1 + 2 + …) vertices.
@@ -99,6 +99,6 @@ mod tests {
                 assert!((1.0 - 1e-12..longest).contains(&share), "{n}: {share}");
             }
         }
-        assert_eq!(Mesh::disc(1.0, 0), Err(MeshFault::TooFewRings { n_rings: 0 }));
+        assert_eq!(Mesh::disc(1.0, 0), Err(MeshError::TooFewRings { n_rings: 0 }));
     }
 }

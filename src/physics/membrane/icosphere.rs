@@ -8,7 +8,7 @@
 
 use std::collections::BTreeMap;
 
-use super::mesh::{Mesh, MeshFault, index};
+use super::mesh::{Mesh, MeshError, index};
 use crate::base::{Real, Vec3};
 
 /// A point of a face of the icosahedron: corners with their whole-number weights, ascending.
@@ -20,9 +20,9 @@ impl Mesh {
     ///
     /// # Errors
     /// If the frequency is odd or zero.
-    pub fn half_icosphere(radius: Real, frequency: usize) -> Result<Self, MeshFault> {
+    pub fn half_icosphere(radius: Real, frequency: usize) -> Result<Self, MeshError> {
         if frequency == 0 || !frequency.is_multiple_of(2) {
-            return Err(MeshFault::Frequency { frequency });
+            return Err(MeshError::Frequency { frequency });
         }
         let (positions, triangles) = geodesic(radius, frequency);
         let is_low = |triangle: &[u32; 3]| triangle.iter().all(|&v| positions[v as usize].z <= 0.0);
@@ -35,23 +35,23 @@ impl Mesh {
     ///
     /// # Errors
     /// If the frequency is zero.
-    pub fn icosphere(radius: Real, frequency: usize) -> Result<Self, MeshFault> {
+    pub fn icosphere(radius: Real, frequency: usize) -> Result<Self, MeshError> {
         if frequency == 0 {
-            return Err(MeshFault::Frequency { frequency });
+            return Err(MeshError::Frequency { frequency });
         }
         let (positions, triangles) = geodesic(radius, frequency);
         let (positions, triangles) = coherent(&positions, triangles);
         Self::new(positions, triangles)
     }
 
-    /// A flat hexagon of equilateral triangles with sides `edge`, `rings` deep around its centre,
+    /// A flat hexagon of equilateral triangles with sides `edge`, `rings` deep around its center,
     /// in the plane z = 0 with normals along +z.
     ///
     /// # Errors
     /// If it has no ring.
-    pub fn hexagonal_patch(edge: Real, rings: usize) -> Result<Self, MeshFault> {
+    pub fn hexagonal_patch(edge: Real, rings: usize) -> Result<Self, MeshError> {
         if rings == 0 {
-            return Err(MeshFault::Frequency { frequency: rings });
+            return Err(MeshError::Frequency { frequency: rings });
         }
         let rows = 2 * rings;
         let is_inside = |q: usize, r: usize| (rings..=3 * rings).contains(&(q + r));

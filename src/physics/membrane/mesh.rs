@@ -93,7 +93,7 @@ pub struct Mesh {
 
 /// Why triangles do not make a usable surface.
 #[derive(Clone, Debug, Error, PartialEq)]
-pub enum MeshFault {
+pub enum MeshError {
     /// A vertex index past the end.
     #[error("triangle {triangle} names vertex {vertex}, but there are only {n_vertices} vertices")]
     NoSuchVertex {
@@ -189,7 +189,7 @@ impl Mesh {
     ///
     /// # Errors
     /// If the triangles are no consistently oriented surface with rims that do not touch.
-    pub fn new(positions: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Result<Self, MeshFault> {
+    pub fn new(positions: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Result<Self, MeshError> {
         check_triangles(&positions, &triangles)?;
         let sides = sorted_sides(&triangles);
         let (inner, outer) = pair_sides(&sides)?;
@@ -312,16 +312,16 @@ fn triangles_of_vertex(n_vertices: usize, triangles: &[[u32; 3]]) -> Incidence {
     Incidence::new(n_vertices, &pairs)
 }
 
-fn check_triangles(positions: &[Vec3], triangles: &[[u32; 3]]) -> Result<(), MeshFault> {
+fn check_triangles(positions: &[Vec3], triangles: &[[u32; 3]]) -> Result<(), MeshError> {
     let n_vertices = positions.len();
     if let Some(vertex) = positions.iter().position(|p| !p.iter().all(|x| x.is_finite())) {
-        return Err(MeshFault::NotFinite { vertex });
+        return Err(MeshError::NotFinite { vertex });
     }
     let mut is_used = vec![false; n_vertices];
     for (t, triangle) in triangles.iter().enumerate() {
         for &vertex in triangle {
             if n_vertices <= vertex as usize {
-                return Err(MeshFault::NoSuchVertex { triangle: t, vertex, n_vertices });
+                return Err(MeshError::NoSuchVertex { triangle: t, vertex, n_vertices });
             }
             is_used[vertex as usize] = true;
         }
@@ -329,11 +329,11 @@ fn check_triangles(positions: &[Vec3], triangles: &[[u32; 3]]) -> Result<(), Mes
         let longest = (b - a).norm_squared().max((c - a).norm_squared());
         // A height of 10⁻¹² of the side is rounding, not shape.
         if (b - a).cross(&(c - a)).norm() <= 1e-12 * longest {
-            return Err(MeshFault::NoArea { triangle: t });
+            return Err(MeshError::NoArea { triangle: t });
         }
     }
     match is_used.iter().position(|used| !used) {
-        Some(vertex) => Err(MeshFault::Unused { vertex }),
+        Some(vertex) => Err(MeshError::Unused { vertex }),
         None => Ok(()),
     }
 }
@@ -357,14 +357,14 @@ fn sorted_sides(triangles: &[[u32; 3]]) -> Vec<Side> {
 }
 
 /// Sides that meet, as [running up, running down], and sides left alone.
-fn pair_sides(sides: &[Side]) -> Result<(Vec<[Side; 2]>, Vec<Side>), MeshFault> {
+fn pair_sides(sides: &[Side]) -> Result<(Vec<[Side; 2]>, Vec<Side>), MeshError> {
     let (mut inner, mut outer) = (Vec::new(), Vec::new());
     for group in sides.chunk_by(|a, b| (a.low, a.high) == (b.low, b.high)) {
         match *group {
             [side] => outer.push(side),
             [up, down] if !up.runs_down && down.runs_down => inner.push([up, down]),
             [a, b] => {
-                return Err(MeshFault::Orientation {
+                return Err(MeshError::Orientation {
                     from: a.low,
                     to: a.high,
                     first: a.triangle as usize,
@@ -373,7 +373,7 @@ fn pair_sides(sides: &[Side]) -> Result<(Vec<[Side; 2]>, Vec<Side>), MeshFault> 
             }
             _ => {
                 let (from, to) = (group[0].low, group[0].high);
-                return Err(MeshFault::Branching { from, to, count: group.len() });
+                return Err(MeshError::Branching { from, to, count: group.len() });
             }
         }
     }
@@ -386,12 +386,12 @@ fn rim_loops(
     n_vertices: usize,
     triangles: &[[u32; 3]],
     outer: &[Side],
-) -> Result<Vec<Vec<u32>>, MeshFault> {
+) -> Result<Vec<Vec<u32>>, MeshError> {
     let mut before = vec![NONE; n_vertices];
     for side in outer {
         let [from, to] = ends(&triangles[side.triangle as usize], side.place as usize);
         if before[to as usize] != NONE {
-            return Err(MeshFault::TwoRims { vertex: to });
+            return Err(MeshError::TwoRims { vertex: to });
         }
         before[to as usize] = from;
     }

@@ -2,7 +2,7 @@
 
 use super::{
     Link, MembraneModel,
-    mesh::{Mesh, MeshFault, index},
+    mesh::{Mesh, MeshError, index},
 };
 use crate::base::Real;
 
@@ -11,7 +11,7 @@ impl Mesh {
     ///
     /// # Errors
     /// None that the mesh did not have before.
-    pub fn inside_out(self) -> Result<Self, MeshFault> {
+    pub fn inside_out(self) -> Result<Self, MeshError> {
         let turned = self.triangles.into_iter().map(|[a, b, c]| [a, c, b]).collect();
         Self::new(self.positions, turned)
     }
@@ -20,7 +20,7 @@ impl Mesh {
     ///
     /// # Errors
     /// None that the meshes did not have before.
-    pub fn joined(self, other: &Self) -> Result<Self, MeshFault> {
+    pub fn joined(self, other: &Self) -> Result<Self, MeshError> {
         let first = index(self.n_vertices());
         let Self { mut positions, mut triangles, .. } = self;
         positions.extend_from_slice(&other.positions);
@@ -47,7 +47,7 @@ impl MembraneModel {
     ///
     /// # Errors
     /// None that the meshes did not have before.
-    pub fn joined(mut self, other: &Self) -> Result<Self, MeshFault> {
+    pub fn joined(mut self, other: &Self) -> Result<Self, MeshError> {
         let bends_by_first_areas = self.bends_by_first_areas();
         let constants = |of: &Self| {
             [of.material.bending_stiffness, of.material.bending_damping].map(Real::to_bits)

@@ -18,14 +18,14 @@ use crate::base::{Real, Vec3};
 
 /// Volume inside membrane and lids (m³).
 pub fn volume(mesh: &Mesh, positions: &[Vec3]) -> Real {
-    let origin = mesh.rims.first().map_or(positions[0], |rim| lid_centre(rim, positions));
+    let origin = mesh.rims.first().map_or(positions[0], |rim| lid_center(rim, positions));
     let mut six_volumes = 0.0;
     for triangle in &mesh.triangles {
         let [a, b, c] = triangle.map(|v| positions[v as usize] - origin);
         six_volumes += a.dot(&b.cross(&c));
     }
     for rim in mesh.rims.iter().skip(1) {
-        let height = lid_centre(rim, positions) - origin;
+        let height = lid_center(rim, positions) - origin;
         six_volumes += 2.0 * height.dot(&lid_area_vector(rim, positions));
     }
     six_volumes / 6.0
@@ -42,13 +42,13 @@ pub fn volume_gradient(mesh: &Mesh, positions: &[Vec3]) -> Vec<Vec3> {
         }
     }
     for rim in &mesh.rims {
-        let centre = lid_centre(rim, positions);
+        let center = lid_center(rim, positions);
         let to_each = lid_area_vector(rim, positions) / (3.0 * rim.len() as Real);
         for (from, to) in rim_edges(rim) {
-            let sixth = (positions[from] - centre).cross(&(positions[to] - centre)) / 6.0;
+            let sixth = (positions[from] - center).cross(&(positions[to] - center)) / 6.0;
             gradient[from] += sixth;
             gradient[to] += sixth;
-            // The centre's own third is carried by the rim, whose mean it is.
+            // The center's own third is carried by the rim, whose mean it is.
             gradient[from] += to_each;
         }
     }
@@ -62,16 +62,16 @@ pub fn area(mesh: &Mesh, positions: &[Vec3]) -> Real {
 
 /// Area vector of the lid on a rim, outward (m²): times the gauge pressure, the air's force on it.
 pub fn lid_area_vector(rim: &[u32], positions: &[Vec3]) -> Vec3 {
-    let centre = lid_centre(rim, positions);
+    let center = lid_center(rim, positions);
     let mut twice = Vec3::zeros();
     for (from, to) in rim_edges(rim) {
-        twice += (positions[from] - centre).cross(&(positions[to] - centre));
+        twice += (positions[from] - center).cross(&(positions[to] - center));
     }
     0.5 * twice
 }
 
 /// Mean of a rim's vertices (m).
-pub fn lid_centre(rim: &[u32], positions: &[Vec3]) -> Vec3 {
+pub fn lid_center(rim: &[u32], positions: &[Vec3]) -> Vec3 {
     let sum: Vec3 = rim.iter().map(|&v| positions[v as usize]).sum();
     sum / rim.len() as Real
 }

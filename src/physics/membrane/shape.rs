@@ -2,7 +2,7 @@
 
 use super::{
     bar::Bar,
-    mesh::{Mesh, MeshFault},
+    mesh::{Mesh, MeshError},
 };
 use crate::base::{Real, Vec3};
 
@@ -23,7 +23,7 @@ pub enum MembraneShape {
         /// Parts into which each edge of the icosahedron is cut.
         frequency: usize,
     },
-    /// A cylinder around z, centred on the origin, with two rims.
+    /// A cylinder around z, centerd on the origin, with two rims.
     Tube {
         /// Radius (m).
         radius: Real,
@@ -34,13 +34,13 @@ pub enum MembraneShape {
         /// Rows.
         n_rows: usize,
     },
-    /// A closed bar along z with a square cross-section, centred on the origin.
+    /// A closed bar along z with a square cross-section, centerd on the origin.
     Bar(Bar),
     /// A flat disc around the origin with its normal along z and one rim.
     Disc {
         /// Radius (m).
         radius: Real,
-        /// Rings of vertices around the centre.
+        /// Rings of vertices around the center.
         n_rings: usize,
     },
     /// Any surface of triangles, for example from a file.
@@ -57,7 +57,7 @@ impl MembraneShape {
     ///
     /// # Errors
     /// If numbers of vertices are too small or triangles are no surface.
-    pub fn mesh(&self) -> Result<Mesh, MeshFault> {
+    pub fn mesh(&self) -> Result<Mesh, MeshError> {
         match self {
             Self::HalfIcosphere { radius, frequency } => Mesh::half_icosphere(*radius, *frequency),
             Self::Icosphere { radius, frequency } => Mesh::icosphere(*radius, *frequency),

@@ -13,11 +13,11 @@
 //! Sines and cosines are summed here from their series, so that every machine builds the same bits.
 
 use super::icosphere::coherent;
-use super::mesh::{Mesh, MeshFault, index};
+use super::mesh::{Mesh, MeshError, index};
 use crate::base::{Real, Vec3};
 
 impl Mesh {
-    /// A tube of `radius` and `height` (m) around the z axis, centred on the origin, with `n_rows`
+    /// A tube of `radius` and `height` (m) around the z axis, centerd on the origin, with `n_rows`
     /// rows of `n_around` vertices. Both ends are open.
     ///
     /// # Errors
@@ -27,9 +27,9 @@ impl Mesh {
         height: Real,
         n_around: usize,
         n_rows: usize,
-    ) -> Result<Self, MeshFault> {
+    ) -> Result<Self, MeshError> {
         if n_around < 3 || n_rows < 2 {
-            return Err(MeshFault::TooFew { n_around, n_rows });
+            return Err(MeshError::TooFew { n_around, n_rows });
         }
         let mut positions = Vec::with_capacity(n_around * n_rows);
         for row in 0..n_rows {

@@ -3,7 +3,7 @@
 //! Grains are numbered along a Z-order curve through cubic cells. What a pair needs of its two grains then
 //! lies in few cache lines, however large the packing; grains that wander off later only cost time.
 
-use crate::base::{Real, Vec3, real::whole};
+use crate::base::{Real, Vec3, real::to_index};
 
 /// Cells along an edge that the curve resolves.
 const N_CELLS: Real = 1024.0;
@@ -12,7 +12,7 @@ const N_CELLS: Real = 1024.0;
 pub fn along_curve(positions: &[Vec3], cell: Real) -> Vec<usize> {
     let low = positions.iter().fold(Vec3::repeat(Real::INFINITY), |low, it| low.inf(it));
     let code = |position: &Vec3| {
-        let cells = (position - low).map(|x| whole((x / cell).clamp(0.0, N_CELLS - 1.0)));
+        let cells = (position - low).map(|x| to_index((x / cell).clamp(0.0, N_CELLS - 1.0)));
         interleaved(cells.x) | interleaved(cells.y) << 1 | interleaved(cells.z) << 2
     };
     let mut order: Vec<usize> = (0..positions.len()).collect();

@@ -94,10 +94,10 @@ impl Room {
             Self::Box { .. } | Self::Periodic { .. } => true,
             Self::Tube { radius, .. } => place.xy().norm() <= radius - margin,
             Self::Shell { inner, outer } => {
-                let from_centre = place.norm();
+                let from_center = place.norm();
                 // A ball has no inner wall to keep away from.
                 let closest = if *inner > 0.0 { inner + margin } else { 0.0 };
-                (closest..=outer - margin).contains(&from_centre)
+                (closest..=outer - margin).contains(&from_center)
             }
         };
         is_inside.then_some(place)
@@ -130,7 +130,7 @@ pub fn scatter(
     Ok(places)
 }
 
-/// Spheres by the cell of their centre; a cell is as wide as the largest sphere.
+/// Spheres by the cell of their center; a cell is as wide as the largest sphere.
 struct Cells {
     width: Vec3,
     /// Number of cells along each edge of a periodic box.

@@ -1,6 +1,6 @@
 //! Meshes: published numbers, neighbours, and what is refused.
 
-use super::super::mesh::{Mesh, MeshFault, NONE, area_normal};
+use super::super::mesh::{Mesh, MeshError, NONE, area_normal};
 use super::super::pressure;
 use crate::base::{Real, Vec3};
 
@@ -19,7 +19,7 @@ fn meshes_have_the_published_numbers() {
     for (v, position) in half.positions.iter().enumerate() {
         // Oracle: construction; the rim lies exactly in the plane, all else strictly below.
         assert!(if half.is_on_rim[v] { position.z.to_bits() == 0 } else { position.z < 0.0 });
-        // Oracle: construction. Tolerance: rounding of a normalised vector.
+        // Oracle: construction. Tolerance: rounding of a normalized vector.
         assert!((position.norm() - 0.04).abs() < 1e-16, "vertex {v} off the sphere");
     }
     let edge_mean =
@@ -36,9 +36,9 @@ fn length(mesh: &Mesh, edge: &[u32; 2]) -> Real {
 fn normals_point_out_and_the_rim_runs_around_the_lid() {
     let mesh = Mesh::half_icosphere(0.04, 8).unwrap();
     for triangle in &mesh.triangles {
-        let centre: Vec3 = triangle.iter().map(|&v| mesh.positions[v as usize]).sum();
+        let center: Vec3 = triangle.iter().map(|&v| mesh.positions[v as usize]).sum();
         // Oracle: a sphere about the origin has its outward normals along the position.
-        assert!(area_normal(&mesh.positions, triangle).dot(&centre) > 0.0);
+        assert!(area_normal(&mesh.positions, triangle).dot(&center) > 0.0);
     }
     let lid = pressure::lid_area_vector(&mesh.rims[0], &mesh.positions);
     // Oracle: area of the regular-ish polygon, between those of inscribed and circumscribed circle.
@@ -83,12 +83,12 @@ fn bad_triangles_are_named() {
     let square = || vec![Vec3::zeros(), Vec3::x(), Vec3::new(1.0, 1.0, 0.0), Vec3::y()];
     let fault = |triangles: Vec<[u32; 3]>| Mesh::new(square(), triangles).unwrap_err();
     // Oracle: the one fault of each list.
-    assert!(matches!(fault(vec![[0, 1, 4]]), MeshFault::NoSuchVertex { vertex: 4, .. }));
-    assert!(matches!(fault(vec![[0, 1, 1]]), MeshFault::NoArea { triangle: 0 }));
-    assert!(matches!(fault(vec![[0, 1, 2]]), MeshFault::Unused { vertex: 3 }));
+    assert!(matches!(fault(vec![[0, 1, 4]]), MeshError::NoSuchVertex { vertex: 4, .. }));
+    assert!(matches!(fault(vec![[0, 1, 1]]), MeshError::NoArea { triangle: 0 }));
+    assert!(matches!(fault(vec![[0, 1, 2]]), MeshError::Unused { vertex: 3 }));
     let turned = fault(vec![[0, 1, 2], [0, 3, 2]]);
-    assert!(matches!(turned, MeshFault::Orientation { from: 0, to: 2, .. }), "{turned}");
+    assert!(matches!(turned, MeshError::Orientation { from: 0, to: 2, .. }), "{turned}");
     let fan = fault(vec![[0, 1, 2], [0, 2, 3], [0, 2, 1]]);
-    assert!(matches!(fan, MeshFault::Branching { count: 3, .. } | MeshFault::Orientation { .. }));
-    assert!(matches!(Mesh::half_icosphere(1.0, 3), Err(MeshFault::Frequency { frequency: 3 })));
+    assert!(matches!(fan, MeshError::Branching { count: 3, .. } | MeshError::Orientation { .. }));
+    assert!(matches!(Mesh::half_icosphere(1.0, 3), Err(MeshError::Frequency { frequency: 3 })));
 }

@@ -6,7 +6,7 @@ mod bending;
 mod inflation;
 mod motion;
 
-use super::mesh::{Mesh, MeshFault};
+use super::mesh::{Mesh, MeshError};
 use super::{FREE, MembraneMaterial, MembraneModel, MembraneScratch, MembraneState, forces};
 use crate::base::random::{Random, Stream};
 use crate::base::{Real, Vec3};
@@ -23,7 +23,7 @@ fn rubber(bending_stiffness: Real, bending_damping: Real) -> MembraneMaterial {
     }
 }
 
-fn model_of(mesh: Result<Mesh, MeshFault>, material: MembraneMaterial) -> MembraneModel {
+fn model_of(mesh: Result<Mesh, MeshError>, material: MembraneMaterial) -> MembraneModel {
     MembraneModel::new(mesh.unwrap(), material)
 }
 
