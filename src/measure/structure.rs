@@ -218,7 +218,7 @@ mod tests {
     use super::*;
     use crate::base::random::{Random, Stream};
 
-    /// Face-centerd cubic, touching spheres of diameter 1: `n` cells along each edge.
+    /// Face-centered cubic, touching spheres of diameter 1: `n` cells along each edge.
     fn fcc(n: usize) -> (Vec<Vec3>, Vec3) {
         let edge = 2.0_f64.sqrt();
         let basis = [[0.0, 0.0, 0.0], [0.5, 0.5, 0.0], [0.5, 0.0, 0.5], [0.0, 0.5, 0.5]];

@@ -1,4 +1,4 @@
-//! One substep: the stages in order.
+//! One substep, as a list of stages.
 
 use super::{
     Controls, Model, Scratch, State, chamber,
@@ -6,16 +6,16 @@ use super::{
     integrate, membrane, neighbours,
 };
 
-/// A stage reads the state and writes its own part of state and scratch.
+/// One stage of a substep. It reads model, controls and state, and writes its own part of state and scratch.
 pub type Stage = fn(&Model, &Controls, &mut State, &mut Scratch);
 
-/// All stages of a substep in order, with the names under which their times are reported.
+/// All stages of a substep in order, with the names under which benchmarks report their times.
 pub static STAGES: &[(&str, Stage)] = &[
     ("chamber", |model, controls, state, _| chamber::advance(&model.chamber, controls, state)),
     ("neighbours", |model, controls, state, scratch| {
         neighbours::refresh(model, controls, state, scratch);
     }),
-    // Before the contacts with the membrane, which read the rows that it makes of the vertices.
+    // Before the contacts with the membrane, which read the rows of vertices that this stage writes.
     ("membrane", |model, _, state, scratch| {
         membrane::forces(&model.membrane, &state.membrane, state.gauge, &mut scratch.membrane);
     }),

@@ -67,7 +67,7 @@ pub(super) struct GripRun {
 #[derive(Serialize, Deserialize)]
 struct Saved {
     place: Place,
-    filling: fill::Place,
+    filling: fill::FillPosition,
     has_settled: bool,
     has_inserted: bool,
     record: Record,
@@ -116,9 +116,9 @@ impl GripRun {
     }
 
     fn fill(&mut self) -> Result<&'static str, Diverged> {
-        let before = self.filling.place();
+        let before = self.filling.position();
         self.filling.advance(SLICE)?;
-        let after = self.filling.place();
+        let after = self.filling.position();
         let name = before.stage.name();
         // A slice that ends a stage is counted under its name as a whole.
         let n = if before.stage == after.stage { after.k - before.k } else { SLICE };
@@ -251,7 +251,7 @@ impl Run for GripRun {
     fn save(&self) -> Vec<u8> {
         let saved = Saved {
             place: self.place,
-            filling: self.filling.place(),
+            filling: self.filling.position(),
             has_settled: self.settled.is_some(),
             has_inserted: self.inserted.is_some(),
             record: self.record.clone(),
