@@ -43,7 +43,7 @@ fn refresh_grains(model: &Model, state: &mut State, scratch: &mut Scratch) {
         return;
     }
     // The motion before the first build, or by other code, is unknown.
-    lists.skin = if lists.is_built { skin::cheapest(model, lists, used) } else { model.skin };
+    lists.skin = if lists.is_built { skin::optimal(model, lists, used) } else { model.skin };
     // In a periodic box there is no membrane, so the wrapped grid serves the pairs alone.
     let positions = match &model.period {
         Some(period) => verlet_list::wrap(&state.grains.positions, period),

@@ -1,4 +1,4 @@
-//! Thickness of the skin of the lists. A thin skin lists fewer pairs that do not touch, but is used up sooner.
+//! Thickness of the skin. With a thin skin fewer pairs without contact are listed, but lists are rebuilt more often.
 //!
 //! ```text
 //! cost of a substep = 1 + a s / d + b v / s,   least at   s = √(b/a · d v)
@@ -7,42 +7,42 @@
 //! | symbol | meaning | unit |
 //! |---|---|---|
 //! | s | skin | m |
-//! | d | largest diameter | m |
-//! | v | how much of the skin a substep uses up | m |
-//! | a | what a skin of a diameter would cost in each substep, in substeps | – |
-//! | b | what building the lists costs, in substeps | – |
+//! | d | largest diameter of a grain | m |
+//! | v | skin used up per substep | m |
+//! | a | additional cost of a substep with s = d, in substeps | – |
+//! | b | cost of building the lists, in substeps | – |
 //!
-//! `v` is measured since the last build, so no clock is involved. Results do not depend on which pairs are
-//! listed besides those in contact.
+//! Source: minimum of the cost. Valid while v is steady from one build to the next. `v` is measured since the last
+//! build, without a clock. Results do not depend on which pairs without contact are listed.
 
 use crate::{
     base::Real,
     physics::{Model, scratch::Neighbours},
 };
 
-/// b/a: measured with boxes at rest and flowing.
+/// b/a, measured with boxes of grains at rest and flowing.
 const BUILD_OVER_SKIN: Real = 10.0;
-/// Substeps after which a skin that is too thick is replaced.
-const PROBATION: u64 = 100;
-/// How much too thick it must be for that.
+/// Number of substeps after a build at which a skin that is too thick is replaced.
+const REVIEW_STEP: u64 = 100;
+/// Ratio to the optimal skin from which a skin is too thick.
 const TOO_THICK: Real = 2.0;
-/// The thinnest skin, as a share of the model's, which is the thickest.
-const THINNEST: Real = 1.0 / 8.0;
+/// The thinnest skin, as a fraction of that of the model, which is the thickest.
+const SKIN_SHARE_MIN: Real = 1.0 / 8.0;
 
-/// The skin (m) that costs least if it goes on as since the last build, in which `used` (m) of the skin
-/// were used up.
-pub(super) fn cheapest(model: &Model, lists: &Neighbours, used: Real) -> Real {
+/// The skin (m) with the lowest cost if motion continues as since the last build, during which `used` (m) of the
+/// skin was used up.
+pub(super) fn optimal(model: &Model, lists: &Neighbours, used: Real) -> Real {
     let n = lists.n_since_build.max(1);
     #[expect(clippy::cast_precision_loss, reason = "a count of substeps")]
     let per_substep = used / n as Real;
     let skin = (BUILD_OVER_SKIN * 2.0 * model.radius_max * per_substep).sqrt();
     // NaN gives the thickest skin.
-    if skin < model.skin { skin.max(THINNEST * model.skin) } else { model.skin }
+    if skin < model.skin { skin.max(SKIN_SHARE_MIN * model.skin) } else { model.skin }
 }
 
-/// True if complete lists should be rebuilt with a thinner skin.
+/// True if lists should be rebuilt with a thinner skin although they are complete.
 pub(super) fn is_too_thick(model: &Model, lists: &Neighbours, used: Real) -> bool {
-    lists.n_since_build == PROBATION && TOO_THICK * cheapest(model, lists, used) < lists.skin
+    lists.n_since_build == REVIEW_STEP && TOO_THICK * optimal(model, lists, used) < lists.skin
 }
 
 #[cfg(test)]
@@ -67,35 +67,35 @@ mod tests {
 
     /// Oracle: the cost formula above, evaluated for many skins.
     #[test]
-    fn no_skin_costs_less() {
+    fn the_skin_minimizes_the_cost() {
         let model = model();
         let (diameter, per_substep) = (2.0 * model.radius_max, 2e-7);
-        let found = cheapest(&model, &lists(model.skin, 1000), 1000.0 * per_substep);
+        let found = optimal(&model, &lists(model.skin, 1000), 1000.0 * per_substep);
         let cost = |skin: Real| skin / diameter + BUILD_OVER_SKIN * per_substep / skin;
-        assert!(THINNEST * model.skin < found && found < model.skin, "{found} m");
+        assert!(SKIN_SHARE_MIN * model.skin < found && found < model.skin, "{found} m");
         for k in 1..100 {
             assert!(cost(found) <= cost(f64::from(k) / 50.0 * found) * (1.0 + 1e-12));
         }
     }
 
     #[test]
-    fn it_stays_within_its_limits() {
+    fn the_skin_stays_within_its_limits() {
         // Oracle: the limits; NaN is the worst case.
         let model = model();
-        let of = |used: Real| cheapest(&model, &lists(model.skin, 1000), used);
+        let of = |used: Real| optimal(&model, &lists(model.skin, 1000), used);
         let equal = |a: Real, b: Real| a.to_bits() == b.to_bits();
-        assert!(equal(of(0.0), THINNEST * model.skin));
+        assert!(equal(of(0.0), SKIN_SHARE_MIN * model.skin));
         assert!(equal(of(1.0), model.skin) && equal(of(Real::NAN), model.skin));
     }
 
     #[test]
-    fn it_is_given_up_once_and_only_if_it_is_much_too_thick() {
-        // Oracle: at rest the thinnest is cheapest, and lists that have it are kept.
+    fn a_skin_is_replaced_once_and_only_if_much_too_thick() {
+        // Oracle: at rest the thinnest skin is optimal, and lists with it are kept.
         let model = model();
         let at_rest = |skin, n| is_too_thick(&model, &lists(skin, n), 0.0);
-        assert!(at_rest(model.skin, PROBATION));
-        assert!(!at_rest(model.skin, PROBATION - 1) && !at_rest(model.skin, PROBATION + 1));
-        assert!(!at_rest(THINNEST * model.skin, PROBATION));
-        assert!(!is_too_thick(&model, &lists(model.skin, PROBATION), model.skin));
+        assert!(at_rest(model.skin, REVIEW_STEP));
+        assert!(!at_rest(model.skin, REVIEW_STEP - 1) && !at_rest(model.skin, REVIEW_STEP + 1));
+        assert!(!at_rest(SKIN_SHARE_MIN * model.skin, REVIEW_STEP));
+        assert!(!is_too_thick(&model, &lists(model.skin, REVIEW_STEP), model.skin));
     }
 }

@@ -1,9 +1,9 @@
-//! Vertex spheres of the membrane that a grain may touch, sorted, with the springs of those that go
-//! on.
+//! Sorted list of the vertex spheres of the membrane that a grain may touch, with the springs of contacts that were
+//! listed before.
 
 use super::{
     cell_grid::{CellGrid, id},
-    verlet_list::carried_springs,
+    verlet_list::kept_springs,
 };
 use crate::{
     base::{Real, Vec3, parallel},
@@ -13,8 +13,8 @@ use crate::{
 /// Number of vertices in one parallel task.
 const CHUNK: usize = 128;
 
-/// Lists all spheres of `radius` (m) closer to a grain than contact plus skin; springs of those
-/// listed before are kept.
+/// Lists all spheres of `radius` (m) within contact plus skin of a grain. Springs of contacts that were listed
+/// before are kept.
 pub(super) fn build(
     model: &Model,
     radius: Real,
@@ -41,11 +41,11 @@ pub(super) fn build(
     }
     lists.sphere_starts = starts;
     let before = &state.springs.spheres;
-    let springs = carried_springs(&before.ids, &before.springs, &ids);
+    let springs = kept_springs(&before.ids, &before.springs, &ids);
     state.springs.spheres = ListedSprings { ids, springs, memories: Vec::new() };
 }
 
-/// No sphere for any grain.
+/// Empties the list.
 pub(super) fn clear(state: &mut State, lists: &mut Neighbours) {
     state.springs.spheres = ListedSprings::default();
     lists.sphere_starts = vec![0; state.grains.len() + 1];

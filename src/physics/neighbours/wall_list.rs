@@ -2,7 +2,7 @@
 
 use super::{
     cell_grid::id,
-    verlet_list::{carried_memories, carried_springs, index_by_second},
+    verlet_list::{index_by_second, kept_memories, kept_springs},
 };
 use crate::{
     base::Real,
@@ -39,8 +39,8 @@ pub(super) fn build(
     }
     (lists.wall_starts, lists.wall_contacts) = index_by_second(&ids, state.grains.len());
     let before = &state.springs.walls;
-    let springs = carried_springs(&before.ids, &before.springs, &ids);
-    let memories = carried_memories(&before.ids, &before.memories, &ids);
+    let springs = kept_springs(&before.ids, &before.springs, &ids);
+    let memories = kept_memories(&before.ids, &before.memories, &ids);
     wall_forces.clear();
     wall_forces.resize(ids.len(), WallForce::default());
     state.springs.walls = ListedSprings { ids, springs, memories };
