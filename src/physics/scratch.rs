@@ -1,7 +1,10 @@
 //! Scratch: what can be recomputed. Never saved.
 
 use super::{
-    Model, State, boundary::body::BodyMotion, membrane::MembraneScratch, state::N_PATCHES,
+    Model, State,
+    boundary::body::BodyMotion,
+    membrane::MembraneScratch,
+    state::{N_PATCHES, Place},
 };
 use crate::base::{Real, Vec3, real::Wrench};
 
@@ -24,6 +27,9 @@ pub struct Scratch {
     pub sphere_forces: Vec<SphereForce>,
     /// What walls do to grains, in the order of `Springs::walls`. Written by `contact::walls`.
     pub wall_forces: Vec<WallForce>,
+    /// What walls of triangles and bodies do to grains, in the order of `PlaceLists::ids`. Written by
+    /// `contact::places`.
+    pub places: Vec<Vec<PlaceContact>>,
     /// What bodies do to samples of the membrane, body by body: all vertices, then all facets; none but the
     /// listed ones touch. Written by `contact::bodies`.
     pub sample_forces: Vec<SampleForce>,
@@ -31,11 +37,11 @@ pub struct Scratch {
     pub vertex_forces: Vec<Vec3>,
     /// Internal forces and pressure. Written by `membrane::forces`.
     pub membrane: MembraneScratch,
-    /// Wrench of the membrane on each body about its center of mass, this substep (N), (N m).
-    /// Written by `contact::on_membrane`.
+    /// Wrench of membrane and grains on each body about its center of mass, this substep (N), (N m).
+    /// Written by `contact::on_membrane` and `contact::places`.
     pub body_wrenches: Vec<Wrench>,
     /// Wrench of membrane, grains and air on each wall about its origin, world axes, this substep
-    /// (N), (N m). Written by `contact::on_walls`.
+    /// (N), (N m). Written by `contact::on_walls` and `contact::places`.
     pub wall_wrenches: Vec<Wrench>,
     /// Grains whose center left the bag, if any. Written by `contact::on_membrane` and, if grains
     /// touch vertex spheres, by `neighbours`.
@@ -54,6 +60,7 @@ impl Scratch {
             patch_forces: Vec::new(),
             sphere_forces: Vec::new(),
             wall_forces: Vec::new(),
+            places: Vec::new(),
             sample_forces: Vec::new(),
             vertex_forces: vec![Vec3::zeros(); model.membrane.mesh.n_vertices()],
             membrane: MembraneScratch::new(&model.membrane),
@@ -79,15 +86,25 @@ impl Scratch {
     }
 
     /// Forces of the walls on the grains that were pressed on them in the last substep, with wall and
-    /// grain, in the order of the list.
+    /// grain, in the order of the lists. Contacts with walls of triangles and with bodies follow the others;
+    /// these have the numbers of `Model::surface`.
     pub fn touching_walls<'a>(
         &'a self,
         state: &'a State,
     ) -> impl Iterator<Item = (&'a WallForce, [usize; 2])> {
         let contacts = self.wall_forces.iter().zip(&state.springs.walls.ids);
+        let places = self.place_contacts().map(|(contact, ids)| (&contact.force, ids));
         contacts
+            .chain(places)
             .filter(|(contact, _)| contact.flags.touches())
             .map(|(contact, ids)| (contact, ids.map(|id| id as usize)))
+    }
+
+    /// Contacts with walls of triangles and with bodies in the last substep, each with its surface, as in
+    /// `Model::surface`, and its grain.
+    pub fn place_contacts(&self) -> impl Iterator<Item = (&PlaceContact, &[u32; 2])> {
+        let of_grains = self.places.iter().zip(&self.neighbours.places.ids);
+        of_grains.flat_map(|(contacts, ids)| contacts.iter().map(move |contact| (contact, ids)))
     }
 }
 
@@ -171,8 +188,12 @@ pub struct Neighbours {
     pub wall_starts: Vec<u32>,
     /// Indices of listed contacts with walls, by grain.
     pub wall_contacts: Vec<u32>,
+    /// Grains that walls of triangles and bodies may touch.
+    pub places: PlaceLists,
     /// The walls at the last build.
     pub walls_at_build: Vec<BodyMotion>,
+    /// How much nearer each wall may come to the grains, beside the skin, before it can touch one (m).
+    pub wall_gaps: Vec<Real>,
     /// No grain was further than this, and the skin, from the origin of each wall (m).
     pub wall_extents: Vec<Real>,
     /// Radii of the grains at the last build (m).
@@ -183,6 +204,27 @@ pub struct Neighbours {
     pub displacement_squared_max: Real,
     /// How often the lists were built.
     pub n_builds: u64,
+}
+
+/// Grains that a surface may touch in several places.
+#[derive(Clone, Default)]
+pub struct PlaceLists {
+    /// Surface, as in `Model::surface`, and grain of each; ascending.
+    pub ids: Vec<[u32; 2]>,
+    /// Where the triangles of each begin in `triangles`.
+    pub triangle_starts: Vec<u32>,
+    /// Triangles that the grain may touch, ascending for each.
+    pub triangles: Vec<u32>,
+    /// Where those of grain i begin in `by_grain`.
+    pub grain_starts: Vec<u32>,
+    /// Indices in `ids`, by grain.
+    pub by_grain: Vec<u32>,
+    /// The bodies at the last build.
+    pub bodies_at_build: Vec<BodyMotion>,
+    /// Of each body: no grain or no part of the body was further than this from its origin (m).
+    pub extents: Vec<Real>,
+    /// How much nearer each body may come to the grains, beside the skin, before it can touch one (m).
+    pub gaps: Vec<Real>,
 }
 
 /// Samples of the membrane that bodies may touch, valid until one of both has moved by the skin.
@@ -315,7 +357,7 @@ pub struct SphereForce {
 }
 
 /// Force of a wall on one grain.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct WallForce {
     /// Force on the grain (N).
     pub force: Vec3,
@@ -327,6 +369,17 @@ pub struct WallForce {
     pub normal: Real,
     /// Whether a force acts. A grain that leaves so fast that nothing presses it does not touch.
     pub flags: ContactFlags,
+}
+
+/// A contact of a grain with a surface that it may touch in several places.
+#[derive(Clone, Debug)]
+pub struct PlaceContact {
+    /// What it remembers.
+    pub place: Place,
+    /// Its force on the grain.
+    pub force: WallForce,
+    /// Share of the force of a single contact that is in `force`, see `boundary::touching`.
+    pub share: Real,
 }
 
 /// Force of a body on a sample of the membrane.

@@ -86,6 +86,8 @@ pub struct Springs {
     pub spheres: ListedSprings,
     /// Contacts of walls with grains. Written by `contact::walls`.
     pub walls: ListedSprings,
+    /// Contacts of grains with walls of triangles and with bodies. Written by `contact::places`.
+    pub places: PlaceSprings,
     /// Of membrane samples with bodies (m), body by body: all vertices, then all facets. Written
     /// by `contact::bodies`.
     pub bodies: Vec<Vec3>,
@@ -100,6 +102,7 @@ impl Springs {
             patches: vec![Patches::NONE; n_grains],
             spheres: ListedSprings::default(),
             walls: ListedSprings::default(),
+            places: PlaceSprings::default(),
             bodies: vec![Vec3::zeros(); n_samples],
         }
     }
@@ -126,6 +129,27 @@ impl ListedSprings {
             here.map_or_else(Vec3::zeros, |(_, spring)| *spring)
         })
     }
+}
+
+/// Contacts of grains with surfaces that they may touch in several places: one entry for each place.
+#[derive(Clone, Debug, Default)]
+pub struct PlaceSprings {
+    /// Surface, as in `Model::surface`, and grain of each; ascending.
+    pub ids: Vec<[u32; 2]>,
+    /// What each contact remembers.
+    pub places: Vec<Place>,
+}
+
+/// One place where a grain touches a surface: the contact persists while the grain slides or rolls from
+/// triangle to triangle.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Place {
+    /// Tangential spring (m).
+    pub spring: Vec3,
+    /// Normal at the last substep, from the surface to the grain.
+    pub normal: Vec3,
+    /// What else the contact remembers; nothing under a law without cohesion.
+    pub memory: Vec<Real>,
 }
 
 /// One patch of membrane that a grain touches: the contact lives on while the grain slides from
@@ -230,6 +254,12 @@ impl State {
                     digest.reals(memory);
                 }
             }
+        }
+        let places = &self.springs.places;
+        for (ids, place) in places.ids.iter().zip(&places.places) {
+            digest.integer(id(ids));
+            digest.vectors(&[place.spring, place.normal]);
+            digest.reals(&place.memory);
         }
     }
 }

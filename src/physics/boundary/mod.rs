@@ -6,5 +6,6 @@ mod polyhedron;
 pub mod shape;
 #[cfg(test)]
 mod tests;
+pub mod touching; // where a sphere touches triangles
 pub mod triangles; // rigid surfaces of triangles
 pub mod wall;

@@ -2,7 +2,7 @@
 //!
 //! A grain may touch several faces, edges and vertices of such a wall at once, so there is no
 //! single distance. For each triangle there is the closest point and the feature it lies on;
-//! `Triangles::within` keeps the local minima of the distance, each once. The surface may be open;
+//! `Triangles::touching` keeps the local minima of the distance, each once. The surface may be open;
 //! its triangles are touched from both sides, and the normal points towards the grain.
 
 use std::sync::Arc;
@@ -89,44 +89,6 @@ impl Triangles {
         };
         Nearest { triangle, feature: closest.feature, distance, normal }
     }
-
-    /// The closest points within `reach` (m) of `point` (m), wall frame: one for each face, edge or
-    /// vertex that is the closest part of all triangles around it. These are the contacts of a
-    /// grain of that radius.
-    pub fn within(&self, point: &Vec3, reach: Real) -> Vec<Nearest> {
-        let is_close = |(centre, radius): &(Vec3, Real)| (point - centre).norm() < reach + radius;
-        let candidates = (0..).zip(&self.spheres).filter(|(_, sphere)| is_close(sphere));
-        let found: Vec<Nearest> = candidates
-            .map(|(t, _)| self.nearest(t, point))
-            .filter(|nearest| nearest.distance < reach)
-            .collect();
-        found.iter().filter(|it| self.is_local_minimum(it, point)).copied().collect()
-    }
-
-    /// True if no triangle around the feature comes nearer to `point`, and, of those that share
-    /// the feature, this is the one with the lowest number.
-    fn is_local_minimum(&self, nearest: &Nearest, point: &Vec3) -> bool {
-        let mesh = &self.mesh;
-        let corners = mesh.triangles[nearest.triangle as usize];
-        let around: Vec<u32> = match nearest.feature {
-            Feature::Face => Vec::new(),
-            Feature::Edge(k) => {
-                let edge = mesh.edges_of_triangle[nearest.triangle as usize][k as usize];
-                let pair = mesh.triangles_of_edge[edge as usize];
-                pair.into_iter().filter(|&t| t != crate::physics::membrane::mesh::NONE).collect()
-            }
-            Feature::Vertex(k) => {
-                mesh.triangles_of_vertex.of(corners[k as usize] as usize).to_vec()
-            }
-        };
-        // Two triangles give the distance of a common edge with relative rounding errors of 10⁻¹⁶.
-        let is_nearer = |other: &Nearest| other.distance < nearest.distance * (1.0 - 1e-9);
-        around.into_iter().filter(|&t| t != nearest.triangle).all(|t| {
-            let other = self.nearest(t, point);
-            let is_same = (other.distance - nearest.distance).abs() <= 1e-9 * nearest.distance;
-            !is_nearer(&other) && (!is_same || nearest.triangle < t)
-        })
-    }
 }
 
 #[cfg(test)]
@@ -147,6 +109,15 @@ mod tests {
         Triangles::new(vertices, facets).unwrap()
     }
 
+    /// The contacts of a sphere among all triangles.
+    fn within(surface: &Triangles, point: &Vec3, reach: Real) -> Vec<Nearest> {
+        let all: Vec<u32> = (0..).zip(&surface.mesh().triangles).map(|(t, _)| t).collect();
+        let touches = surface.touching(&all, point, reach);
+        // None of the contacts below overlaps a saddle.
+        assert!(touches.iter().all(|it| it.share.to_bits() == 1.0_f64.to_bits()), "{touches:?}");
+        touches.into_iter().map(|it| it.nearest).collect()
+    }
+
     /// Oracle: the corner's own planes. A sphere in an inner corner touches both, however the
     /// planes are cut into triangles, and each of them once.
     #[test]
@@ -155,7 +126,7 @@ mod tests {
         // Over the diagonals of both squares, where two triangles meet.
         for x in [0.5, 0.31] {
             let point = Vec3::new(x, 0.1, 0.12);
-            let mut found = surface.within(&point, 0.15);
+            let mut found = within(&surface, &point, 0.15);
             found.sort_by(|a, b| a.distance.total_cmp(&b.distance));
             assert_eq!(found.len(), 2, "{found:?}");
             assert!((found[0].distance - 0.1).abs() < 1e-15);
@@ -163,7 +134,7 @@ mod tests {
             assert!((found[1].distance - 0.12).abs() < 1e-15);
             assert!((found[1].normal - Vec3::z()).norm() < 1e-14, "{found:?}");
         }
-        assert!(surface.within(&Vec3::new(0.5, 0.5, 0.2), 0.15).is_empty());
+        assert!(within(&surface, &Vec3::new(0.5, 0.5, 0.2), 0.15).is_empty());
     }
 
     /// Oracle: a point on the other side of the ridge is closest to the edge alone; distance by
@@ -171,7 +142,7 @@ mod tests {
     #[test]
     fn outside_a_ridge_only_the_edge_is_touched() {
         let surface = corner();
-        let found = surface.within(&Vec3::new(0.4, -0.03, -0.04), 0.1);
+        let found = within(&surface, &Vec3::new(0.4, -0.03, -0.04), 0.1);
         assert_eq!(found.len(), 1, "{found:?}");
         assert!(matches!(found[0].feature, Feature::Edge(_)), "{found:?}");
         assert!((found[0].distance - 0.05).abs() < 1e-15);
@@ -186,7 +157,7 @@ mod tests {
         let surface = Triangles::of(mesh);
         for place in [Vec3::new(0.0, 0.0, 0.2), Vec3::new(0.5, 0.0, 0.2), Vec3::new(0.3, 0.2, 0.2)]
         {
-            let found = surface.within(&place, 0.3);
+            let found = within(&surface, &place, 0.3);
             assert_eq!(found.len(), 1, "{place:?}: {found:?}");
             assert!((found[0].distance - 0.2).abs() < 1e-15);
             assert!((found[0].normal - Vec3::z()).norm() < 1e-14);

@@ -57,7 +57,7 @@ pub enum WallShape {
         radius: Real,
     },
     /// Triangles, touched from both sides. There is no single distance from them; see
-    /// `Triangles::within`.
+    /// `Triangles::touching`.
     Triangles(Box<Triangles>),
     /// Holds vertices and touches no grain.
     Frame,

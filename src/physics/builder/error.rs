@@ -71,7 +71,7 @@ pub enum BuildError {
         "period: {n_walls} walls and {n_membranes} membranes; a periodic box holds grains alone"
     )]
     NotAlone {
-        /// Number of walls.
+        /// Number of walls, and of bodies that grains touch.
         n_walls: usize,
         /// Number of membranes.
         n_membranes: usize,
@@ -105,15 +105,6 @@ pub enum BuildError {
         wall: usize,
         /// Length of its normal.
         length: Real,
-    },
-    /// A wall of triangles, which grains do not touch yet.
-    #[error(
-        "wall {wall}: grains do not touch walls of triangles in this version; use planes, tubes, \
-         bowls or balls"
-    )]
-    TriangulatedWall {
-        /// The wall.
-        wall: usize,
     },
     /// A motion that cannot be carried out.
     #[error("wall {wall}: {error}")]

@@ -252,7 +252,8 @@ impl SystemBuilder {
         vertices
     }
 
-    /// Adds a rigid body that membranes touch.
+    /// Adds a rigid body that membranes touch, and grains if it was made so with
+    /// `BodyModel::touches_grains`.
     pub fn body(&mut self, body: BodyModel, motion: BodyMotion) -> &mut Self {
         self.bodies.push(body);
         self.motions.push(motion);
@@ -414,7 +415,8 @@ impl SystemBuilder {
                 WallShape::Ball { radius } => {
                     positive(|| format!("radius (m) of wall {k}"), *radius)?;
                 }
-                WallShape::Triangles(_) => return Err(BuildError::TriangulatedWall { wall: k }),
+                // Checked when they were made.
+                WallShape::Triangles(_) => {}
                 WallShape::Frame => {
                     if !membrane.holders.iter().any(|holder| *holder as usize == k) {
                         return Err(BuildError::IdleWall { wall: k });
@@ -428,7 +430,8 @@ impl SystemBuilder {
     fn check_period(&self, reach: Real) -> Result<(), BuildError> {
         let Some(period) = &self.period else { return Ok(()) };
         finite(|| "period (m)".to_owned(), period)?;
-        let (n_walls, n_membranes) = (self.walls.len(), self.membranes.len());
+        let n_touched = self.bodies.iter().filter(|it| it.of_grains.is_some()).count();
+        let (n_walls, n_membranes) = (self.walls.len() + n_touched, self.membranes.len());
         if 0 < n_walls + n_membranes {
             return Err(BuildError::NotAlone { n_walls, n_membranes });
         }

@@ -5,10 +5,7 @@ use crate::{
     base::digest::Digest,
     cosim::saved_state,
     physics::{
-        boundary::{
-            motion::{Hinge, Load, Servo, Turn, WallMotion},
-            triangles::Triangles,
-        },
+        boundary::motion::{Hinge, Load, Servo, Turn, WallMotion},
         membrane::{MembraneContact, MembraneMaterial, shape::MembraneShape},
     },
 };
@@ -226,15 +223,6 @@ fn parts_that_do_not_fit_are_refused() {
             it.period(Vec3::repeat(1.0));
         }),
         BuildError::NotAlone { n_walls: 1, n_membranes: 0 }
-    );
-    let shape = Triangles::new(vec![Vec3::zeros(), Vec3::x(), Vec3::y()], vec![[0, 1, 2]]).unwrap();
-    let triangles = WallShape::Triangles(Box::new(shape));
-    let wall = || Wall::new(triangles.clone());
-    assert_eq!(
-        refused(&|it| {
-            it.wall(wall());
-        }),
-        BuildError::TriangulatedWall { wall: 1 }
     );
     let mut boxed = builder();
     boxed.grain(Vec3::zeros(), RADIUS).period(Vec3::new(1.0, 0.005, 1.0));

@@ -5,6 +5,7 @@ use crate::{
     physics::{
         boundary::{
             motion::WallMotion,
+            triangles::Triangles,
             wall::{CARRIER, WallShape},
         },
         law::PairLaw,
@@ -69,6 +70,11 @@ impl Wall {
             normal[axis] = sign;
             Self::plane(point, normal)
         })
+    }
+
+    /// A surface of triangles, which may be open and is touched from both sides.
+    pub fn triangles(triangles: Triangles) -> Self {
+        Self::new(WallShape::Triangles(Box::new(triangles)))
     }
 
     /// A frame, which holds vertices of membranes and touches no grain.

@@ -6,6 +6,7 @@ pub mod bodies;
 mod candidates; // where a grain is closest to the membrane
 pub mod grains;
 pub mod membrane;
+pub mod places; // grains on triangles and bodies
 mod sharing; // one force among several places
 pub mod spheres;
 pub mod sums;

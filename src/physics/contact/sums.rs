@@ -95,6 +95,18 @@ pub fn with_others(scratch: &Scratch, i: usize, of_pairs: &[Real; 8]) -> (Vec3, 
             torque += wall.arm.cross(&wall.force);
         }
     }
+    if !scratch.places.is_empty() {
+        let places =
+            lists.places.grain_starts[i] as usize..lists.places.grain_starts[i + 1] as usize;
+        for &k in &lists.places.by_grain[places] {
+            for contact in &scratch.places[k as usize] {
+                if contact.force.flags.touches() {
+                    force += contact.force.force;
+                    torque += contact.force.arm.cross(&contact.force.force);
+                }
+            }
+        }
+    }
     (force, torque)
 }
 

@@ -1,7 +1,7 @@
 //! Contacts between grains and walls.
 
 use crate::{
-    base::{Real, lanes::Vector},
+    base::{Real, Vec3, lanes::Vector},
     physics::{
         Model,
         boundary::{body::BodyMotion, wall::Placed},
@@ -57,7 +57,8 @@ impl UnderLaw for OfWall<'_> {
     fn run<C: ContactLaw>(self, law: &C) {
         let ListedSprings { ids, springs, memories } = self.listed;
         let memories = C::Memory::rows(memories, ids.len());
-        let wall = Wall { law, shape: self.shape, motion: self.motion, dt: self.dt };
+        let surface = RigidSurface { law, motion: self.motion, dt: self.dt };
+        let wall = Wall { shape: self.shape, surface };
         for k in self.contacts {
             let mut history = History {
                 spring: Vector::from(springs[k]),
@@ -73,27 +74,55 @@ impl UnderLaw for OfWall<'_> {
 
 /// A wall and the law of its contacts.
 struct Wall<'a, C> {
-    law: &'a C,
     shape: &'a Placed,
-    motion: &'a BodyMotion,
-    dt: Real,
+    surface: RigidSurface<'a, C>,
 }
 
 impl<C: ContactLaw> Wall<'_, C> {
     /// Force on grain `i`. Nothing is remembered of a contact that has ended.
     #[inline(always)]
     fn force(&self, grains: &Grains, i: usize, history: &mut History<f64, C::Memory>) -> WallForce {
+        let reach = grains.radii[i] + self.surface.law.range();
+        let nearest = self.shape.distance(&self.surface.arm(&grains.positions[i]));
+        nearest
+            .filter(|(distance, _)| *distance < reach)
+            .and_then(|nearest| self.surface.force(grains, i, nearest, history))
+            .unwrap_or_else(|| {
+                *history = History { spring: Vector::zero(), memory: C::Memory::nothing() };
+                WallForce::default()
+            })
+    }
+}
+
+/// A rigid surface that moves, and the law of its contacts with grains.
+pub(super) struct RigidSurface<'a, C> {
+    pub(super) law: &'a C,
+    pub(super) motion: &'a BodyMotion,
+    pub(super) dt: Real,
+}
+
+impl<C: ContactLaw> RigidSurface<'_, C> {
+    /// From the origin of the surface to `point` (m).
+    #[inline(always)]
+    pub(super) fn arm(&self, point: &Vec3) -> Vec3 {
+        point - self.motion.pose.translation.vector
+    }
+
+    /// Force on grain `i` from a point of the surface at this distance (m), with the normal from there to the
+    /// grain. `None` if the contact has ended.
+    #[inline(always)]
+    pub(super) fn force(
+        &self,
+        grains: &Grains,
+        i: usize,
+        (distance, normal): (Real, Vec3),
+        history: &mut History<f64, C::Memory>,
+    ) -> Option<WallForce> {
         let radius = grains.radii[i];
-        let from_wall = grains.positions[i] - self.motion.pose.translation.vector;
-        let nearest = self.shape.distance(&from_wall);
-        let reach = radius + self.law.range();
-        let Some((distance, normal)) = nearest.filter(|(distance, _)| *distance < reach) else {
-            return Self::none(history);
-        };
         let overlap = radius - distance;
         let arm = normal * -(radius - overlap / 2.0);
         let velocity = grains.velocities[i] + grains.angular_velocities[i].cross(&arm)
-            - self.motion.twist.at(&(from_wall + arm));
+            - self.motion.twist.at(&(self.arm(&grains.positions[i]) + arm));
         let contact = ContactState {
             touches: distance < radius,
             overlap,
@@ -104,22 +133,15 @@ impl<C: ContactLaw> Wall<'_, C> {
         };
         let force = ScalarForce::of(&self.law.force(&contact, self.dt, history));
         if !force.acts {
-            return Self::none(history);
+            return None;
         }
         let is_loaded = force.normal != 0.0;
-        WallForce {
+        Some(WallForce {
             force: normal * force.normal + force.tangential,
             arm,
             overlap,
             normal: force.normal,
             flags: if is_loaded { ContactFlags::contact(force.slides) } else { ContactFlags::NONE },
-        }
-    }
-
-    /// No contact, and nothing that it remembers.
-    #[inline(always)]
-    fn none(history: &mut History<f64, C::Memory>) -> WallForce {
-        *history = History { spring: Vector::zero(), memory: C::Memory::nothing() };
-        WallForce::default()
+        })
     }
 }

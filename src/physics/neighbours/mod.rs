@@ -7,13 +7,17 @@
 //! merge of the old and the new list carries it over.
 
 mod body_list;
+mod bounds; // where the grains are
 pub(crate) mod cell_grid;
 mod crossings;
+mod place_list; // grains near triangles and bodies
 mod skin;
 mod sphere_list;
 mod triangle_list;
 mod verlet_list;
 mod wall_list;
+
+use bounds::Bounds;
 
 use super::{
     Controls, Model, Scratch, State,
@@ -29,13 +33,13 @@ pub fn refresh(model: &Model, controls: &Controls, state: &mut State, scratch: &
     lists.bodies.is_built &= lists.is_built;
     let of_bodies = (&mut lists.bodies, sample_forces);
     body_list::refresh(model, controls, state, lists.vertex_travel, of_bodies);
-    refresh_grains(model, state, scratch);
+    refresh_grains(model, controls, state, scratch);
 }
 
 /// The same for all lists of grains.
-fn refresh_grains(model: &Model, state: &mut State, scratch: &mut Scratch) {
+fn refresh_grains(model: &Model, controls: &Controls, state: &mut State, scratch: &mut Scratch) {
     let lists = &mut scratch.neighbours;
-    let used = 2.0 * used(model, state, lists);
+    let used = 2.0 * used(model, controls, state, lists);
     // The factor keeps the last substep's motion, which is not measured yet, inside the skin.
     let is_complete = lists.is_built && used < 0.9 * lists.skin;
     if is_complete && !skin::is_too_thick(model, lists, used) {
@@ -66,7 +70,9 @@ fn refresh_grains(model: &Model, state: &mut State, scratch: &mut Scratch) {
         }
     }
     forget_patches(lists, &mut state.springs.patches, &mut scratch.patch_forces);
-    wall_list::build(model, state, lists, &mut scratch.wall_forces);
+    let bounds = Bounds::of(&state.grains);
+    wall_list::build(model, state, &bounds, lists, &mut scratch.wall_forces);
+    place_list::build(model, controls, state, (&grid, &bounds), lists);
     update_pair_masses(state, lists);
     lists.grain_positions.clone_from(&state.grains.positions);
     lists.vertex_positions.clone_from(&state.membrane.positions);
@@ -80,14 +86,15 @@ fn refresh_grains(model: &Model, state: &mut State, scratch: &mut Scratch) {
 }
 
 /// The most that anything has moved or grown since the last build (m).
-fn used(model: &Model, state: &State, lists: &Neighbours) -> Real {
+fn used(model: &Model, controls: &Controls, state: &State, lists: &Neighbours) -> Real {
     if !lists.is_built {
         return 0.0;
     }
     let (moved, walls) =
         (lists.displacement_squared_max.sqrt(), wall_list::displacement(model, state, lists));
+    let surfaces = walls.max(place_list::displacement(model, controls, state, lists));
     // NaN counts as farther than everything.
-    lists.growth_max + if moved < walls { walls } else { moved }
+    lists.growth_max + if moved < surfaces { surfaces } else { moved }
 }
 
 /// Grains without candidates have no patches until the next build.
