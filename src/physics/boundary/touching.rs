@@ -194,3 +194,62 @@ fn distance_from_edge(point: &Vec3, from: &Vec3, to: &Vec3) -> Real {
     let along = ((point - from).dot(&side) / side.norm_squared()).clamp(0.0, 1.0);
     (point - (from + side * along)).norm()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two planes that meet on the x axis and rise by `slope` on both sides, cut into triangles.
+    fn valley(slope: Real) -> Triangles {
+        let line = |y: Real| [-1.0, 0.1, 1.0].map(|x| Vec3::new(x, y, slope * y.abs()));
+        let vertices = [-1.0, 0.0, 1.0].into_iter().flat_map(line).collect();
+        let square = |k: u32| [[k, k + 1, k + 3], [k + 1, k + 4, k + 3]];
+        Triangles::new(vertices, [0, 1, 3, 4].into_iter().flat_map(square).collect()).unwrap()
+    }
+
+    /// Force of a spring with overlaps as lengths, with the shares (m).
+    fn force(surface: &Triangles, point: &Vec3, reach: Real) -> Vec3 {
+        let all: Vec<u32> = (0..8).collect();
+        let touches = surface.touching(&all, point, reach);
+        let of_one = |it: &Touch| it.nearest.normal * ((reach - it.nearest.distance) * it.share);
+        touches.iter().map(of_one).sum()
+    }
+
+    /// Oracle: continuity. The largest jump on a way across the valley, which a grain of radius 0.2 crosses at an
+    /// overlap of 5 %, is proportional to the length of a step.
+    #[test]
+    fn the_force_has_no_jump_in_a_shallow_valley() {
+        for slope in [0.0, 1e-6, 0.01, 0.05, 0.1, 0.3] {
+            let surface = valley(slope);
+            let jump = |n: u32| {
+                let place = |k: u32| {
+                    let y = 0.06 * (2.0 * Real::from(k) / Real::from(n) - 1.0);
+                    force(&surface, &Vec3::new(0.03 + y, y, 0.19 * (1.0 + slope * slope)), 0.2)
+                };
+                let steps = (0..n).map(|k| (place(k + 1) - place(k)).norm());
+                steps.fold(0.0, Real::max)
+            };
+            // The share varies as a root where a minimum ends.
+            let (coarse, fine) = (jump(1000), jump(64_000));
+            assert!(fine <= coarse / 6.0 + 1e-12, "slope {slope}: {coarse} {fine}");
+            if slope < 1e-3 {
+                assert!(coarse < 1e-6, "slope {slope}: {coarse}");
+            }
+        }
+    }
+
+    /// Oracle: symmetry. In the middle of a very shallow valley both sides have half of the force; in a
+    /// steep one, whose edge the sphere does not reach, all of it.
+    #[test]
+    fn two_sides_share_in_a_shallow_valley_only() {
+        let all: Vec<u32> = (0..8).collect();
+        let shares = |slope: Real, height: Real| -> Vec<Real> {
+            let touches = valley(slope).touching(&all, &Vec3::new(0.03, 0.0, height), 0.2);
+            touches.iter().map(|it| it.share).collect()
+        };
+        let shallow = shares(1e-3, 0.19);
+        assert_eq!(shallow.len(), 2);
+        assert!(shallow.iter().all(|share| (share - 0.5).abs() < 1e-4), "{shallow:?}");
+        assert_eq!(shares(1.0, 0.27), [1.0, 1.0]);
+    }
+}

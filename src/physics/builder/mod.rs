@@ -37,13 +37,15 @@ const UNIT_TOLERANCE: Real = 1e-9;
 
 /// Puts a system together from its parts and checks that they fit.
 ///
-/// Two grains that fall into a box with a shaken floor:
+/// Two grains that fall on a ramp of triangles in a box with a shaken floor:
 ///
 /// ```
 /// use jamgrip::{
 ///     base::Vec3,
 ///     physics::{
-///         SystemBuilder, boundary::motion::WallMotion, builder::Wall, law::Surface,
+///         SystemBuilder,
+///         boundary::{motion::WallMotion, triangles::Triangles},
+///         builder::Wall, law::Surface,
 ///     },
 ///     scene::Material,
 /// };
@@ -60,12 +62,16 @@ const UNIT_TOLERANCE: Real = 1e-9;
 ///     axis: Vec3::z(), amplitude: 0.2e-3, frequency: 30.0, phase: 0.0,
 /// };
 /// builder.walls([floor.moving(shaken), left, right, front, back]);
+/// let (low, high) = (Vec3::new(-0.01, -0.01, 0.0), Vec3::new(0.01, 0.01, 2e-3));
+/// let corners = vec![low, Vec3::new(0.01, -0.01, 0.0), Vec3::new(-0.01, 0.01, 2e-3), high];
+/// let ramp = Triangles::new(corners, vec![[0, 1, 2], [1, 3, 2]])?;
+/// builder.wall(Wall::triangles(ramp));
 /// let mut system = builder.build()?;
 /// for _ in 0..1000 {
 ///     system.step();
 /// }
 /// assert!(system.state.grains.positions.iter().all(|p| p.z > 1e-3));
-/// # Ok::<(), jamgrip::physics::builder::BuildError>(())
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
 /// The first wall that is added is the carrier, the frame of reference of the system

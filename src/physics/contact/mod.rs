@@ -6,10 +6,14 @@ pub mod bodies;
 mod candidates; // where a grain is closest to the membrane
 pub mod grains;
 pub mod membrane;
+#[cfg(test)]
+mod body_tests; // grains on bodies
 pub mod places; // grains on triangles and bodies
 mod sharing; // one force among several places
 pub mod spheres;
 pub mod sums;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod triangle_tests; // grains on walls of triangles
 pub mod walls;
