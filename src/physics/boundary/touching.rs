@@ -229,11 +229,13 @@ mod tests {
                 let steps = (0..n).map(|k| (place(k + 1) - place(k)).norm());
                 steps.fold(0.0, Real::max)
             };
-            // The share varies as a root where a minimum ends.
             let (coarse, fine) = (jump(1000), jump(64_000));
-            assert!(fine <= coarse / 6.0 + 1e-12, "slope {slope}: {coarse} {fine}");
             if slope < 1e-3 {
-                assert!(coarse < 1e-6, "slope {slope}: {coarse}");
+                // One step passes from one side to the other, whose normals hardly differ.
+                assert!(coarse < 1e-7, "slope {slope}: {coarse}");
+            } else {
+                // The share varies as a root where a minimum ends.
+                assert!(fine <= coarse / 6.0, "slope {slope}: {coarse} {fine}");
             }
         }
     }

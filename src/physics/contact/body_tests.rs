@@ -83,7 +83,7 @@ fn a_grain_rests_on_a_body_as_on_a_plane() {
 #[test]
 fn bodies_and_grains_exchange_momentum() {
     let points = [Vec3::x(), Vec3::y(), Vec3::z(), -Vec3::x(), -Vec3::y(), -Vec3::z()];
-    let hull = Shape::convex_hull(&points.map(|p| p * 6e-3)).unwrap();
+    let hull = Shape::convex_hull(&points.map(|p| p * 5e-3)).unwrap();
     let mut builder = builder();
     for k in 0..27 {
         let steps = [k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1].map(Real::from);
@@ -99,12 +99,12 @@ fn bodies_and_grains_exchange_momentum() {
     for (k, (shape, place)) in shapes.into_iter().zip(places).enumerate() {
         let spin = Vec3::new(5.0, -3.0, 4.0) * (1.0 - 0.4 * k as Real);
         let twist = Twist { linear: place * -0.3, angular: spin };
-        builder.body(touched(shape), BodyMotion { twist, ..at(place * 0.013) });
+        builder.body(touched(shape), BodyMotion { twist, ..at(place * 0.0112) });
     }
     let mut system = builder.build().unwrap();
     let (dt, mut most) = (system.model.substep, 0.0_f64);
     let mut n_contacts = 0;
-    for _ in 0..400 {
+    for _ in 0..800 {
         let before = system.state.grains.clone();
         let bodies = system.controls.bodies.clone();
         system.step();
@@ -125,8 +125,8 @@ fn bodies_and_grains_exchange_momentum() {
             impulse += gained - weight;
             turning += before.positions[i].cross(&(gained - weight)) + spun;
         }
-        assert!(impulse.norm() <= 1e-13 * most.max(1e-9), "{} {most}", impulse.norm());
-        assert!(turning.norm() <= 1e-13 * 0.02 * most.max(1e-9), "{} {most}", turning.norm());
+        assert!(impulse.norm() <= 1e-12 * most.max(1e-7), "{} {most}", impulse.norm());
+        assert!(turning.norm() <= 1e-12 * 0.02 * most.max(1e-7), "{} {most}", turning.norm());
         system.controls.bodies.iter_mut().for_each(|body| body.advance(dt));
     }
     assert!(most > 0.0 && n_contacts > 1000, "{n_contacts}");
@@ -153,7 +153,7 @@ fn a_cube_on_a_bed_of_grains_comes_to_rest() {
     let mut system = builder.build().unwrap();
     let (dt, mass) = (system.model.substep, 1500.0 * edge * edge * edge);
     let inertia = mass * edge * edge / 6.0;
-    let (n, n_last) = (12_000, 2000);
+    let (n, n_last) = (20_000, 4000);
     let mut carried = Vec3::zeros();
     for k in 0..n {
         system.step();
@@ -169,7 +169,7 @@ fn a_cube_on_a_bed_of_grains_comes_to_rest() {
         body.pose.rotation = Quat::from_scaled_axis(body.twist.angular * dt) * body.pose.rotation;
     }
     let body = &system.controls.bodies[0];
-    assert!(body.twist.linear.norm() < 1e-3, "{}", body.twist.linear);
+    assert!(body.twist.linear.norm() < 5e-3, "{}", body.twist.linear);
     assert!((carried.z / (mass * GRAVITY) - 1.0).abs() < 0.01, "{carried}");
     assert!(carried.xy().norm() < 0.01 * mass * GRAVITY, "{carried}");
     assert!(0.016 < body.pose.translation.z, "{}", body.pose.translation);

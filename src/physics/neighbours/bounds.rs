@@ -112,8 +112,8 @@ mod tests {
             let origin = motion.pose.translation.vector;
             for position in &grains.positions {
                 let distance = (position - origin).norm();
-                assert!(bounds.distance_from(&origin) <= distance);
-                assert!(distance <= bounds.furthest_from(&origin));
+                assert!(bounds.distance_from(&origin) <= distance + 1e-12);
+                assert!(distance <= bounds.furthest_from(&origin) + 1e-12);
             }
             for shape in &shapes {
                 let wall = WallModel::fixed(shape.clone(), law);
