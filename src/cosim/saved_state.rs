@@ -9,7 +9,7 @@ use crate::{
         State,
         boundary::{body::BodyMotion, motion::WallMemory},
         membrane::MembraneState,
-        state::{Grains, ListedSprings, N_PATCHES, Patch, Patches, Springs},
+        state::{Grains, ListedSprings, N_PATCHES, Patch, Patches, Place, PlaceSprings, Springs},
     },
 };
 
@@ -64,6 +64,15 @@ struct Memories {
     walls: Vec<Real>,
 }
 
+/// Contacts of grains in several places of a surface. They follow the memories of walls where there are any.
+#[derive(Default, Serialize, Deserialize)]
+struct Places {
+    ids: Vec<[u32; 2]>,
+    /// Springs and normals.
+    places: Vec<[Real; 6]>,
+    memories: Vec<Vec<Real>>,
+}
+
 const DIGEST_BYTES: usize = 8;
 
 /// The bytes of `state`, all of it.
@@ -94,32 +103,68 @@ pub fn write(state: &State) -> Vec<u8> {
     };
     let is_cohesive = !memories.pairs.is_empty() || !memories.walls.is_empty();
     let moves_by_itself = !state.wall_memory.is_empty();
-    // Only cohesive laws and walls that move by time or load have any: without them the bytes are
-    // those of earlier versions.
-    if is_cohesive || moves_by_itself {
+    let has_places = !state.springs.places.ids.is_empty();
+    // Only cohesive laws, walls that move by time or load, walls of triangles and bodies that grains touch
+    // have any: without them the bytes are those of earlier versions.
+    if is_cohesive || moves_by_itself || has_places {
         let memories = if is_cohesive { memories } else { Memories::default() };
         bytes = postcard::to_extend(&memories, bytes).expect("a list of numbers always serialises");
     }
-    if moves_by_itself {
+    if moves_by_itself || has_places {
         let walls: Vec<[Real; 2]> =
             state.wall_memory.iter().map(|it| [it.time, it.force]).collect();
         bytes = postcard::to_extend(&walls, bytes).expect("a list of numbers always serialises");
     }
+    if has_places {
+        let places = Places::of(&state.springs.places);
+        bytes = postcard::to_extend(&places, bytes).expect("a list of numbers always serialises");
+    }
     sealed(bytes)
 }
 
-/// What follows the numbers of a state: memories of contacts, then those of walls, if there are any.
-fn read_memories(rest: &[u8]) -> Result<(Memories, Vec<WallMemory>), postcard::Error> {
-    if rest.is_empty() {
-        return Ok((Memories::default(), Vec::new()));
-    }
-    let (memories, rest) = postcard::take_from_bytes(rest)?;
-    if rest.is_empty() {
-        return Ok((memories, Vec::new()));
-    }
-    let walls: Vec<[Real; 2]> = postcard::from_bytes(rest)?;
+/// What follows the numbers of a state: memories of contacts, those of walls, and contacts in several places.
+type Rest = (Memories, Vec<WallMemory>, Places);
+
+/// Reads what is there; what is missing at the end is empty.
+fn read_rest(rest: &[u8]) -> Result<Rest, postcard::Error> {
+    let (memories, rest) = take_or_default(rest)?;
+    let (walls, rest): (Vec<[Real; 2]>, _) = take_or_default(rest)?;
+    let (places, _) = take_or_default(rest)?;
     let walls = walls.into_iter().map(|[time, force]| WallMemory { time, force }).collect();
-    Ok((memories, walls))
+    Ok((memories, walls, places))
+}
+
+fn take_or_default<'a, T: Default + Deserialize<'a>>(
+    rest: &'a [u8],
+) -> Result<(T, &'a [u8]), postcard::Error> {
+    if rest.is_empty() { Ok((T::default(), rest)) } else { postcard::take_from_bytes(rest) }
+}
+
+impl Places {
+    fn of(springs: &PlaceSprings) -> Self {
+        let row = |it: &Place| {
+            let (spring, normal) = (it.spring, it.normal);
+            [spring.x, spring.y, spring.z, normal.x, normal.y, normal.z]
+        };
+        Self {
+            ids: springs.ids.clone(),
+            places: springs.places.iter().map(row).collect(),
+            memories: springs.places.iter().map(|it| it.memory.clone()).collect(),
+        }
+    }
+
+    fn springs(self) -> Result<PlaceSprings, SavedStateError> {
+        same_counts(&[
+            ("springs in places", self.places.len(), self.ids.len()),
+            ("memories in places", self.memories.len(), self.ids.len()),
+        ])?;
+        let place = |(row, memory): (&[Real; 6], Vec<Real>)| {
+            let &[sx, sy, sz, nx, ny, nz] = row;
+            Place { spring: Vec3::new(sx, sy, sz), normal: Vec3::new(nx, ny, nz), memory }
+        };
+        let places = self.places.iter().zip(self.memories).map(place).collect();
+        Ok(PlaceSprings { ids: self.ids, places })
+    }
 }
 
 /// True if both are the same to the bit. As in the digest, only loaded springs count: which empty
@@ -206,7 +251,7 @@ pub fn read(bytes: &[u8]) -> Result<State, SavedStateError> {
     let (numbers, rest): (Numbers, _) =
         postcard::take_from_bytes(unsealed(bytes)?).map_err(|_| corrupt.clone())?;
     numbers.check()?;
-    let (memories, wall_memory) = read_memories(rest).map_err(|_| corrupt)?;
+    let (memories, wall_memory, places) = read_rest(rest).map_err(|_| corrupt)?;
     let walls = listed_walls(&numbers, memories.wall_ids, memories.walls);
     if !wall_memory.is_empty() {
         same_counts(&[("walls' motions", wall_memory.len(), numbers.walls.len())])?;
@@ -233,6 +278,7 @@ pub fn read(bytes: &[u8]) -> Result<State, SavedStateError> {
                 memories: Vec::new(),
             },
             walls,
+            places: places.springs()?,
             bodies: vectors(&numbers.body_springs),
         },
         pair_ids: numbers.pair_ids,

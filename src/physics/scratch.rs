@@ -1,7 +1,10 @@
 //! Scratch: everything that can be recomputed. It is never saved.
 
 use super::{
-    Model, State, boundary::body::BodyMotion, membrane::MembraneScratch, state::N_PATCHES,
+    Model, State,
+    boundary::body::BodyMotion,
+    membrane::MembraneScratch,
+    state::{N_PATCHES, Place},
 };
 use crate::base::{Real, Vec3, real::Wrench};
 
@@ -24,6 +27,9 @@ pub struct Scratch {
     pub sphere_forces: Vec<SphereForce>,
     /// Forces of walls on grains, in the order of `Springs::walls`. Written by `contact::walls`.
     pub wall_forces: Vec<WallForce>,
+    /// Contacts of grains with walls of triangles and with bodies, in the order of `PlaceLists::ids`. Written by
+    /// `contact::places`.
+    pub places: Vec<Vec<PlaceContact>>,
     /// Forces of bodies on samples of the membrane, body by body: all vertices, then all facets. Only listed
     /// samples touch. Written by `contact::bodies`.
     pub sample_forces: Vec<SampleForce>,
@@ -31,11 +37,11 @@ pub struct Scratch {
     pub vertex_forces: Vec<Vec3>,
     /// Internal forces and pressure. Written by `membrane::forces`.
     pub membrane: MembraneScratch,
-    /// Wrench of the membrane on each body about its center of mass in this substep (N), (N m), world axes.
-    /// Written by `contact::sums`.
+    /// Wrench of membrane and grains on each body about its center of mass in this substep (N), (N m), world
+    /// axes. Written by `contact::sums` and `contact::places`.
     pub body_wrenches: Vec<Wrench>,
     /// Wrench of membrane, grains and air on each wall about its origin in this substep (N), (N m), world axes.
-    /// Written by `contact::sums`.
+    /// Written by `contact::sums` and `contact::places`.
     pub wall_wrenches: Vec<Wrench>,
     /// A grain whose center has left the membrane, if any. Written by `contact::sums` and, if grains touch
     /// vertex spheres, by `neighbours`.
@@ -54,6 +60,7 @@ impl Scratch {
             patch_forces: Vec::new(),
             sphere_forces: Vec::new(),
             wall_forces: Vec::new(),
+            places: Vec::new(),
             sample_forces: Vec::new(),
             vertex_forces: vec![Vec3::zeros(); model.membrane.mesh.n_vertices()],
             membrane: MembraneScratch::new(&model.membrane),
@@ -77,16 +84,26 @@ impl Scratch {
         self.pair_flags.iter().filter(|flags| flags.slides()).count()
     }
 
-    /// Forces of the walls on the grains that touch them in the last substep, with the indices of wall and
-    /// grain, in list order.
+    /// Forces of walls and bodies on the grains that touch them in the last substep, with the indices of wall and
+    /// grain, in list order. Contacts with walls of triangles and with bodies come last, with the indices of
+    /// `Model::surface`.
     pub fn touching_walls<'a>(
         &'a self,
         state: &'a State,
     ) -> impl Iterator<Item = (&'a WallForce, [usize; 2])> {
         let contacts = self.wall_forces.iter().zip(&state.springs.walls.ids);
+        let places = self.place_contacts().map(|(contact, ids)| (&contact.force, ids));
         contacts
+            .chain(places)
             .filter(|(contact, _)| contact.flags.touches())
             .map(|(contact, ids)| (contact, ids.map(|id| id as usize)))
+    }
+
+    /// Contacts with walls of triangles and with bodies in the last substep, with the indices of surface, as in
+    /// `Model::surface`, and grain.
+    pub fn place_contacts(&self) -> impl Iterator<Item = (&PlaceContact, &[u32; 2])> {
+        let of_grains = self.places.iter().zip(&self.neighbours.places.ids);
+        of_grains.flat_map(|(contacts, ids)| contacts.iter().map(move |contact| (contact, ids)))
     }
 }
 
@@ -171,9 +188,13 @@ pub struct Neighbours {
     pub wall_starts: Vec<u32>,
     /// Indices of listed contacts with walls, sorted by grain.
     pub wall_contacts: Vec<u32>,
+    /// Grains that walls of triangles and bodies may touch.
+    pub places: PlaceLists,
     /// Motion of each wall at the last build.
     pub walls_at_build: Vec<BodyMotion>,
-    /// Largest distance of a grain from the origin of each wall at the last build, plus the skin (m).
+    /// Distance by which each wall may approach the grains, in addition to the skin, before it can touch one (m).
+    pub wall_gaps: Vec<Real>,
+    /// Bound of the distance of grains from the origin of each wall at the last build, plus the skin (m).
     pub wall_extents: Vec<Real>,
     /// Radii of the grains at the last build (m).
     pub radii: Vec<Real>,
@@ -183,6 +204,27 @@ pub struct Neighbours {
     pub displacement_squared_max: Real,
     /// Number of builds so far.
     pub n_builds: u64,
+}
+
+/// Grains that walls of triangles and bodies may touch.
+#[derive(Clone, Default)]
+pub struct PlaceLists {
+    /// Surface, as in `Model::surface`, and grain of each entry; ascending.
+    pub ids: Vec<[u32; 2]>,
+    /// Candidate triangles of entry k are at `triangle_starts[k] .. triangle_starts[k + 1]` in `triangles`.
+    pub triangle_starts: Vec<u32>,
+    /// Triangles that the grain may touch, ascending for each entry.
+    pub triangles: Vec<u32>,
+    /// Entries of grain i are at `grain_starts[i] .. grain_starts[i + 1]` in `by_grain`.
+    pub grain_starts: Vec<u32>,
+    /// Indices of entries, sorted by grain.
+    pub by_grain: Vec<u32>,
+    /// The bodies at the last build.
+    pub bodies_at_build: Vec<BodyMotion>,
+    /// For each body, a bound of the distance of its own points or of all grains from its origin (m).
+    pub extents: Vec<Real>,
+    /// Distance by which each body may approach the grains, in addition to the skin, before it can touch one (m).
+    pub gaps: Vec<Real>,
 }
 
 /// Samples of the membrane that bodies may touch. The lists are complete until samples and bodies have
@@ -317,7 +359,7 @@ pub struct SphereForce {
 }
 
 /// Force of a wall on one grain.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct WallForce {
     /// Force on the grain (N).
     pub force: Vec3,
@@ -330,6 +372,17 @@ pub struct WallForce {
     /// Whether a force acts. A grain that separates so fast that the normal force is zero does not count as
     /// touching.
     pub flags: ContactFlags,
+}
+
+/// A contact of a grain with a wall of triangles or a body.
+#[derive(Clone, Debug)]
+pub struct PlaceContact {
+    /// Its history.
+    pub place: Place,
+    /// Its force on the grain.
+    pub force: WallForce,
+    /// Share of the force of a single contact, see `boundary::touching`; included in `force`.
+    pub share: Real,
 }
 
 /// Force of a body on a sample of the membrane.

@@ -85,6 +85,8 @@ pub struct Springs {
     pub spheres: ListedSprings,
     /// Contacts of walls with grains. Written by `contact::walls`.
     pub walls: ListedSprings,
+    /// Contacts of grains with walls of triangles and with bodies. Written by `contact::places`.
+    pub places: PlaceSprings,
     /// Springs between membrane samples and bodies (m), body by body: all vertices, then all facets. Written
     /// by `contact::bodies`.
     pub bodies: Vec<Vec3>,
@@ -99,6 +101,7 @@ impl Springs {
             patches: vec![Patches::NONE; n_grains],
             spheres: ListedSprings::default(),
             walls: ListedSprings::default(),
+            places: PlaceSprings::default(),
             bodies: vec![Vec3::zeros(); n_samples],
         }
     }
@@ -125,6 +128,28 @@ impl ListedSprings {
             here.map_or_else(Vec3::zeros, |(_, spring)| *spring)
         })
     }
+}
+
+/// History of contacts of grains with walls of triangles and with bodies. A grain may have several contacts with
+/// the same surface.
+#[derive(Clone, Debug, Default)]
+pub struct PlaceSprings {
+    /// Surface, as in `Model::surface`, and grain of each contact; ascending.
+    pub ids: Vec<[u32; 2]>,
+    /// History of each contact.
+    pub places: Vec<Place>,
+}
+
+/// History of one contact of a grain with a surface. The contact persists while the grain slides or rolls from
+/// triangle to triangle.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Place {
+    /// Tangential spring (m).
+    pub spring: Vec3,
+    /// Unit normal in the last substep, from the surface to the grain.
+    pub normal: Vec3,
+    /// Other history; empty for a law without cohesion.
+    pub memory: Vec<Real>,
 }
 
 /// One patch of membrane that a grain touches. The contact persists while the grain slides from triangle to
@@ -229,6 +254,12 @@ impl State {
                     digest.reals(memory);
                 }
             }
+        }
+        let places = &self.springs.places;
+        for (ids, place) in places.ids.iter().zip(&places.places) {
+            digest.integer(id(ids));
+            digest.vectors(&[place.spring, place.normal]);
+            digest.reals(&place.memory);
         }
     }
 }

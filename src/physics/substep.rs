@@ -2,7 +2,7 @@
 
 use super::{
     Controls, Model, Scratch, State, chamber,
-    contact::{bodies, grains, membrane as membrane_contact, spheres, sums, walls},
+    contact::{bodies, grains, membrane as membrane_contact, places, spheres, sums, walls},
     integrate, membrane, neighbours,
 };
 
@@ -32,9 +32,10 @@ pub static STAGES: &[(&str, Stage)] = &[
         let forces = &mut scratch.sphere_forces;
         spheres::forces(model, grains, membrane, &mut springs.spheres, forces);
     }),
-    ("contact_walls", |model, _, state, scratch| {
+    ("contact_walls", |model, controls, state, scratch| {
         let State { grains, walls, springs, .. } = state;
         walls::forces(model, walls, grains, &mut springs.walls, &mut scratch.wall_forces);
+        places::forces(model, controls, state, scratch);
     }),
     ("contact_bodies", |model, controls, state, scratch| {
         let State { membrane, springs, .. } = state;
@@ -45,6 +46,7 @@ pub static STAGES: &[(&str, Stage)] = &[
     ("sums", |model, controls, state, scratch| {
         sums::on_membrane(model, controls, scratch);
         sums::on_walls(model, controls, state, scratch);
+        places::react(model, controls, state, scratch);
     }),
     ("integrate", |model, controls, state, scratch| {
         integrate::advance(model, controls, scratch, state);

@@ -245,6 +245,7 @@ fn scaled_body(scene: &ScaledScene, object: &Object) -> Result<(BodyModel, Bulk)
         law: PairLaw::between(&scene.membrane.material, &object.material, on_object),
         contact_radius: contact_radius(&object.shape, bulk.volume),
         bounding_radius: surface.bounding_radius(),
+        of_grains: None,
         surface: BodySurface::Shape(Box::new(surface)),
     };
     Ok((model, bulk))
@@ -300,6 +301,7 @@ fn table(scene: &ScaledScene) -> BodyModel {
         law: PairLaw::against_rigid(&scene.membrane.material, on_table),
         contact_radius: TABLE_CONTACT_RADIUS,
         bounding_radius: Real::INFINITY,
+        of_grains: None,
     }
 }
 

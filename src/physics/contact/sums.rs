@@ -96,6 +96,18 @@ pub fn add_other_contacts(scratch: &Scratch, i: usize, of_pairs: &[Real; 8]) -> 
             torque += wall.arm.cross(&wall.force);
         }
     }
+    if !scratch.places.is_empty() {
+        let places =
+            lists.places.grain_starts[i] as usize..lists.places.grain_starts[i + 1] as usize;
+        for &k in &lists.places.by_grain[places] {
+            for contact in &scratch.places[k as usize] {
+                if contact.force.flags.touches() {
+                    force += contact.force.force;
+                    torque += contact.force.arm.cross(&contact.force.force);
+                }
+            }
+        }
+    }
     (force, torque)
 }
 

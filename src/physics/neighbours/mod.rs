@@ -1,19 +1,23 @@
-//! Lists of possible contacts. They reach beyond contact by the range of the law and by a skin, and are rebuilt
-//! only when something has moved far enough to use the skin up.
+//! Lists of possible contacts. They include everything within contact plus the range of the law plus a skin, and are
+//! rebuilt only when something has moved far enough to use up the skin.
 //!
-//! Displacements are relative to the carrier, the first wall, so that moving the whole gripper through the room
-//! causes no rebuild. Code that moves grains, vertices or walls other than by `integrate`, or changes the
-//! bodies, must set `Neighbours::is_built` to false. Contact history survives rebuilds: lists are sorted, so one
-//! merge of the old and the new list carries it over.
+//! Displacements are relative to the carrier, the first wall, so moving the whole gripper does not cause rebuilds.
+//! Code that moves grains, vertices or walls other than by `integrate`, or changes the bodies, must set
+//! `Neighbours::is_built` to false. Contact history survives rebuilds: lists are sorted, and one pass over the old
+//! and the new list transfers it.
 
 mod body_list;
+mod bounds; // bounding box of the grains
 pub(crate) mod cell_grid;
 mod crossings;
+mod place_list; // grains near triangles and bodies
 mod skin;
 mod sphere_list;
 mod triangle_list;
 mod verlet_list;
 mod wall_list;
+
+use bounds::Bounds;
 
 use super::{
     Controls, Model, Scratch, State,
@@ -23,28 +27,28 @@ use super::{
 };
 use crate::base::Real;
 
-/// Rebuilds the lists if they may have become incomplete.
+/// Rebuilds the lists if they may be incomplete.
 pub fn refresh(model: &Model, controls: &Controls, state: &mut State, scratch: &mut Scratch) {
     let Scratch { neighbours: lists, sample_forces, .. } = scratch;
     lists.bodies.is_built &= lists.is_built;
     let of_bodies = (&mut lists.bodies, sample_forces);
     body_list::refresh(model, controls, state, lists.vertex_travel, of_bodies);
-    refresh_grains(model, state, scratch);
+    refresh_grains(model, controls, state, scratch);
 }
 
-/// The same for all lists of grains.
-fn refresh_grains(model: &Model, state: &mut State, scratch: &mut Scratch) {
+/// Rebuilds all lists of grains if they may be incomplete.
+fn refresh_grains(model: &Model, controls: &Controls, state: &mut State, scratch: &mut Scratch) {
     let lists = &mut scratch.neighbours;
-    let used = 2.0 * used(model, state, lists);
-    // The factor keeps the last substep's motion, which is not measured yet, inside the skin.
+    let used = 2.0 * used(model, controls, state, lists);
+    // The factor reserves a part of the skin for the motion of the last substep, which is not measured yet.
     let is_complete = lists.is_built && used < 0.9 * lists.skin;
     if is_complete && !skin::is_too_thick(model, lists, used) {
         lists.n_since_build += 1;
         return;
     }
-    // The motion before the first build, or by other code, is unknown.
+    // Motion before the first build, or by other code, is unknown.
     lists.skin = if lists.is_built { skin::optimal(model, lists, used) } else { model.skin };
-    // In a periodic box there is no membrane, so the wrapped grid serves the pairs alone.
+    // In a periodic box there is no membrane, so only pairs use the wrapped grid.
     let positions = match &model.period {
         Some(period) => verlet_list::wrap(&state.grains.positions, period),
         None => state.grains.positions.clone(),
@@ -65,8 +69,10 @@ fn refresh_grains(model: &Model, state: &mut State, scratch: &mut Scratch) {
             scratch.leaked = scratch.leaked.or_else(|| crossings::first(model, &grid, state));
         }
     }
-    forget_patches(lists, &mut state.springs.patches, &mut scratch.patch_forces);
-    wall_list::build(model, state, lists, &mut scratch.wall_forces);
+    remove_patches(lists, &mut state.springs.patches, &mut scratch.patch_forces);
+    let bounds = Bounds::of(&state.grains);
+    wall_list::build(model, state, &bounds, lists, &mut scratch.wall_forces);
+    place_list::build(model, controls, state, (&grid, &bounds), lists);
     update_pair_masses(state, lists);
     lists.grain_positions.clone_from(&state.grains.positions);
     lists.vertex_positions.clone_from(&state.membrane.positions);
@@ -79,19 +85,20 @@ fn refresh_grains(model: &Model, state: &mut State, scratch: &mut Scratch) {
     lists.n_builds += 1;
 }
 
-/// The most that anything has moved or grown since the last build (m).
-fn used(model: &Model, state: &State, lists: &Neighbours) -> Real {
+/// Largest displacement or growth of anything since the last build (m).
+fn used(model: &Model, controls: &Controls, state: &State, lists: &Neighbours) -> Real {
     if !lists.is_built {
         return 0.0;
     }
     let (moved, walls) =
         (lists.displacement_squared_max.sqrt(), wall_list::displacement(model, state, lists));
-    // NaN counts as farther than everything.
-    lists.growth_max + if moved < walls { walls } else { moved }
+    let surfaces = walls.max(place_list::displacement(model, controls, state, lists));
+    // NaN counts as the largest displacement.
+    lists.growth_max + if moved < surfaces { surfaces } else { moved }
 }
 
-/// Grains without candidates have no patches until the next build.
-fn forget_patches(lists: &Neighbours, springs: &mut [Patches], forces: &mut Vec<PatchForces>) {
+/// Removes the patches of grains without candidate triangles, which have none until the next build.
+fn remove_patches(lists: &Neighbours, springs: &mut [Patches], forces: &mut Vec<PatchForces>) {
     forces.resize(springs.len(), PatchForces::NONE);
     for (i, (patches, forces)) in springs.iter_mut().zip(forces).enumerate() {
         if lists.triangle_starts[i] == lists.triangle_starts[i + 1] {
@@ -100,16 +107,16 @@ fn forget_patches(lists: &Neighbours, springs: &mut [Patches], forces: &mut Vec<
     }
 }
 
-/// Updates effective radii and masses of the listed pairs. Call it whenever radii or masses change.
+/// Updates the effective radii and masses of the listed pairs. Must be called after radii or masses change.
 pub fn update_pair_masses(state: &State, lists: &mut Neighbours) {
-    let parallel = |a: f64, b: f64| a * b / (a + b);
+    let reduced = |a: f64, b: f64| a * b / (a + b);
     let of_pairs = |quantity: &[f64]| {
         let ids = state.pair_ids.iter().map(|ids| ids.map(|id| id as usize));
-        ids.map(|[i, j]| parallel(quantity[i], quantity[j])).collect()
+        ids.map(|[i, j]| reduced(quantity[i], quantity[j])).collect()
     };
     lists.pair_radii = of_pairs(&state.grains.radii);
     lists.pair_masses = of_pairs(&state.grains.masses);
-    let grown = state.grains.radii.iter().zip(&lists.radii).map(|(now, then)| now - then);
+    let growth = state.grains.radii.iter().zip(&lists.radii).map(|(now, then)| now - then);
     lists.wake_at.fill(0.0);
-    lists.growth_max = grown.fold(0.0, f64::max);
+    lists.growth_max = growth.fold(0.0, f64::max);
 }
