@@ -128,7 +128,7 @@ impl Coupled {
         let System { model, controls, state, scratch } = &mut self.system;
         self.n_objects = model.bodies.len() - 1;
         *controls = super::controls(model, state, &self.world);
-        state.springs.places.forget_bodies(state.walls.len());
+        state.springs.surfaces.forget_bodies(state.walls.len());
         *scratch = Scratch::new(model);
     }
 
@@ -241,9 +241,9 @@ fn carry(state: &mut State, pose: &Pose) {
             patch.normal = turn * patch.normal;
         }
     }
-    for place in &mut springs.places.places {
-        place.spring = turn * place.spring;
-        place.normal = turn * place.normal;
+    for history in &mut springs.surfaces.histories {
+        history.spring = turn * history.spring;
+        history.normal = turn * history.normal;
     }
     springs.bodies.fill(Vec3::zeros());
     state.walls[FLANGE] = BodyMotion { pose: *pose, twist: Twist::zero() };

@@ -9,7 +9,10 @@ use crate::{
         State,
         boundary::{body::BodyMotion, motion::WallMemory},
         membrane::MembraneState,
-        state::{Grains, ListedSprings, N_PATCHES, Patch, Patches, Place, PlaceSprings, Springs},
+        state::{
+            Grains, ListedSprings, N_PATCHES, Patch, Patches, Springs, SurfaceHistories,
+            SurfaceHistory,
+        },
     },
 };
 
@@ -64,12 +67,12 @@ struct Memories {
     walls: Vec<Real>,
 }
 
-/// Contacts of grains in several places of a surface. They follow the memories of walls where there are any.
+/// History of contacts of grains with walls of triangles and with bodies. It follows the memories of walls.
 #[derive(Default, Serialize, Deserialize)]
-struct Places {
+struct Surfaces {
     ids: Vec<[u32; 2]>,
     /// Springs and normals.
-    places: Vec<[Real; 6]>,
+    histories: Vec<[Real; 6]>,
     memories: Vec<Vec<Real>>,
 }
 
@@ -103,35 +106,35 @@ pub fn write(state: &State) -> Vec<u8> {
     };
     let is_cohesive = !memories.pairs.is_empty() || !memories.walls.is_empty();
     let moves_by_itself = !state.wall_memory.is_empty();
-    let has_places = !state.springs.places.ids.is_empty();
+    let has_surfaces = !state.springs.surfaces.ids.is_empty();
     // Only cohesive laws, walls that move by time or load, walls of triangles and bodies that grains touch
     // have any: without them the bytes are those of earlier versions.
-    if is_cohesive || moves_by_itself || has_places {
+    if is_cohesive || moves_by_itself || has_surfaces {
         let memories = if is_cohesive { memories } else { Memories::default() };
         bytes = postcard::to_extend(&memories, bytes).expect("a list of numbers always serialises");
     }
-    if moves_by_itself || has_places {
+    if moves_by_itself || has_surfaces {
         let walls: Vec<[Real; 2]> =
             state.wall_memory.iter().map(|it| [it.time, it.force]).collect();
         bytes = postcard::to_extend(&walls, bytes).expect("a list of numbers always serialises");
     }
-    if has_places {
-        let places = Places::of(&state.springs.places);
-        bytes = postcard::to_extend(&places, bytes).expect("a list of numbers always serialises");
+    if has_surfaces {
+        let surfaces = Surfaces::of(&state.springs.surfaces);
+        bytes = postcard::to_extend(&surfaces, bytes).expect("a list of numbers always serialises");
     }
     sealed(bytes)
 }
 
-/// What follows the numbers of a state: memories of contacts, those of walls, and contacts in several places.
-type Rest = (Memories, Vec<WallMemory>, Places);
+/// What follows the numbers of a state: memories of contacts, those of walls, and histories of contacts with surfaces.
+type Rest = (Memories, Vec<WallMemory>, Surfaces);
 
 /// Reads what is there; what is missing at the end is empty.
 fn read_rest(rest: &[u8]) -> Result<Rest, postcard::Error> {
     let (memories, rest) = take_or_default(rest)?;
     let (walls, rest): (Vec<[Real; 2]>, _) = take_or_default(rest)?;
-    let (places, _) = take_or_default(rest)?;
+    let (surfaces, _) = take_or_default(rest)?;
     let walls = walls.into_iter().map(|[time, force]| WallMemory { time, force }).collect();
-    Ok((memories, walls, places))
+    Ok((memories, walls, surfaces))
 }
 
 fn take_or_default<'a, T: Default + Deserialize<'a>>(
@@ -140,30 +143,30 @@ fn take_or_default<'a, T: Default + Deserialize<'a>>(
     if rest.is_empty() { Ok((T::default(), rest)) } else { postcard::take_from_bytes(rest) }
 }
 
-impl Places {
-    fn of(springs: &PlaceSprings) -> Self {
-        let row = |it: &Place| {
+impl Surfaces {
+    fn of(springs: &SurfaceHistories) -> Self {
+        let row = |it: &SurfaceHistory| {
             let (spring, normal) = (it.spring, it.normal);
             [spring.x, spring.y, spring.z, normal.x, normal.y, normal.z]
         };
         Self {
             ids: springs.ids.clone(),
-            places: springs.places.iter().map(row).collect(),
-            memories: springs.places.iter().map(|it| it.memory.clone()).collect(),
+            histories: springs.histories.iter().map(row).collect(),
+            memories: springs.histories.iter().map(|it| it.memory.clone()).collect(),
         }
     }
 
-    fn springs(self) -> Result<PlaceSprings, SavedStateError> {
+    fn springs(self) -> Result<SurfaceHistories, SavedStateError> {
         same_counts(&[
-            ("springs in places", self.places.len(), self.ids.len()),
-            ("memories in places", self.memories.len(), self.ids.len()),
+            ("springs on surfaces", self.histories.len(), self.ids.len()),
+            ("memories on surfaces", self.memories.len(), self.ids.len()),
         ])?;
-        let place = |(row, memory): (&[Real; 6], Vec<Real>)| {
+        let history = |(row, memory): (&[Real; 6], Vec<Real>)| {
             let &[sx, sy, sz, nx, ny, nz] = row;
-            Place { spring: Vec3::new(sx, sy, sz), normal: Vec3::new(nx, ny, nz), memory }
+            SurfaceHistory { spring: Vec3::new(sx, sy, sz), normal: Vec3::new(nx, ny, nz), memory }
         };
-        let places = self.places.iter().zip(self.memories).map(place).collect();
-        Ok(PlaceSprings { ids: self.ids, places })
+        let histories = self.histories.iter().zip(self.memories).map(history).collect();
+        Ok(SurfaceHistories { ids: self.ids, histories })
     }
 }
 
@@ -251,7 +254,7 @@ pub fn read(bytes: &[u8]) -> Result<State, SavedStateError> {
     let (numbers, rest): (Numbers, _) =
         postcard::take_from_bytes(unsealed(bytes)?).map_err(|_| corrupt.clone())?;
     numbers.check()?;
-    let (memories, wall_memory, places) = read_rest(rest).map_err(|_| corrupt)?;
+    let (memories, wall_memory, surfaces) = read_rest(rest).map_err(|_| corrupt)?;
     let walls = listed_walls(&numbers, memories.wall_ids, memories.walls);
     if !wall_memory.is_empty() {
         same_counts(&[("walls' motions", wall_memory.len(), numbers.walls.len())])?;
@@ -278,7 +281,7 @@ pub fn read(bytes: &[u8]) -> Result<State, SavedStateError> {
                 memories: Vec::new(),
             },
             walls,
-            places: places.springs()?,
+            surfaces: surfaces.springs()?,
             bodies: vectors(&numbers.body_springs),
         },
         pair_ids: numbers.pair_ids,

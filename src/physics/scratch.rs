@@ -4,7 +4,7 @@ use super::{
     Model, State,
     boundary::body::BodyMotion,
     membrane::MembraneScratch,
-    state::{N_PATCHES, Place},
+    state::{N_PATCHES, SurfaceHistory},
 };
 use crate::base::{Real, Vec3, real::Wrench};
 
@@ -27,9 +27,9 @@ pub struct Scratch {
     pub sphere_forces: Vec<SphereForce>,
     /// Forces of walls on grains, in the order of `Springs::walls`. Written by `contact::walls`.
     pub wall_forces: Vec<WallForce>,
-    /// Contacts of grains with walls of triangles and with bodies, in the order of `PlaceLists::ids`. Written by
-    /// `contact::places`.
-    pub places: Vec<Vec<PlaceContact>>,
+    /// Contacts of grains with walls of triangles and with bodies, in the order of `SurfaceLists::ids`. Written by
+    /// `contact::surfaces`.
+    pub surface_contacts: Vec<Vec<SurfaceContact>>,
     /// Forces of bodies on samples of the membrane, body by body: all vertices, then all facets. Only listed
     /// samples touch. Written by `contact::bodies`.
     pub sample_forces: Vec<SampleForce>,
@@ -38,10 +38,10 @@ pub struct Scratch {
     /// Internal forces and pressure. Written by `membrane::forces`.
     pub membrane: MembraneScratch,
     /// Wrench of membrane and grains on each body about its center of mass in this substep (N), (N m), world
-    /// axes. Written by `contact::sums` and `contact::places`.
+    /// axes. Written by `contact::sums` and `contact::surfaces`.
     pub body_wrenches: Vec<Wrench>,
     /// Wrench of membrane, grains and air on each wall about its origin in this substep (N), (N m), world axes.
-    /// Written by `contact::sums` and `contact::places`.
+    /// Written by `contact::sums` and `contact::surfaces`.
     pub wall_wrenches: Vec<Wrench>,
     /// A grain whose center has left the membrane, if any. Written by `contact::sums` and, if grains touch
     /// vertex spheres, by `neighbours`.
@@ -60,7 +60,7 @@ impl Scratch {
             patch_forces: Vec::new(),
             sphere_forces: Vec::new(),
             wall_forces: Vec::new(),
-            places: Vec::new(),
+            surface_contacts: Vec::new(),
             sample_forces: Vec::new(),
             vertex_forces: vec![Vec3::zeros(); model.membrane.mesh.n_vertices()],
             membrane: MembraneScratch::new(&model.membrane),
@@ -92,17 +92,17 @@ impl Scratch {
         state: &'a State,
     ) -> impl Iterator<Item = (&'a WallForce, [usize; 2])> {
         let contacts = self.wall_forces.iter().zip(&state.springs.walls.ids);
-        let places = self.place_contacts().map(|(contact, ids)| (&contact.force, ids));
+        let surfaces = self.surface_contacts_with_ids().map(|(contact, ids)| (&contact.force, ids));
         contacts
-            .chain(places)
+            .chain(surfaces)
             .filter(|(contact, _)| contact.flags.touches())
             .map(|(contact, ids)| (contact, ids.map(|id| id as usize)))
     }
 
     /// Contacts with walls of triangles and with bodies in the last substep, with the indices of surface, as in
     /// `Model::surface`, and grain.
-    pub fn place_contacts(&self) -> impl Iterator<Item = (&PlaceContact, &[u32; 2])> {
-        let of_grains = self.places.iter().zip(&self.neighbours.places.ids);
+    pub fn surface_contacts_with_ids(&self) -> impl Iterator<Item = (&SurfaceContact, &[u32; 2])> {
+        let of_grains = self.surface_contacts.iter().zip(&self.neighbours.surfaces.ids);
         of_grains.flat_map(|(contacts, ids)| contacts.iter().map(move |contact| (contact, ids)))
     }
 }
@@ -189,7 +189,7 @@ pub struct Neighbours {
     /// Indices of listed contacts with walls, sorted by grain.
     pub wall_contacts: Vec<u32>,
     /// Grains that walls of triangles and bodies may touch.
-    pub places: PlaceLists,
+    pub surfaces: SurfaceLists,
     /// Motion of each wall at the last build.
     pub walls_at_build: Vec<BodyMotion>,
     /// Distance by which each wall may approach the grains, in addition to the skin, before it can touch one (m).
@@ -208,7 +208,7 @@ pub struct Neighbours {
 
 /// Grains that walls of triangles and bodies may touch.
 #[derive(Clone, Default)]
-pub struct PlaceLists {
+pub struct SurfaceLists {
     /// Surface, as in `Model::surface`, and grain of each entry; ascending.
     pub ids: Vec<[u32; 2]>,
     /// Candidate triangles of entry k are at `triangle_starts[k] .. triangle_starts[k + 1]` in `triangles`.
@@ -376,9 +376,9 @@ pub struct WallForce {
 
 /// A contact of a grain with a wall of triangles or a body.
 #[derive(Clone, Debug)]
-pub struct PlaceContact {
+pub struct SurfaceContact {
     /// Its history.
-    pub place: Place,
+    pub history: SurfaceHistory,
     /// Its force on the grain.
     pub force: WallForce,
     /// Share of the force of a single contact, see `boundary::touching`; included in `force`.

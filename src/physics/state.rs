@@ -85,8 +85,8 @@ pub struct Springs {
     pub spheres: ListedSprings,
     /// Contacts of walls with grains. Written by `contact::walls`.
     pub walls: ListedSprings,
-    /// Contacts of grains with walls of triangles and with bodies. Written by `contact::places`.
-    pub places: PlaceSprings,
+    /// Contacts of grains with walls of triangles and with bodies. Written by `contact::surfaces`.
+    pub surfaces: SurfaceHistories,
     /// Springs between membrane samples and bodies (m), body by body: all vertices, then all facets. Written
     /// by `contact::bodies`.
     pub bodies: Vec<Vec3>,
@@ -101,7 +101,7 @@ impl Springs {
             patches: vec![Patches::NONE; n_grains],
             spheres: ListedSprings::default(),
             walls: ListedSprings::default(),
-            places: PlaceSprings::default(),
+            surfaces: SurfaceHistories::default(),
             bodies: vec![Vec3::zeros(); n_samples],
         }
     }
@@ -133,17 +133,17 @@ impl ListedSprings {
 /// History of contacts of grains with walls of triangles and with bodies. A grain may have several contacts with
 /// the same surface.
 #[derive(Clone, Debug, Default)]
-pub struct PlaceSprings {
+pub struct SurfaceHistories {
     /// Surface, as in `Model::surface`, and grain of each contact; ascending.
     pub ids: Vec<[u32; 2]>,
     /// History of each contact.
-    pub places: Vec<Place>,
+    pub histories: Vec<SurfaceHistory>,
 }
 
 /// History of one contact of a grain with a surface. The contact persists while the grain slides or rolls from
 /// triangle to triangle.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Place {
+pub struct SurfaceHistory {
     /// Tangential spring (m).
     pub spring: Vec3,
     /// Unit normal in the last substep, from the surface to the grain.
@@ -255,11 +255,11 @@ impl State {
                 }
             }
         }
-        let places = &self.springs.places;
-        for (ids, place) in places.ids.iter().zip(&places.places) {
+        let surfaces = &self.springs.surfaces;
+        for (ids, history) in surfaces.ids.iter().zip(&surfaces.histories) {
             digest.integer(id(ids));
-            digest.vectors(&[place.spring, place.normal]);
-            digest.reals(&place.memory);
+            digest.vectors(&[history.spring, history.normal]);
+            digest.reals(&history.memory);
         }
     }
 }

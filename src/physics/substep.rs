@@ -2,7 +2,7 @@
 
 use super::{
     Controls, Model, Scratch, State, chamber,
-    contact::{bodies, grains, membrane as membrane_contact, places, spheres, sums, walls},
+    contact::{bodies, grains, membrane as membrane_contact, spheres, sums, surfaces, walls},
     integrate, membrane, neighbours,
 };
 
@@ -35,7 +35,7 @@ pub static STAGES: &[(&str, Stage)] = &[
     ("contact_walls", |model, controls, state, scratch| {
         let State { grains, walls, springs, .. } = state;
         walls::forces(model, walls, grains, &mut springs.walls, &mut scratch.wall_forces);
-        places::forces(model, controls, state, scratch);
+        surfaces::forces(model, controls, state, scratch);
     }),
     ("contact_bodies", |model, controls, state, scratch| {
         let State { membrane, springs, .. } = state;
@@ -46,7 +46,7 @@ pub static STAGES: &[(&str, Stage)] = &[
     ("sums", |model, controls, state, scratch| {
         sums::on_membrane(model, controls, scratch);
         sums::on_walls(model, controls, state, scratch);
-        places::react(model, controls, state, scratch);
+        surfaces::react(model, controls, state, scratch);
     }),
     ("integrate", |model, controls, state, scratch| {
         integrate::advance(model, controls, scratch, state);

@@ -7,7 +7,7 @@ pub mod grains;
 pub mod membrane;
 #[cfg(test)]
 mod body_tests; // grains on bodies
-pub mod places; // grains on triangulated walls and bodies
+pub mod surfaces; // grains on triangulated walls and bodies
 mod sharing; // how several contacts share the force
 pub mod spheres;
 pub mod sums;

@@ -96,11 +96,11 @@ pub fn add_other_contacts(scratch: &Scratch, i: usize, of_pairs: &[Real; 8]) -> 
             torque += wall.arm.cross(&wall.force);
         }
     }
-    if !scratch.places.is_empty() {
-        let places =
-            lists.places.grain_starts[i] as usize..lists.places.grain_starts[i + 1] as usize;
-        for &k in &lists.places.by_grain[places] {
-            for contact in &scratch.places[k as usize] {
+    if !scratch.surface_contacts.is_empty() {
+        let entries =
+            lists.surfaces.grain_starts[i] as usize..lists.surfaces.grain_starts[i + 1] as usize;
+        for &k in &lists.surfaces.by_grain[entries] {
+            for contact in &scratch.surface_contacts[k as usize] {
                 if contact.force.flags.touches() {
                     force += contact.force.force;
                     torque += contact.force.arm.cross(&contact.force.force);

@@ -1,6 +1,6 @@
 //! Grains on walls of triangles.
 
-use super::places;
+use super::surfaces;
 use crate::{
     base::{Pose, Real, Vec3, digest::Digest, parallel, real::Twist},
     cosim::saved_state,
@@ -57,7 +57,7 @@ fn force_and_spring(system: &System) -> (Vec3, Vec3) {
     let force = contacts.next().map_or_else(Vec3::zeros, |(contact, _)| contact.force);
     assert!(contacts.next().is_none(), "one contact");
     let springs = &system.state.springs;
-    let place = springs.places.places.first().map(|it| it.spring);
+    let place = springs.surfaces.histories.first().map(|it| it.spring);
     (force, place.or(springs.walls.springs.first().copied()).unwrap())
 }
 
@@ -178,11 +178,11 @@ fn a_grain_on_an_edge_has_one_contact_with_the_normal_from_there() {
         )));
         let mut system = builder.build().unwrap();
         system.step();
-        let contacts: Vec<_> = system.scratch.place_contacts().collect();
+        let contacts: Vec<_> = system.scratch.surface_contacts_with_ids().collect();
         assert_eq!(contacts.len(), 1);
         let (contact, ids) = contacts[0];
         assert_eq!(*ids, [0, 0]);
-        assert!((contact.place.normal - normal).norm() < 1e-12);
+        assert!((contact.history.normal - normal).norm() < 1e-12);
         let overlap = contact.force.overlap;
         assert!((overlap / (0.001 * RADIUS) - 1.0).abs() < 1e-9, "{overlap}");
     }
@@ -213,8 +213,8 @@ fn a_hinged_plate_lifts_a_grain() {
     let position = system.state.grains.positions[0];
     let speed = (position.z - before) / time;
     assert!((speed / (rate * position.x) - 1.0).abs() < 0.01, "{speed}");
-    let normal =
-        places::motion(&system.model, &system.controls, &system.state, 0).pose.rotation * Vec3::z();
+    let normal = surfaces::motion(&system.model, &system.controls, &system.state, 0).pose.rotation
+        * Vec3::z();
     let depth = RADIUS - normal.dot(&position);
     assert!((depth / sunk - 1.0).abs() < 0.05, "{depth} {sunk}");
 }
@@ -330,7 +330,7 @@ fn neither_lists_nor_threads_nor_a_break_change_a_bit_on_triangles() {
                 system.step();
                 if breaks && k == 250 {
                     let state = saved_state::read(&saved_state::write(&system.state)).unwrap();
-                    assert!(!state.springs.places.ids.is_empty());
+                    assert!(!state.springs.surfaces.ids.is_empty());
                     system.restart(state);
                 }
             }
@@ -378,12 +378,12 @@ fn lists_miss_no_contact_with_a_large_surface() {
         };
         let expected: Vec<usize> = positions.iter().map(|p| touches(p).len()).collect();
         let mut found = vec![0; positions.len()];
-        for (_, ids) in system.scratch.place_contacts() {
+        for (_, ids) in system.scratch.surface_contacts_with_ids() {
             found[ids[1] as usize] += 1;
         }
         assert_eq!(found, expected);
         assert!(found.iter().sum::<usize>() > 100);
     }
-    let lists = &system.scratch.neighbours.places;
+    let lists = &system.scratch.neighbours.surfaces;
     assert!(lists.ids.len() < 3200 && lists.triangles.len() < 10 * lists.ids.len());
 }

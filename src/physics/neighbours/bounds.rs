@@ -1,4 +1,4 @@
-//! A box around the centers of all grains: what is far from it is far from every grain.
+//! Bounding box of the centers of all grains. Surfaces far from the box are far from every grain.
 
 use crate::{
     base::{Real, Vec3},
@@ -11,7 +11,7 @@ use crate::{
     },
 };
 
-/// A box around the centers of all grains.
+/// Bounding box of the centers of all grains.
 pub(super) struct Bounds {
     low: Vec3,
     high: Vec3,
@@ -34,22 +34,22 @@ impl Bounds {
         Self { low, high, radius_max }
     }
 
-    /// True if the box from `low` to `high` (m) has a point in common with this one.
+    /// True if the box from `low` to `high` (m) overlaps this one.
     pub(super) fn overlap(&self, low: &Vec3, high: &Vec3) -> bool {
         (0..3).all(|k| low[k] <= self.high[k] && self.low[k] <= high[k])
     }
 
-    /// Distance of a point from the box (m), 0 inside.
+    /// Distance of a point from the box (m); 0 inside.
     pub(super) fn distance_from(&self, point: &Vec3) -> Real {
         (self.low - point).sup(&(point - self.high)).sup(&Vec3::zeros()).norm()
     }
 
-    /// No center of a grain is further than this from a point (m).
+    /// Upper bound of the distance of grains' centers from a point (m).
     pub(super) fn furthest_from(&self, point: &Vec3) -> Real {
         (self.low - point).abs().sup(&(self.high - point).abs()).norm()
     }
 
-    /// How far a wall is from where it would come within `beyond` (m) of touching a grain (m), or 0.
+    /// Distance (m) by which a wall can move before it may be within `beyond` (m) of contact with a grain, at least 0.
     pub(super) fn gap_to_wall(
         &self,
         wall: &WallModel,
@@ -63,11 +63,11 @@ impl Bounds {
             WallShape::Triangles(triangles) => {
                 self.distance_from(&origin) - triangles.bounding_radius()
             }
-            // No distance changes by more than the way from the middle of the box.
+            // Within the box, the distance differs from that of its center by at most half the diagonal.
             _ => {
-                let of_middle = placed.distance(&(0.5 * (self.low + self.high) - origin));
+                let of_center = placed.distance(&(0.5 * (self.low + self.high) - origin));
                 let half = 0.5 * (self.high - self.low).norm();
-                of_middle.map_or(Real::NEG_INFINITY, |(distance, _)| distance - half)
+                of_center.map_or(Real::NEG_INFINITY, |(distance, _)| distance - half)
             }
         };
         (distance - self.radius_max - beyond).max(0.0)
@@ -88,7 +88,7 @@ mod tests {
     };
 
     #[test]
-    fn no_grain_is_closer_than_the_box_says() {
+    fn distances_are_bounded_by_the_box() {
         // Oracle: the distances of all grains, by brute force.
         let mut random = Random::new(5, Stream::Position);
         let mut point = |size: Real| Vec3::from_fn(|_, _| random.between(-size, size));

@@ -10,7 +10,7 @@ mod body_list;
 mod bounds; // bounding box of the grains
 pub(crate) mod cell_grid;
 mod crossings;
-mod place_list; // grains near triangles and bodies
+mod surface_list; // grains near triangulated walls and bodies
 mod skin;
 mod sphere_list;
 mod triangle_list;
@@ -72,7 +72,7 @@ fn refresh_grains(model: &Model, controls: &Controls, state: &mut State, scratch
     remove_patches(lists, &mut state.springs.patches, &mut scratch.patch_forces);
     let bounds = Bounds::of(&state.grains);
     wall_list::build(model, state, &bounds, lists, &mut scratch.wall_forces);
-    place_list::build(model, controls, state, (&grid, &bounds), lists);
+    surface_list::build(model, controls, state, (&grid, &bounds), lists);
     update_pair_masses(state, lists);
     lists.grain_positions.clone_from(&state.grains.positions);
     lists.vertex_positions.clone_from(&state.membrane.positions);
@@ -92,7 +92,7 @@ fn used(model: &Model, controls: &Controls, state: &State, lists: &Neighbours) -
     }
     let (moved, walls) =
         (lists.displacement_squared_max.sqrt(), wall_list::displacement(model, state, lists));
-    let surfaces = walls.max(place_list::displacement(model, controls, state, lists));
+    let surfaces = walls.max(surface_list::displacement(model, controls, state, lists));
     // NaN counts as the largest displacement.
     lists.growth_max + if moved < surfaces { surfaces } else { moved }
 }

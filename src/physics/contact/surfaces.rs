@@ -1,20 +1,20 @@
 //! Contacts of grains with walls of triangles and with rigid bodies.
 //!
-//! A grain may touch a wall of triangles in several places; `boundary::touching` finds them. Each place is a
-//! contact of its own with its own friction spring. A place has no number that lasts, since the contact goes
-//! from triangle to triangle while the grain slides or rolls. On a sphere the normal tells one place from
-//! another, so a place inherits the spring of the place whose normal was closest to its own, and only one
-//! place inherits it.
+//! A grain may have several contacts with a wall of triangles, which `boundary::touching` finds. Each contact
+//! has its own friction spring. A contact has no permanent id, because it moves from triangle to triangle while the
+//! grain slides or rolls. The normal identifies it: a contact inherits the spring of the former contact with the
+//! most similar normal, and each spring is inherited only once.
 //!
-//! A body is a wall that something else moves, so its contacts are made here too. Polyhedra are touched as
-//! triangles, where a grain can rest in a corner on two faces; all other shapes by their signed distance, in
-//! one place. The reaction goes into the wrench of the wall or of the body. The effective mass is that of the
-//! grain, as at a wall: a body is much heavier than a grain.
+//! Bodies are handled like walls that something else moves. Polyhedra are treated as triangles, so a grain in a
+//! corner touches two faces; all other shapes have one contact, from their signed distance. The reaction is added
+//! to the wrench of the wall or the body. The effective mass is that of the grain, as for walls: bodies are assumed
+//! to be much heavier than grains.
 //!
-//! Planes, tubes, bowls and balls stay in `contact::walls`: a grain touches them in one place, so their springs
-//! can be listed once for each wall and grain.
+//! Planes, tubes, bowls and balls belong to `contact::walls`: a grain has at most one contact with each, so their
+//! springs can be listed by wall and grain.
 //!
-//! The state holds the places that exist, not those that are listed; nothing in it depends on the lists.
+//! The state contains only existing contacts, so it does not depend on the lists. The formulas are those of
+//! `contact::walls`.
 
 use super::{bodies::signed_distance, walls::RigidSurface};
 use crate::{
@@ -24,21 +24,21 @@ use crate::{
         boundary::body::BodyMotion,
         law::{ContactLaw, History, Memory, UnderLaw},
         model::TouchedSurface,
-        scratch::{PlaceContact, PlaceLists},
-        state::{Grains, Place, PlaceSprings},
+        scratch::{SurfaceContact, SurfaceLists},
+        state::{Grains, SurfaceHistories, SurfaceHistory},
     },
 };
 
-/// Cosine of the angle to its former normal within which a place is recognized (45°).
+/// A contact inherits a spring if the cosine of the angle between the normals is larger than this (45°).
 const SAME_HISTORY: Real = 0.7;
 
-/// Forces of the surfaces on the grains listed near them; carries what these contacts remember on by one
-/// substep.
+/// Computes the forces of the surfaces on the grains listed near them, and updates the history of these contacts by
+/// one substep.
 pub fn forces(model: &Model, controls: &Controls, state: &mut State, scratch: &mut Scratch) {
-    let lists = &scratch.neighbours.places;
-    let contacts = &mut scratch.places;
+    let lists = &scratch.neighbours.surfaces;
+    let contacts = &mut scratch.surface_contacts;
     contacts.resize_with(lists.ids.len(), Vec::new);
-    if lists.ids.is_empty() && state.springs.places.ids.is_empty() {
+    if lists.ids.is_empty() && state.springs.surfaces.ids.is_empty() {
         return;
     }
     let mut begin = 0;
@@ -49,7 +49,7 @@ pub fn forces(model: &Model, controls: &Controls, state: &mut State, scratch: &m
                 surface,
                 motion: motion(model, controls, state, s as usize),
                 grains: &state.grains,
-                before: &state.springs.places,
+                before: &state.springs.surfaces,
                 dt: model.substep,
                 lists,
                 begin,
@@ -58,19 +58,19 @@ pub fn forces(model: &Model, controls: &Controls, state: &mut State, scratch: &m
         }
         begin += n;
     }
-    let PlaceSprings { ids, places } = &mut state.springs.places;
+    let SurfaceHistories { ids, histories } = &mut state.springs.surfaces;
     ids.clear();
-    places.clear();
-    for (contact, of) in scratch.place_contacts() {
+    histories.clear();
+    for (contact, of) in scratch.surface_contacts_with_ids() {
         ids.push(*of);
-        places.push(contact.place.clone());
+        histories.push(contact.history.clone());
     }
 }
 
-/// Adds the reactions of all these contacts to the wrenches on walls and bodies.
+/// Adds the reactions of these contacts to the wrenches on walls and bodies.
 pub fn react(model: &Model, controls: &Controls, state: &State, scratch: &mut Scratch) {
-    let Scratch { neighbours, places, wall_wrenches, body_wrenches, .. } = scratch;
-    for (contacts, ids) in places.iter().zip(&neighbours.places.ids) {
+    let Scratch { neighbours, surface_contacts, wall_wrenches, body_wrenches, .. } = scratch;
+    for (contacts, ids) in surface_contacts.iter().zip(&neighbours.surfaces.ids) {
         let [s, i] = ids.map(|id| id as usize);
         let origin = motion(model, controls, state, s).pose.translation.vector;
         let wrench = match wall_wrenches.get_mut(s) {
@@ -85,7 +85,7 @@ pub fn react(model: &Model, controls: &Controls, state: &State, scratch: &mut Sc
     }
 }
 
-/// How a surface of `Model::surface` moves.
+/// Motion of a surface, with its index as in `Model::surface`.
 pub(in crate::physics) fn motion<'a>(
     model: &Model,
     controls: &'a Controls,
@@ -103,14 +103,14 @@ struct OfSurface<'a> {
     surface: TouchedSurface<'a>,
     motion: &'a BodyMotion,
     grains: &'a Grains,
-    /// The places of the last substep.
-    before: &'a PlaceSprings,
+    /// Histories after the last substep.
+    before: &'a SurfaceHistories,
     dt: Real,
-    lists: &'a PlaceLists,
+    lists: &'a SurfaceLists,
     /// Index of the first of these grains in the lists.
     begin: usize,
-    /// Written: the places of each grain.
-    contacts: &'a mut [Vec<PlaceContact>],
+    /// Output: the contacts of each grain.
+    contacts: &'a mut [Vec<SurfaceContact>],
 }
 
 impl UnderLaw for OfSurface<'_> {
@@ -131,22 +131,22 @@ impl UnderLaw for OfSurface<'_> {
                 return;
             }
             let inherited = inherited(before.of(&ids), &touches);
-            for (touch, place) in touches.iter().zip(inherited) {
-                contacts.extend(contact(&rigid, grains, i, touch, place));
+            for (touch, history) in touches.iter().zip(inherited) {
+                contacts.extend(contact(&rigid, grains, i, touch, history));
             }
         });
     }
 }
 
-/// Where a surface is close to a grain.
+/// The geometry of a contact.
 struct Touch {
     distance: Real,
-    /// From the surface to the grain, world axes.
+    /// Unit normal from the surface to the grain, world axes.
     normal: Vec3,
     share: Real,
 }
 
-/// The places where a grain at `position` (m) that reaches `reach` (m) touches a surface.
+/// The contacts of a surface with a grain at `position` (m); `reach` (m) is its radius plus the range of the law.
 fn touches(
     surface: TouchedSurface<'_>,
     motion: &BodyMotion,
@@ -177,39 +177,42 @@ fn touches(
     }
 }
 
-/// The place that each contact continues, if there is one: both are closest to each other.
-fn inherited<'a>(before: &'a [Place], touches: &[Touch]) -> Vec<Option<&'a Place>> {
-    let likeness = |touch: &Touch, place: &Place| touch.normal.dot(&place.normal);
-    let closest_touch = |place: &Place| {
-        let likenesses = touches.iter().map(|touch| likeness(touch, place));
-        largest(likenesses)
+/// The history that each contact inherits, if any: contact and history must be most similar to each other.
+fn inherited<'a>(
+    before: &'a [SurfaceHistory],
+    touches: &[Touch],
+) -> Vec<Option<&'a SurfaceHistory>> {
+    let similarity = |touch: &Touch, history: &SurfaceHistory| touch.normal.dot(&history.normal);
+    let closest_touch = |history: &SurfaceHistory| {
+        let similarities = touches.iter().map(|touch| similarity(touch, history));
+        largest(similarities)
     };
     let of_touch = |k: usize| {
-        let place = &before[largest(before.iter().map(|place| likeness(&touches[k], place)))?];
-        (closest_touch(place) == Some(k)).then_some(place)
+        let history = &before[largest(before.iter().map(|it| similarity(&touches[k], it)))?];
+        (closest_touch(history) == Some(k)).then_some(history)
     };
     (0..touches.len()).map(of_touch).collect()
 }
 
-/// Index of the largest likeness that is large enough, the first of equal ones.
-fn largest(likenesses: impl Iterator<Item = Real>) -> Option<usize> {
+/// Index of the largest similarity if it is large enough; the first of equal ones.
+fn largest(similarities: impl Iterator<Item = Real>) -> Option<usize> {
     let mut best = (SAME_HISTORY, None);
-    for (k, likeness) in likenesses.enumerate() {
-        if likeness > best.0 {
-            best = (likeness, Some(k));
+    for (k, similarity) in similarities.enumerate() {
+        if similarity > best.0 {
+            best = (similarity, Some(k));
         }
     }
     best.1
 }
 
-/// One contact of grain `i`; `None` if it has ended.
+/// Computes one contact of grain `i`. `None` if it has ended.
 fn contact<C: ContactLaw>(
     surface: &RigidSurface<'_, C>,
     grains: &Grains,
     i: usize,
     touch: &Touch,
-    before: Option<&Place>,
-) -> Option<PlaceContact> {
+    before: Option<&SurfaceHistory>,
+) -> Option<SurfaceContact> {
     let mut memory = before.map_or_else(Vec::new, |it| it.memory.clone());
     let rows = C::Memory::rows(&mut memory, 1);
     let mut history = History {
@@ -220,22 +223,22 @@ fn contact<C: ContactLaw>(
     C::Memory::store::<f64>(history.memory, true, rows);
     force.force *= touch.share;
     force.normal *= touch.share;
-    let place = Place { spring: history.spring.into(), normal: touch.normal, memory };
-    Some(PlaceContact { place, force, share: touch.share })
+    let history = SurfaceHistory { spring: history.spring.into(), normal: touch.normal, memory };
+    Some(SurfaceContact { history, force, share: touch.share })
 }
 
-impl PlaceSprings {
-    /// The places of a surface and a grain.
-    fn of(&self, ids: &[u32; 2]) -> &[Place] {
+impl SurfaceHistories {
+    /// The histories of a surface and a grain.
+    fn of(&self, ids: &[u32; 2]) -> &[SurfaceHistory] {
         let begin = self.ids.partition_point(|it| it < ids);
         let n = self.ids[begin..].partition_point(|it| it <= ids);
-        &self.places[begin..begin + n]
+        &self.histories[begin..begin + n]
     }
 
-    /// Forgets the contacts of bodies, in a system with `n_walls` walls.
+    /// Removes the histories of contacts with bodies, in a system with `n_walls` walls.
     pub fn forget_bodies(&mut self, n_walls: usize) {
         let n = self.ids.partition_point(|[surface, _]| (*surface as usize) < n_walls);
         self.ids.truncate(n);
-        self.places.truncate(n);
+        self.histories.truncate(n);
     }
 }

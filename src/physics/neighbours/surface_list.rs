@@ -1,4 +1,4 @@
-//! Grains that a wall of triangles or a body may touch, and the triangles that they may touch.
+//! Lists of the grains that walls of triangles and bodies may touch, and of their candidate triangles.
 
 use super::{
     Bounds,
@@ -10,18 +10,18 @@ use crate::{
     physics::{
         Controls, Model, State,
         boundary::{body::BodyMotion, triangles::Triangles},
-        contact::{bodies::signed_distance, places::motion},
+        contact::{bodies::signed_distance, surfaces::motion},
         membrane::contact_geometry::closest_on_triangle,
         model::{BodyModel, TouchedSurface},
-        scratch::{Neighbours, PlaceLists},
+        scratch::{Neighbours, SurfaceLists},
     },
 };
 
 /// Number of triangles in one parallel task.
 const CHUNK: usize = 128;
 
-/// Lists grains closer than contact plus the range of the law plus skin. Surfaces far from all grains cost
-/// nothing; `wall_list::build` must have found out which walls are far.
+/// Lists the grains within contact plus the range of the law plus the skin. Surfaces far from all grains are skipped;
+/// `wall_list::build` must have determined which walls are far.
 pub(super) fn build(
     model: &Model,
     controls: &Controls,
@@ -30,9 +30,9 @@ pub(super) fn build(
     lists: &mut Neighbours,
 ) {
     let (skin, walls) = (lists.skin, std::mem::take(&mut lists.wall_gaps));
-    let places = &mut lists.places;
+    let entries = &mut lists.surfaces;
     let n_grains = state.grains.len();
-    *places = PlaceLists { triangle_starts: vec![0], ..PlaceLists::default() };
+    *entries = SurfaceLists { triangle_starts: vec![0], ..SurfaceLists::default() };
     for s in 0..model.n_surfaces() {
         let surface = model.surface(s);
         if let Some((surface, law)) = surface {
@@ -43,28 +43,29 @@ pub(super) fn build(
                 None => gap_to_body(surface, motion, bounds, beyond),
             };
             if gap == 0.0 {
-                let near = Near { state, grid, bounds, motion, beyond };
+                let search = Search { state, grid, bounds, motion, beyond };
                 match surface {
-                    TouchedSurface::Triangles(triangles) => near.triangles(s, triangles, places),
-                    TouchedSurface::Body(body) => near.body(s, body, places),
+                    TouchedSurface::Triangles(triangles) => search.triangles(s, triangles, entries),
+                    TouchedSurface::Body(body) => search.body(s, body, entries),
                 }
             }
             if model.walls.len() <= s {
                 let furthest = bounds.furthest_from(&motion.pose.translation.vector) + skin;
-                places.extents.push(surface.bounding_radius().min(furthest));
-                places.gaps.push(gap);
+                entries.extents.push(surface.bounding_radius().min(furthest));
+                entries.gaps.push(gap);
             }
         } else if model.walls.len() <= s {
-            places.extents.push(0.0);
-            places.gaps.push(Real::INFINITY);
+            entries.extents.push(0.0);
+            entries.gaps.push(Real::INFINITY);
         }
     }
-    (places.grain_starts, places.by_grain) = index_by_second(&places.ids, n_grains);
-    places.bodies_at_build.clone_from(&controls.bodies);
+    (entries.grain_starts, entries.by_grain) = index_by_second(&entries.ids, n_grains);
+    entries.bodies_at_build.clone_from(&controls.bodies);
     lists.wall_gaps = walls;
 }
 
-/// How far any body that grains touch has come towards them since the last build, relative to the carrier (m).
+/// Largest distance by which a body that grains touch has approached them since the last build, relative to the
+/// carrier (m).
 pub(super) fn displacement(
     model: &Model,
     controls: &Controls,
@@ -72,9 +73,9 @@ pub(super) fn displacement(
     lists: &Neighbours,
 ) -> Real {
     let carried = state.carrier_position() - lists.carrier_position;
-    let places = &lists.places;
-    let motions = places.bodies_at_build.iter().zip(&controls.bodies);
-    let limits = places.extents.iter().zip(&places.gaps);
+    let entries = &lists.surfaces;
+    let motions = entries.bodies_at_build.iter().zip(&controls.bodies);
+    let limits = entries.extents.iter().zip(&entries.gaps);
     let bodies = model.bodies.iter().zip(motions).zip(limits);
     bodies
         .filter(|((body, _), _)| body.of_grains.is_some())
@@ -82,25 +83,25 @@ pub(super) fn displacement(
             let origin = |it: &BodyMotion| it.pose.translation.vector;
             let shifted = (origin(to) - origin(from) - carried).norm();
             let angle = to.pose.rotation.angle_to(&from.pose.rotation);
-            let turned = if angle > 0.0 { 2.0 * (0.5 * angle).sin() * extent } else { 0.0 };
-            shifted + turned - gap
+            let rotated = if angle > 0.0 { 2.0 * (0.5 * angle).sin() * extent } else { 0.0 };
+            shifted + rotated - gap
         })
         .fold(0.0, Real::max)
 }
 
-/// How far a body is from where it could touch a grain (m), or 0.
+/// Distance by which a body can move before it may touch a grain (m), at least 0.
 fn gap_to_body(
     surface: TouchedSurface<'_>,
     motion: &BodyMotion,
     bounds: &Bounds,
     beyond: Real,
 ) -> Real {
-    let away = bounds.distance_from(&motion.pose.translation.vector);
-    (away - surface.bounding_radius() - bounds.radius_max - beyond).max(0.0)
+    let distance = bounds.distance_from(&motion.pose.translation.vector);
+    (distance - surface.bounding_radius() - bounds.radius_max - beyond).max(0.0)
 }
 
-/// What is looked for near one surface.
-struct Near<'a> {
+/// Search for grains near one surface.
+struct Search<'a> {
     state: &'a State,
     grid: &'a CellGrid,
     bounds: &'a Bounds,
@@ -109,13 +110,13 @@ struct Near<'a> {
     beyond: Real,
 }
 
-impl Near<'_> {
-    /// Lists grains near triangles as surface `s`.
-    fn triangles(&self, s: usize, triangles: &Triangles, places: &mut PlaceLists) {
+impl Search<'_> {
+    /// Lists grains near the triangles of surface `s`.
+    fn triangles(&self, s: usize, triangles: &Triangles, entries: &mut SurfaceLists) {
         let mesh = triangles.mesh();
         let pose = &self.motion.pose;
-        let place = |p: &Vec3| pose.rotation * p + pose.translation.vector;
-        let positions: Vec<Vec3> = mesh.positions.iter().map(place).collect();
+        let to_world = |p: &Vec3| pose.rotation * p + pose.translation.vector;
+        let positions: Vec<Vec3> = mesh.positions.iter().map(to_world).collect();
         let n_triangles = mesh.triangles.len();
         let mut chunks = vec![Vec::new(); n_triangles.div_ceil(CHUNK)];
         parallel::for_each(&mut chunks, |chunk, found| {
@@ -129,12 +130,12 @@ impl Near<'_> {
         let mut last = None;
         for [grain, triangle] in pairs {
             if last != Some(grain) {
-                places.ids.push([id(s), grain]);
-                places.triangle_starts.push(id(places.triangles.len()));
+                entries.ids.push([id(s), grain]);
+                entries.triangle_starts.push(id(entries.triangles.len()));
                 last = Some(grain);
             }
-            places.triangles.push(triangle);
-            if let Some(end) = places.triangle_starts.last_mut() {
+            entries.triangles.push(triangle);
+            if let Some(end) = entries.triangle_starts.last_mut() {
                 *end += 1;
             }
         }
@@ -159,8 +160,8 @@ impl Near<'_> {
         });
     }
 
-    /// Lists grains near a body as surface `s`.
-    fn body(&self, s: usize, body: &BodyModel, places: &mut PlaceLists) {
+    /// Lists grains near a body, which is surface `s`.
+    fn body(&self, s: usize, body: &BodyModel, entries: &mut SurfaceLists) {
         let origin = self.motion.pose.translation.vector;
         let reach = Vec3::repeat(body.bounding_radius + self.bounds.radius_max + self.beyond);
         let grains = &self.state.grains;
@@ -173,8 +174,8 @@ impl Near<'_> {
             }
         });
         found.sort_unstable();
-        places.ids.extend(found.iter().map(|grain| [id(s), *grain]));
-        let end = id(places.triangles.len());
-        places.triangle_starts.extend(found.iter().map(|_| end));
+        entries.ids.extend(found.iter().map(|grain| [id(s), *grain]));
+        let end = id(entries.triangles.len());
+        entries.triangle_starts.extend(found.iter().map(|_| end));
     }
 }
