@@ -61,7 +61,7 @@ const PRESSURE: Real = 10e3;
 const THIN: Real = 0.25;
 /// Share of the longest stable substep.
 const SAFETY: Real = 0.8;
-/// Neighbours are listed this share of the largest radius beyond contact.
+/// Neighbors are listed this share of the largest radius beyond contact.
 const SKIN_SHARE: Real = 0.2;
 /// Substeps in which the air is drawn out.
 const N_DRAWN: Real = 1000.0;

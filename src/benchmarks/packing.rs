@@ -15,7 +15,7 @@ use crate::{
         System, SystemBuilder,
         builder::Wall,
         law::Surface,
-        neighbours::update_pair_masses,
+        neighbors::update_pair_masses,
         packing::{
             Grown, Growth, Recipe, Room, first_scale, numbering::along_curve, scatter,
             scatter::NoRoom, sphere_volume,
@@ -48,7 +48,7 @@ const THIN: Real = 0.25;
 pub(super) const SUBSTEP: Real = 5e-6;
 /// Substep until then (s).
 const COARSE_SUBSTEP: Real = 1e-5;
-/// Neighbours are listed this share of the largest radius beyond contact.
+/// Neighbors are listed this share of the largest radius beyond contact.
 const SKIN_SHARE: Real = 0.25;
 /// Share of its velocity that a grain keeps in a substep while it comes to rest: first what pushes each
 /// other, then what is loose and falls on its neighbours.
@@ -166,7 +166,7 @@ impl Boxed {
             drag(&mut system, DRAG[0]);
         }
         system.state.grains.masses = masses_of(&system.state.grains);
-        update_pair_masses(&system.state, &mut system.scratch.neighbours);
+        update_pair_masses(&system.state, &mut system.scratch.neighbors);
         come_to_rest(&mut system, N_REST[0]);
         Ok(system.state)
     }

@@ -15,7 +15,7 @@ use super::{
     health::Diverged,
     law::PairLaw,
     membrane::{CARRIER_ID, MembraneState, mesh::Mesh},
-    neighbours::update_pair_masses,
+    neighbors::update_pair_masses,
     packing::sphere_volume,
     state::{Grains, Springs},
 };
@@ -312,7 +312,7 @@ impl Filling {
             self.system.state.grains.masses[i] =
                 sphere_volume(scale * radius) * self.recipe.density;
         }
-        update_pair_masses(&self.system.state, &mut self.system.scratch.neighbours);
+        update_pair_masses(&self.system.state, &mut self.system.scratch.neighbors);
     }
 
     /// The stage after `stage`, skipping stages without substeps.

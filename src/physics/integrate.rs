@@ -32,11 +32,11 @@ pub fn advance(model: &Model, controls: &Controls, scratch: &mut Scratch, state:
     let carrier = CarrierMotion {
         gain: model.gravity * model.substep + velocity_gained_with_carrier(model, controls, state),
         step: target - state.carrier_position(),
-        since_build: target - scratch.neighbours.carrier_position,
+        since_build: target - scratch.neighbors.carrier_position,
     };
     let grains = advance_grains(model, scratch, state, &carrier);
     let vertices = advance_membrane(model, controls, scratch, state, &carrier);
-    let lists = &mut scratch.neighbours;
+    let lists = &mut scratch.neighbors;
     lists.displacement_squared_max = grains[0].max(vertices[0]);
     lists.travel += grains[1].sqrt() + vertices[1].sqrt();
     lists.vertex_travel += vertices[1].sqrt();
@@ -116,7 +116,7 @@ fn advance_grains(
                 *velocity += force * (dt / mass) + carrier.gain;
                 angular_velocities[k] += torque * (dt / (0.4 * mass * radius * radius));
                 positions[k] += *velocity * dt;
-                let built = &scratch.neighbours.grain_positions[i];
+                let built = &scratch.neighbors.grain_positions[i];
                 carrier.record_displacement(built, &before, &positions[k], &mut furthest);
             }
             furthest
@@ -153,7 +153,7 @@ fn advance_membrane(
                     *velocity += force * (dt / model.membrane.masses[v]) + carrier.gain;
                     *position += *velocity * dt;
                 }
-                let built = &scratch.neighbours.vertex_positions[v];
+                let built = &scratch.neighbors.vertex_positions[v];
                 carrier.record_displacement(built, &before, position, &mut furthest);
             }
             furthest

@@ -16,7 +16,7 @@ pub mod integrate;
 pub mod law; // contact laws
 pub mod membrane; // membranes: springs, hinges, pressure
 pub mod model;
-pub mod neighbours; // lists of possible contacts
+pub mod neighbors; // lists of possible contacts
 pub mod packing; // dense packings of grains
 pub mod scratch;
 pub mod state;

@@ -11,8 +11,8 @@ use crate::base::{Real, Vec3, real::Wrench};
 /// Working memory of the substep.
 #[derive(Clone)]
 pub struct Scratch {
-    /// Lists of possible contacts. Written by `neighbours`.
-    pub neighbours: Neighbours,
+    /// Lists of possible contacts. Written by `neighbors`.
+    pub neighbors: Neighbors,
     /// Data of each grain that pairs read, contiguous in memory. Written by `contact::grains`.
     pub grain_rows: Vec<GrainRow>,
     /// Force of each pair of grains. Written by `contact::grains`.
@@ -44,7 +44,7 @@ pub struct Scratch {
     /// Written by `contact::sums` and `contact::surfaces`.
     pub wall_wrenches: Vec<Wrench>,
     /// A grain whose center has left the membrane, if any. Written by `contact::sums` and, if grains touch
-    /// vertex spheres, by `neighbours`.
+    /// vertex spheres, by `neighbors`.
     pub leaked: Option<usize>,
 }
 
@@ -52,7 +52,7 @@ impl Scratch {
     /// Working memory for `model`.
     pub fn new(model: &Model) -> Self {
         Self {
-            neighbours: Neighbours::default(),
+            neighbors: Neighbors::default(),
             grain_rows: Vec::new(),
             pair_forces: Vec::new(),
             pair_flags: Vec::new(),
@@ -102,7 +102,7 @@ impl Scratch {
     /// Contacts with walls of triangles and with bodies in the last substep, with the indices of surface, as in
     /// `Model::surface`, and grain.
     pub fn surface_contacts_with_ids(&self) -> impl Iterator<Item = (&SurfaceContact, &[u32; 2])> {
-        let of_grains = self.surface_contacts.iter().zip(&self.neighbours.surfaces.ids);
+        let of_grains = self.surface_contacts.iter().zip(&self.neighbors.surfaces.ids);
         of_grains.flat_map(|(contacts, ids)| contacts.iter().map(move |contact| (contact, ids)))
     }
 }
@@ -141,7 +141,7 @@ impl ContactFlags {
 
 /// Lists of possible contacts. They are complete until something has moved by half the skin.
 #[derive(Clone, Default)]
-pub struct Neighbours {
+pub struct Neighbors {
     /// False before the first build.
     pub is_built: bool,
     /// The skin at the last build (m): pairs are listed within contact, plus the range of the law, plus the skin.
@@ -241,7 +241,7 @@ pub struct BodyLists {
     pub extents: Vec<Real>,
     /// Position of the carrier at the last build (m).
     pub carrier_position: Vec3,
-    /// `Neighbours::vertex_travel` at the last build (m).
+    /// `Neighbors::vertex_travel` at the last build (m).
     pub travel_at_build: Real,
 }
 
@@ -257,9 +257,9 @@ pub struct NearSamples {
 /// Closest points of the awake candidate triangles, see `contact::candidates`.
 #[derive(Clone, Default)]
 pub struct CandidateScratch {
-    /// Indices of the awake candidates in `Neighbours::triangles`, ascending.
+    /// Indices of the awake candidates in `Neighbors::triangles`, ascending.
     pub awake: Vec<u32>,
-    /// Awake candidates of the s-th grain of `Neighbours::membrane_grains` are at
+    /// Awake candidates of the s-th grain of `Neighbors::membrane_grains` are at
     /// `awake_starts[s] .. awake_starts[s + 1]`.
     pub awake_starts: Vec<usize>,
     /// For each awake candidate: squared distance (m²), weights of the closest point, vector from the closest

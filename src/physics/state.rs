@@ -21,7 +21,7 @@ pub struct State {
     pub membrane: MembraneState,
     /// Friction springs of all contacts.
     pub springs: Springs,
-    /// Pairs of grains that the pair springs belong to. Written by `neighbours`.
+    /// Pairs of grains that the pair springs belong to. Written by `neighbors`.
     pub pair_ids: Vec<[u32; 2]>,
     /// Gauge pressure in the chamber, negative under vacuum (Pa). Written by `chamber`.
     pub gauge: Real,
@@ -110,7 +110,7 @@ impl Springs {
 /// Springs of listed contacts, between grains and vertex spheres or between walls and grains.
 #[derive(Clone, Debug, Default)]
 pub struct ListedSprings {
-    /// Ids of grain and vertex, or of wall and grain; ascending. Written by `neighbours`.
+    /// Ids of grain and vertex, or of wall and grain; ascending. Written by `neighbors`.
     pub ids: Vec<[u32; 2]>,
     /// Spring of each contact (m), zero without contact.
     pub springs: Vec<Vec3>,

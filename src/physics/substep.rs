@@ -3,7 +3,7 @@
 use super::{
     Controls, Model, Scratch, State, chamber,
     contact::{bodies, grains, membrane as membrane_contact, spheres, sums, surfaces, walls},
-    integrate, membrane, neighbours,
+    integrate, membrane, neighbors,
 };
 
 /// One stage of a substep. It reads model, controls and state, and writes its own part of state and scratch.
@@ -12,8 +12,9 @@ pub type Stage = fn(&Model, &Controls, &mut State, &mut Scratch);
 /// All stages of a substep in order, with the names under which benchmarks report their times.
 pub static STAGES: &[(&str, Stage)] = &[
     ("chamber", |model, controls, state, _| chamber::advance(&model.chamber, controls, state)),
+    // This name is part of the JSON reports of benchmarks.
     ("neighbours", |model, controls, state, scratch| {
-        neighbours::refresh(model, controls, state, scratch);
+        neighbors::refresh(model, controls, state, scratch);
     }),
     // Before the contacts with the membrane, which read the rows of vertices that this stage writes.
     ("membrane", |model, _, state, scratch| {
@@ -39,8 +40,8 @@ pub static STAGES: &[(&str, Stage)] = &[
     }),
     ("contact_bodies", |model, controls, state, scratch| {
         let State { membrane, springs, .. } = state;
-        let Scratch { neighbours, sample_forces, .. } = scratch;
-        let samples = (&neighbours.bodies, &mut **sample_forces);
+        let Scratch { neighbors, sample_forces, .. } = scratch;
+        let samples = (&neighbors.bodies, &mut **sample_forces);
         bodies::forces(model, controls, membrane, &mut springs.bodies, samples);
     }),
     ("sums", |model, controls, state, scratch| {

@@ -202,7 +202,7 @@ fn run(mut rig: Rig, n_threads: usize) -> Way {
         }
     });
     health::check(&rig.state, &rig.scratch, 0).unwrap();
-    Way { digests, n_builds: rig.scratch.neighbours.n_builds, n_loaded_max }
+    Way { digests, n_builds: rig.scratch.neighbors.n_builds, n_loaded_max }
 }
 
 #[test]

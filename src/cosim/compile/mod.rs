@@ -39,7 +39,7 @@ use crate::{
 
 /// Changes whenever the same scene would settle differently: part of every cache key.
 pub const PHYSICS_VERSION: u64 = 6;
-/// Neighbours are listed this share of the largest radius beyond contact.
+/// Neighbors are listed this share of the largest radius beyond contact.
 const SKIN_SHARE: Real = 0.25;
 /// Longest time between two steps of the rigid world (s).
 const EXCHANGE_MAX: Real = 1e-4;

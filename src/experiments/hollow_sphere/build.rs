@@ -27,7 +27,7 @@ use crate::{
 
 /// Solid fraction at which grains are scattered before they grow.
 const FIRST_SOLID_FRACTION: Real = 0.15;
-/// Neighbours are listed this share of the largest radius beyond contact.
+/// Neighbors are listed this share of the largest radius beyond contact.
 const SKIN_SHARE: Real = 0.25;
 /// Pressure that the growing grains may exert on each other (Pa).
 const GROWTH_PRESSURE: Real = 1e3;

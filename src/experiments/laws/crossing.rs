@@ -177,7 +177,7 @@ impl Path {
         grains.positions[0] = place;
         grains.velocities[0] = Vec3::zeros();
         // The lists are told of motion by the integrator alone.
-        self.bench.system.scratch.neighbours.is_built = false;
+        self.bench.system.scratch.neighbors.is_built = false;
         self.bench.step();
         let patches = &self.bench.system.scratch.patch_forces[0];
         patches.contacts[..patches.n].iter().map(|it| it.force).sum()
@@ -195,7 +195,7 @@ impl Path {
             grains.positions[0] = here;
             grains.velocities[0] = (next - here) / dt;
             grains.angular_velocities[0] = Vec3::zeros();
-            self.bench.system.scratch.neighbours.is_built = false;
+            self.bench.system.scratch.neighbors.is_built = false;
             self.bench.step();
             let patches = &self.bench.system.scratch.patch_forces[0];
             let force: Vec3 = patches.contacts[..patches.n].iter().map(|it| it.force).sum();

@@ -52,7 +52,7 @@ pub(super) struct Case {
 const GRAVITY: Real = 9.81;
 /// Substeps of a slice.
 const SLICE: u64 = 4000;
-/// Neighbours are listed this share of the ball's radius beyond contact.
+/// Neighbors are listed this share of the ball's radius beyond contact.
 const SKIN_SHARE: Real = 0.25;
 /// Share of the critical step that a free sheet is computed with.
 const SAFETY: Real = 0.8;
@@ -205,7 +205,7 @@ impl Ride {
             }
         }
         (springs.spheres.ids, springs.spheres.springs) = (ids, kept);
-        self.system.scratch.neighbours.is_built = false;
+        self.system.scratch.neighbors.is_built = false;
     }
 
     /// Records the forces of the last substep at the place where they acted.

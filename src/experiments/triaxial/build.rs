@@ -35,7 +35,7 @@ pub(super) const FRAME: u32 = 0;
 pub(super) const BOTTOM: u32 = 1;
 /// The upper plate.
 pub(super) const TOP: u32 = 2;
-/// Neighbours are listed this share of the largest radius beyond contact.
+/// Neighbors are listed this share of the largest radius beyond contact.
 const SKIN_SHARE: Real = 0.2;
 
 /// What grains touch of the membrane.

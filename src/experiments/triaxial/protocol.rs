@@ -231,7 +231,7 @@ impl Test {
         self.recipe.release(&mut self.system.model);
         self.course.substep = self.system.model.substep;
         // The lists tell who touches the membrane, and all of it is free to move now.
-        self.system.scratch.neighbours.is_built = false;
+        self.system.scratch.neighbors.is_built = false;
         self.enter(Stage::Confining);
     }
 

@@ -93,7 +93,7 @@ impl Triangles {
         match nearest.feature {
             Feature::Face => true,
             Feature::Edge(k) => {
-                let across = mesh.neighbours_of_triangle[triangle][usize::from(k)];
+                let across = mesh.neighbors_of_triangle[triangle][usize::from(k)];
                 across == NONE || !is_preceded(across)
             }
             Feature::Vertex(k) => {
@@ -162,7 +162,7 @@ impl Triangles {
         for (a, nearest) in near.iter().enumerate() {
             let corners = mesh.triangles[nearest.triangle as usize];
             for (k, &across) in
-                mesh.neighbours_of_triangle[nearest.triangle as usize].iter().enumerate()
+                mesh.neighbors_of_triangle[nearest.triangle as usize].iter().enumerate()
             {
                 // Each edge once. `NONE` is never in the list.
                 let Ok(b) = near.binary_search_by_key(&across, |it| it.triangle) else { continue };

@@ -1,4 +1,4 @@
-//! Grains on rigid bodies.
+//! Tests of contacts between grains and rigid bodies.
 
 use crate::{
     base::{Pose, Quat, Real, Vec3, real::Twist},
@@ -32,7 +32,8 @@ fn at(position: Vec3) -> BodyMotion {
     BodyMotion { pose: Pose::translation(position.x, position.y, position.z), twist: Twist::zero() }
 }
 
-/// Oracle: a plane. A grain rests on a box, a polyhedron and a half-space as on a floor; to rounding.
+/// Oracle: a plane. A grain rests on a box, a polyhedron, a cylinder and a half-space as on a floor. Tolerance:
+/// rounding.
 #[test]
 fn a_grain_rests_on_a_body_as_on_a_plane() {
     let half = Vec3::new(0.02, 0.02, 0.01);
@@ -70,7 +71,7 @@ fn a_grain_rests_on_a_body_as_on_a_plane() {
         let load = system.scratch.body_wrenches[0].force.z;
         assert!((load / weight + 1.0).abs() < 1e-6, "{load}");
     }
-    // Oracle: a body touches no grain as a rule.
+    // Oracle: by default, grains do not touch bodies.
     let mut untouched = bodies[0].0.clone();
     untouched.of_grains = None;
     let system = rest(&|it| {
@@ -79,7 +80,7 @@ fn a_grain_rests_on_a_body_as_on_a_plane() {
     assert!(system.state.grains.positions[0].z < -half.z);
 }
 
-/// Oracle: the balances of momentum and of angular momentum, in every substep; to rounding.
+/// Oracle: the balances of momentum and angular momentum in every substep. Tolerance: rounding.
 #[test]
 fn bodies_and_grains_exchange_momentum() {
     let points = [Vec3::x(), Vec3::y(), Vec3::z(), -Vec3::x(), -Vec3::y(), -Vec3::z()];
@@ -95,11 +96,11 @@ fn bodies_and_grains_exchange_momentum() {
         hull,
         Shape::capsule(2e-3, 9e-3),
     ];
-    let places = [Vec3::x(), -Vec3::x(), Vec3::y(), Vec3::z()];
-    for (k, (shape, place)) in shapes.into_iter().zip(places).enumerate() {
-        let spin = Vec3::new(5.0, -3.0, 4.0) * (1.0 - 0.4 * k as Real);
-        let twist = Twist { linear: place * -0.3, angular: spin };
-        builder.body(touched(shape), BodyMotion { twist, ..at(place * 0.0112) });
+    let directions = [Vec3::x(), -Vec3::x(), Vec3::y(), Vec3::z()];
+    for (k, (shape, direction)) in shapes.into_iter().zip(directions).enumerate() {
+        let angular = Vec3::new(5.0, -3.0, 4.0) * (1.0 - 0.4 * k as Real);
+        let twist = Twist { linear: direction * -0.3, angular };
+        builder.body(touched(shape), BodyMotion { twist, ..at(direction * 0.0112) });
     }
     let mut system = builder.build().unwrap();
     let (dt, mut most) = (system.model.substep, 0.0_f64);
@@ -109,30 +110,35 @@ fn bodies_and_grains_exchange_momentum() {
         let bodies = system.controls.bodies.clone();
         system.step();
         n_contacts += system.scratch.touching_walls(&system.state).count();
-        let (mut impulse, mut turning) = (Vec3::zeros(), Vec3::zeros());
+        let (mut impulse, mut angular_impulse) = (Vec3::zeros(), Vec3::zeros());
         for (wrench, body) in system.scratch.body_wrenches.iter().zip(&bodies) {
             impulse += wrench.force * dt;
-            turning += (wrench.torque + body.pose.translation.vector.cross(&wrench.force)) * dt;
+            angular_impulse +=
+                (wrench.torque + body.pose.translation.vector.cross(&wrench.force)) * dt;
             most = most.max(wrench.force.norm() * dt);
         }
         let now = &system.state.grains;
         for i in 0..now.len() {
             let mass = now.masses[i];
-            let gained = (now.velocities[i] - before.velocities[i]) * mass;
-            let spun = (now.angular_velocities[i] - before.angular_velocities[i])
+            let gain = (now.velocities[i] - before.velocities[i]) * mass;
+            let rotation = (now.angular_velocities[i] - before.angular_velocities[i])
                 * (0.4 * mass * RADIUS * RADIUS);
             let weight = system.model.gravity * (mass * dt);
-            impulse += gained - weight;
-            turning += before.positions[i].cross(&(gained - weight)) + spun;
+            impulse += gain - weight;
+            angular_impulse += before.positions[i].cross(&(gain - weight)) + rotation;
         }
         assert!(impulse.norm() <= 1e-12 * most.max(1e-7), "{} {most}", impulse.norm());
-        assert!(turning.norm() <= 1e-12 * 0.02 * most.max(1e-7), "{} {most}", turning.norm());
+        assert!(
+            angular_impulse.norm() <= 1e-12 * 0.02 * most.max(1e-7),
+            "{} {most}",
+            angular_impulse.norm()
+        );
         system.controls.bodies.iter_mut().for_each(|body| body.advance(dt));
     }
     assert!(most > 0.0 && n_contacts > 1000, "{n_contacts}");
 }
 
-/// Oracle: statics. A cube that falls on a bed of grains comes to rest, and the grains carry its weight.
+/// Oracle: statics. A cube that has fallen on a bed of grains comes to rest, and the grains carry its weight.
 #[test]
 fn a_cube_on_a_bed_of_grains_comes_to_rest() {
     let mut builder = builder();
@@ -142,8 +148,8 @@ fn a_cube_on_a_bed_of_grains_comes_to_rest() {
     for k in 0..10 * 10 * 4 {
         let steps = [k % 10, k / 10 % 10, k / 100].map(Real::from);
         let shift = 0.01 * RADIUS * Real::from(k).sin();
-        let place = Vec3::from(steps).add_scalar(0.5) * (2.04 * RADIUS) + Vec3::repeat(shift);
-        builder.grain(place - Vec3::new(0.0204, 0.0204, 0.0), RADIUS);
+        let position = Vec3::from(steps).add_scalar(0.5) * (2.04 * RADIUS) + Vec3::repeat(shift);
+        builder.grain(position - Vec3::new(0.0204, 0.0204, 0.0), RADIUS);
     }
     let start = BodyMotion {
         pose: Pose::new(Vec3::z() * 0.032, Vec3::new(0.3, 0.2, 0.1)),
@@ -154,12 +160,12 @@ fn a_cube_on_a_bed_of_grains_comes_to_rest() {
     let (dt, mass) = (system.model.substep, 1500.0 * edge * edge * edge);
     let inertia = mass * edge * edge / 6.0;
     let (n, n_last) = (20_000, 4000);
-    let mut carried = Vec3::zeros();
+    let mut load = Vec3::zeros();
     for k in 0..n {
         system.step();
         let wrench = &system.scratch.body_wrenches[0];
         if n - n_last <= k {
-            carried += wrench.force / Real::from(n_last);
+            load += wrench.force / Real::from(n_last);
         }
         // A cube has the same moment of inertia about every axis.
         let body = &mut system.controls.bodies[0];
@@ -170,7 +176,7 @@ fn a_cube_on_a_bed_of_grains_comes_to_rest() {
     }
     let body = &system.controls.bodies[0];
     assert!(body.twist.linear.norm() < 5e-3, "{}", body.twist.linear);
-    assert!((carried.z / (mass * GRAVITY) - 1.0).abs() < 0.01, "{carried}");
-    assert!(carried.xy().norm() < 0.01 * mass * GRAVITY, "{carried}");
+    assert!((load.z / (mass * GRAVITY) - 1.0).abs() < 0.01, "{load}");
+    assert!(load.xy().norm() < 0.01 * mass * GRAVITY, "{load}");
     assert!(0.016 < body.pose.translation.z, "{}", body.pose.translation);
 }

@@ -13,14 +13,14 @@ use crate::{
     physics::{
         Model,
         membrane::{VertexRow, contact_geometry::closest, mesh::Mesh},
-        scratch::{CandidateScratch, GrainRow, Neighbours},
+        scratch::{CandidateScratch, GrainRow, Neighbors},
     },
 };
 
 /// Finds the closest points of all awake candidates.
 pub(super) fn find_closest(
     model: &Model,
-    lists: &mut Neighbours,
+    lists: &mut Neighbors,
     (rows, vertices): (&[GrainRow], &[VertexRow]),
     scratch: &mut CandidateScratch,
 ) {
@@ -41,7 +41,7 @@ pub(super) fn find_closest(
 }
 
 /// Lists the awake candidates, grain by grain.
-fn list_awake(lists: &Neighbours, scratch: &mut CandidateScratch) {
+fn list_awake(lists: &Neighbors, scratch: &mut CandidateScratch) {
     let CandidateScratch { awake, awake_starts, .. } = scratch;
     awake.clear();
     awake.resize(lists.triangles.len(), 0);
@@ -70,7 +70,7 @@ fn is_more(a: Real, b: Real) -> bool {
 /// Input of the pass.
 struct Input<'a> {
     mesh: &'a Mesh,
-    lists: &'a Neighbours,
+    lists: &'a Neighbors,
     rows: &'a [GrainRow],
     vertices: &'a [VertexRow],
 }

@@ -54,11 +54,11 @@ impl UnderLaw for AllPairs<'_> {
 
     fn run<C: ContactLaw>(self, law: &C) {
         let Self { model, ids, springs, scratch } = self;
-        let Scratch { neighbours, grain_rows, pair_forces, pair_flags, .. } = scratch;
+        let Scratch { neighbors, grain_rows, pair_forces, pair_flags, .. } = scratch;
         pair_forces.resize(ids.len(), PairForce::default());
         pair_flags.resize(ids.len(), ContactFlags::NONE);
         let memories = C::Memory::rows(&mut springs.pair_memories, ids.len());
-        let (lists, rows) = (&*neighbours, &**grain_rows);
+        let (lists, rows) = (&*neighbors, &**grain_rows);
         let columns = (&mut **pair_forces, &mut **pair_flags, &mut *springs.pairs, memories);
         parallel::for_parts_of_four(columns, |start, forces, flags, springs, memories| {
             let here = start..start + forces.len();

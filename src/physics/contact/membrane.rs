@@ -42,7 +42,7 @@ use crate::{
         law::{self, ContactState},
         membrane::{MembraneState, VertexRow, contact_geometry::Feature},
         scratch::{
-            CandidateScratch, ContactFlags, GrainRow, Neighbours, PatchForce, PatchForces, Scratch,
+            CandidateScratch, ContactFlags, GrainRow, Neighbors, PatchForce, PatchForces, Scratch,
         },
         state::{Grains, N_PATCHES, Patch, Patches},
     },
@@ -80,7 +80,7 @@ pub fn forces(
     springs: &mut [Patches],
     scratch: &mut Scratch,
 ) {
-    let Scratch { neighbours: lists, candidates, patch_forces, .. } = scratch;
+    let Scratch { neighbors: lists, candidates, patch_forces, .. } = scratch;
     patch_forces.resize(springs.len(), PatchForces::NONE);
     if lists.membrane_grains.is_empty() {
         return;
@@ -178,7 +178,7 @@ impl Grain<'_> {
         let mut edges = [[0_u8; 3]; N_TOUCHED * (N_TOUCHED - 1) / 2];
         let mut n_edges = 0;
         for (index, contact) in touched.iter().enumerate() {
-            let across = &mesh.neighbours_of_triangle[contact.triangle as usize];
+            let across = &mesh.neighbors_of_triangle[contact.triangle as usize];
             for (later, other) in touched.iter().enumerate().skip(index + 1) {
                 let is_across = across.map(|it| it == other.triangle);
                 // Branch-free: whether two touched triangles are neighbors is not predictable.
@@ -270,7 +270,7 @@ impl Grain<'_> {
 /// Lists the triangles that the `s`-th grain near the membrane, with `radius` (m), overlaps; the deepest first.
 fn touching(
     radius: Real,
-    lists: &Neighbours,
+    lists: &Neighbors,
     candidates: &CandidateScratch,
     s: usize,
     touched: &mut ArrayVec<Touched, N_TOUCHED>,
@@ -312,8 +312,8 @@ fn is_local_minimum(model: &Model, contact: &Touched, touched: &[Touched]) -> bo
     match contact.feature {
         Feature::Face => true,
         Feature::Edge(k) => {
-            let neighbour = mesh.neighbours_of_triangle[triangle][usize::from(k)];
-            let other = touched.iter().find(|it| it.triangle == neighbour);
+            let neighbor = mesh.neighbors_of_triangle[triangle][usize::from(k)];
+            let other = touched.iter().find(|it| it.triangle == neighbor);
             !other.is_some_and(|other| other.precedes(contact))
         }
         Feature::Vertex(k) => {

@@ -23,7 +23,7 @@
 //! determine their distances.
 //!
 //! Valid while the gaps between the spheres are smaller than the grains. Grains that slip through
-//! are detected by `neighbours::crossings`.
+//! are detected by `neighbors::crossings`.
 
 use crate::{
     base::{Real, Vec3, parallel},

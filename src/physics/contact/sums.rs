@@ -37,7 +37,7 @@ pub struct PairSums<'a> {
 impl Kernel for PairSums<'_> {
     #[inline(always)]
     fn run<L: Lanes>(self) {
-        let lists = &self.scratch.neighbours;
+        let lists = &self.scratch.neighbors;
         let rows: &[[Real; 8]] = bytemuck::cast_slice(&self.scratch.pair_forces);
         // Hidden from the optimizer, which would otherwise turn each row into an addition and a dependent
         // subtraction.
@@ -71,7 +71,7 @@ fn add_row(sum: [Real; 8], row: &[Real; 8], sign: Real, radius: Real) -> [Real; 
 /// and torque (N m).
 #[inline(always)]
 pub fn add_other_contacts(scratch: &Scratch, i: usize, of_pairs: &[Real; 8]) -> (Vec3, Vec3) {
-    let lists = &scratch.neighbours;
+    let lists = &scratch.neighbors;
     let mut force = Vec3::new(of_pairs[0], of_pairs[1], of_pairs[2]);
     let mut torque = Vec3::new(of_pairs[3], of_pairs[4], of_pairs[5]);
     if lists.triangle_starts[i] < lists.triangle_starts[i + 1] {
@@ -115,14 +115,14 @@ pub fn add_other_contacts(scratch: &Scratch, i: usize, of_pairs: &[Real; 8]) -> 
 pub fn on_membrane(model: &Model, controls: &Controls, scratch: &mut Scratch) {
     let mesh = &model.membrane.mesh;
     let n_vertices = mesh.n_vertices();
-    let Scratch { neighbours, vertex_forces, patch_forces, sphere_forces, .. } = scratch;
+    let Scratch { neighbors, vertex_forces, patch_forces, sphere_forces, .. } = scratch;
     let Scratch { sample_forces, body_wrenches, leaked, .. } = scratch;
     vertex_forces.clear();
     vertex_forces.resize(n_vertices, Vec3::zeros());
     for sphere in sphere_forces.iter().filter(|it| it.flags.touches()) {
         vertex_forces[sphere.vertex as usize] -= sphere.force;
     }
-    for &grain in &neighbours.membrane_grains {
+    for &grain in &neighbors.membrane_grains {
         let grain = grain as usize;
         let patches = &patch_forces[grain];
         if patches.is_outside && leaked.is_none() {
@@ -138,7 +138,7 @@ pub fn on_membrane(model: &Model, controls: &Controls, scratch: &mut Scratch) {
     let n_samples = n_vertices + mesh.triangles.len();
     body_wrenches.clear();
     body_wrenches.resize(model.bodies.len(), Wrench::zero());
-    for (body, near) in neighbours.bodies.near.iter().enumerate() {
+    for (body, near) in neighbors.bodies.near.iter().enumerate() {
         let origin = controls.bodies[body].pose.translation.vector;
         let samples = &sample_forces[body * n_samples..(body + 1) * n_samples];
         let mut react = |sample: &SampleForce| {

@@ -35,7 +35,7 @@ const SAME_HISTORY: Real = 0.7;
 /// Computes the forces of the surfaces on the grains listed near them, and updates the history of these contacts by
 /// one substep.
 pub fn forces(model: &Model, controls: &Controls, state: &mut State, scratch: &mut Scratch) {
-    let lists = &scratch.neighbours.surfaces;
+    let lists = &scratch.neighbors.surfaces;
     let contacts = &mut scratch.surface_contacts;
     contacts.resize_with(lists.ids.len(), Vec::new);
     if lists.ids.is_empty() && state.springs.surfaces.ids.is_empty() {
@@ -69,8 +69,8 @@ pub fn forces(model: &Model, controls: &Controls, state: &mut State, scratch: &m
 
 /// Adds the reactions of these contacts to the wrenches on walls and bodies.
 pub fn react(model: &Model, controls: &Controls, state: &State, scratch: &mut Scratch) {
-    let Scratch { neighbours, surface_contacts, wall_wrenches, body_wrenches, .. } = scratch;
-    for (contacts, ids) in surface_contacts.iter().zip(&neighbours.surfaces.ids) {
+    let Scratch { neighbors, surface_contacts, wall_wrenches, body_wrenches, .. } = scratch;
+    for (contacts, ids) in surface_contacts.iter().zip(&neighbors.surfaces.ids) {
         let [s, i] = ids.map(|id| id as usize);
         let origin = motion(model, controls, state, s).pose.translation.vector;
         let wrench = match wall_wrenches.get_mut(s) {

@@ -98,9 +98,9 @@ fn bridges_survive_a_rebuild_of_the_lists() {
     system.state.grains.positions =
         vec![Vec3::z() * (RADIUS + gap), Vec3::z() * (3.0 * RADIUS + 2.0 * gap)];
     system.state.grains.velocities.fill(Vec3::zeros());
-    system.scratch.neighbours.is_built = false;
+    system.scratch.neighbors.is_built = false;
     system.step();
-    assert_eq!(system.scratch.neighbours.n_builds, 2);
+    assert_eq!(system.scratch.neighbors.n_builds, 2);
     assert_eq!(system.scratch.pair_forces[0].normal.to_bits(), (-pull).to_bits());
     assert_eq!(system.scratch.wall_forces[0].normal.to_bits(), (-pull).to_bits());
     assert!(
@@ -134,7 +134,7 @@ fn cloud(skin_share: Real) -> (u64, u64, usize) {
     system.state.digest(&mut digest);
     let bridges = system.scratch.touching_pairs(&system.state).filter(|(it, _)| it.overlap < 0.0);
     let n_bridges = bridges.count();
-    (digest.finish(), system.scratch.neighbours.n_builds, n_bridges)
+    (digest.finish(), system.scratch.neighbors.n_builds, n_bridges)
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Grains on walls of triangles.
+//! Tests of contacts between grains and walls of triangles.
 
 use super::surfaces;
 use crate::{
@@ -27,7 +27,7 @@ fn builder(gravity: Vec3) -> SystemBuilder {
     builder
 }
 
-/// Squares with edges of `edge` (m) from -n to n along two axes, two triangles each.
+/// Squares with edges of `edge` (m), from -n to n along two axes, each divided into two triangles.
 fn squares(n: i32, edge: Real, [along, across]: [Vec3; 2]) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let width = u32::try_from(2 * n + 1).unwrap();
     let line = || (-n..=n).map(|k| Real::from(k) * edge);
@@ -45,29 +45,29 @@ fn floor(n: i32, edge: Real) -> Wall {
     Wall::triangles(Triangles::new(vertices, triangles).unwrap())
 }
 
-/// Overlap of a grain that is pressed with `force` (N).
+/// Overlap (m) of a grain that is pressed on a wall with `force` (N).
 fn overlap(system: &System, wall: usize, force: Real) -> Real {
     let law = system.model.walls[wall].law;
     (0.75 * force / (law.modulus * RADIUS.sqrt())).powf(2.0 / 3.0)
 }
 
-/// Force on the only grain of a system with one wall (N), and its friction spring (m).
+/// Force (N) on the only grain of a system with one wall, and its friction spring (m).
 fn force_and_spring(system: &System) -> (Vec3, Vec3) {
     let mut contacts = system.scratch.touching_walls(&system.state);
     let force = contacts.next().map_or_else(Vec3::zeros, |(contact, _)| contact.force);
-    assert!(contacts.next().is_none(), "one contact");
+    assert!(contacts.next().is_none(), "more than one contact");
     let springs = &system.state.springs;
-    let place = springs.surfaces.histories.first().map(|it| it.spring);
-    (force, place.or(springs.walls.springs.first().copied()).unwrap())
+    let spring = springs.surfaces.histories.first().map(|it| it.spring);
+    (force, spring.or(springs.walls.springs.first().copied()).unwrap())
 }
 
-/// Oracle: a plane. A grain at rest over a face, an edge or a vertex sinks in as far; to rounding.
+/// Oracle: a plane. A grain at rest on a face, an edge or a vertex has the same overlap. Tolerance: rounding.
 #[test]
 fn a_grain_rests_on_triangles_as_on_a_plane() {
-    for place in [Vec3::new(0.3e-3, 0.7e-3, 0.0), Vec3::new(1e-3, 0.0, 0.0), Vec3::zeros()] {
+    for point in [Vec3::new(0.3e-3, 0.7e-3, 0.0), Vec3::new(1e-3, 0.0, 0.0), Vec3::zeros()] {
         let rest = |wall: Wall| {
             let mut builder = builder(Vec3::z() * -GRAVITY);
-            builder.grain(place + Vec3::z() * RADIUS, RADIUS).wall(wall);
+            builder.grain(point + Vec3::z() * RADIUS, RADIUS).wall(wall);
             let mut system = builder.build().unwrap();
             (0..20_000).for_each(|_| system.step());
             system
@@ -83,20 +83,20 @@ fn a_grain_rests_on_triangles_as_on_a_plane() {
     }
 }
 
-/// Oracle: a plane. A grain slides and then rolls over a hundred edges of a tilted floor; its force
-/// differs by less than 1e-9 of its weight at any time, and its friction spring by as little.
+/// Oracle: a plane. A grain slides and then rolls over a hundred edges of a tilted floor. Tolerance: its force
+/// differs by less than 1e-9 of its weight at any time, its friction spring by less than 1e-9 of its radius.
 #[test]
-fn a_grain_slides_and_rolls_over_flat_triangles_without_a_jump() {
+fn a_grain_slides_and_rolls_over_flat_triangles_as_on_a_plane() {
     let pose = Pose::new(Vec3::new(0.01, -0.02, 0.03), Vec3::new(0.3, -0.5, 0.2));
-    let turn = pose.rotation;
+    let rotation = pose.rotation;
     let system = |wall: Wall| {
-        let mut builder = builder(turn * Vec3::z() * -GRAVITY);
-        let middle = turn * Vec3::new(-0.029, -0.011, RADIUS) + pose.translation.vector;
+        let mut builder = builder(rotation * Vec3::z() * -GRAVITY);
+        let middle = rotation * Vec3::new(-0.029, -0.011, RADIUS) + pose.translation.vector;
         builder.grain(middle, RADIUS).wall(wall.at(pose));
         let mut system = builder.build().unwrap();
         let sunk = overlap(&system, 0, system.state.grains.masses[0] * GRAVITY);
-        system.state.grains.positions[0] -= turn * Vec3::z() * sunk;
-        system.state.grains.velocities[0] = turn * Vec3::new(0.3, 0.11, 0.0);
+        system.state.grains.positions[0] -= rotation * Vec3::z() * sunk;
+        system.state.grains.velocities[0] = rotation * Vec3::new(0.3, 0.11, 0.0);
         system
     };
     let mut on_plane = system(Wall::plane(Vec3::zeros(), Vec3::z()));
@@ -108,9 +108,9 @@ fn a_grain_slides_and_rolls_over_flat_triangles_without_a_jump() {
         on_plane.step();
         on_triangles.step();
         let (force, spring) = force_and_spring(&on_plane);
-        let (found, its_spring) = force_and_spring(&on_triangles);
+        let (found, found_spring) = force_and_spring(&on_triangles);
         assert!((found - force).norm() < 1e-9 * weight, "{found} {force}");
-        assert!((its_spring - spring).norm() < 1e-9 * RADIUS, "{its_spring} {spring}");
+        assert!((found_spring - spring).norm() < 1e-9 * RADIUS, "{found_spring} {spring}");
         let slides = on_plane.scratch.wall_forces[0].flags.slides();
         (has_slid, has_rolled) = (has_slid || slides, !slides);
     }
@@ -141,10 +141,10 @@ fn a_grain_in_a_corner_touches_both_sides() {
         forces.sort_by(|a, b| a.y.total_cmp(&b.y));
         (forces, system.state.grains.positions[0])
     };
-    let (expected, place) = rest(sides.to_vec());
-    let (found, its_place) = rest(vec![corner]);
+    let (expected, position) = rest(sides.to_vec());
+    let (found, found_position) = rest(vec![corner]);
     assert_eq!((expected.len(), found.len()), (2, 2));
-    assert!((its_place - place).norm() < 1e-9 * RADIUS);
+    assert!((found_position - position).norm() < 1e-9 * RADIUS);
     for (force, expected) in found.iter().zip(&expected) {
         assert!((force - expected).norm() < 1e-9 * expected.norm(), "{force} {expected}");
     }
@@ -161,10 +161,10 @@ fn box_mesh(low: Vec3, high: Vec3) -> Triangles {
         .unwrap()
 }
 
-/// Oracle: the geometry of a box. On an edge and on a corner there is one contact, with the normal from
-/// there to the grain.
+/// Oracle: the geometry of a box. On an edge and at a corner there is one contact, with the normal from the
+/// closest point to the grain.
 #[test]
-fn a_grain_on_an_edge_has_one_contact_with_the_normal_from_there() {
+fn a_grain_on_an_edge_or_corner_has_one_contact() {
     let direction = Vec3::new(0.2, 0.0, 0.9).normalize();
     let at_corner = Vec3::new(0.3, 0.4, 0.8).normalize();
     for (point, normal) in
@@ -188,8 +188,8 @@ fn a_grain_on_an_edge_has_one_contact_with_the_normal_from_there() {
     }
 }
 
-/// Oracle: rigid rotation. A grain on a plate that turns about a hinge rises at the rate times its
-/// distance from the axis, and stays on the plate as deep as at rest.
+/// Oracle: rigid rotation. A grain on a plate that rotates about a hinge rises at the rate times its distance from
+/// the axis, with the overlap of a grain at rest.
 #[test]
 fn a_hinged_plate_lifts_a_grain() {
     let rate = 0.02;
@@ -256,7 +256,7 @@ fn filled_cone() -> SystemBuilder {
         let point = Vec3::new(steps[0], steps[1], steps[2] + 0.5) * spacing;
         let room = cone_radius(point.z) * 0.98 - point.xy().norm();
         if 1.05 * RADIUS < room && point.z + RADIUS < HEIGHT {
-            // Not quite regular, or columns would stand.
+            // Slightly irregular, so that columns of grains are not stable.
             let shift = 0.02 * RADIUS * Real::from(k).sin();
             builder.grain(point + Vec3::new(shift, -shift, 0.0), RADIUS);
         }
@@ -264,8 +264,8 @@ fn filled_cone() -> SystemBuilder {
     builder
 }
 
-/// Grains within the height of the cone: how many are inside it, and how many outside and above the rim
-/// under which they may have rolled.
+/// Numbers of grains within the height of the cone: inside it, and outside. Grains that may have rolled out under
+/// the rim are not counted.
 fn inside_and_outside(system: &System) -> (usize, usize) {
     let bottom = system.state.walls[1].pose.translation.z;
     let (mut n_inside, mut n_outside) = (0, 0);
@@ -278,10 +278,9 @@ fn inside_and_outside(system: &System) -> (usize, usize) {
     (n_inside, n_outside)
 }
 
-/// Oracle: counts. A slump cone holds its grains at rest and lets them out when it is lifted; none passes
-/// through its side.
+/// Oracle: counts. Grains stay in a slump cone at rest and leave it when it is lifted; none crosses its side.
 #[test]
-fn a_slump_cone_holds_grains_and_lets_them_out() {
+fn grains_stay_in_a_slump_cone_until_it_is_lifted() {
     let mut system = filled_cone().build().unwrap();
     let n = system.state.grains.len();
     assert!(n > 200, "{n}");
@@ -315,20 +314,20 @@ fn a_slump_cone_holds_grains_and_lets_them_out() {
     assert!(furthest > 1.1 * BASE, "{furthest}");
 }
 
-/// Oracle: the same run with other lists, other numbers of threads, and a break.
+/// Oracle: the same run with other lists, other numbers of threads, and resumed from a saved state.
 #[test]
-fn neither_lists_nor_threads_nor_a_break_change_a_bit_on_triangles() {
-    let run = |skin_share: Real, n_threads: usize, breaks: bool| {
+fn lists_threads_and_resuming_do_not_change_a_bit_on_triangles() {
+    let run = |skin_share: Real, n_threads: usize, is_resumed: bool| {
         let mut builder = filled_cone();
         builder.skin(skin_share * RADIUS);
         let mut system = builder.build().unwrap();
-        let spin = Twist { linear: Vec3::z() * 0.1, angular: Vec3::new(0.2, 0.0, 3.0) };
-        system.model.walls[1].motion = WallMotion::Velocity(spin);
+        let twist = Twist { linear: Vec3::z() * 0.1, angular: Vec3::new(0.2, 0.0, 3.0) };
+        system.model.walls[1].motion = WallMotion::Velocity(twist);
         let pool = parallel::pool(n_threads).unwrap();
         parallel::lead(&pool, || {
             for k in 0..500 {
                 system.step();
-                if breaks && k == 250 {
+                if is_resumed && k == 250 {
                     let state = saved_state::read(&saved_state::write(&system.state)).unwrap();
                     assert!(!state.springs.surfaces.ids.is_empty());
                     system.restart(state);
@@ -337,7 +336,7 @@ fn neither_lists_nor_threads_nor_a_break_change_a_bit_on_triangles() {
         });
         let mut digest = Digest::new();
         system.state.digest(&mut digest);
-        (digest.finish(), system.scratch.neighbours.n_builds)
+        (digest.finish(), system.scratch.neighbors.n_builds)
     };
     let (digest, n_builds) = run(0.25, 1, false);
     let (thin, n_more_builds) = run(0.06, 2, false);
@@ -346,10 +345,10 @@ fn neither_lists_nor_threads_nor_a_break_change_a_bit_on_triangles() {
     assert_eq!(run(0.25, 7, true).0, digest);
 }
 
-/// Oracle: brute force over all triangles. Ten thousand grains over a wavy surface of five thousand
-/// triangles that turns: the lists miss no contact, and hold little else.
+/// Oracle: brute force over all triangles, for ten thousand grains above a wavy, rotating surface of five thousand
+/// triangles. The lists contain all contacts, and few other entries.
 #[test]
-fn lists_miss_no_contact_with_a_large_surface() {
+fn lists_contain_all_contacts_with_a_large_surface() {
     let edge = 4e-3;
     let (mut vertices, triangles) = squares(25, edge, [Vec3::x(), Vec3::y()]);
     for vertex in &mut vertices {
@@ -361,8 +360,8 @@ fn lists_miss_no_contact_with_a_large_surface() {
     let mut builder = builder(Vec3::zeros());
     for k in 0..10_000 {
         let steps = [k % 40, k / 40 % 40, k / 1600].map(Real::from);
-        let place = Vec3::new(steps[0] - 19.5, steps[1] - 19.5, steps[2]) * (2.1 * RADIUS);
-        builder.grain(place + Vec3::z() * 4.5e-3, RADIUS);
+        let position = Vec3::new(steps[0] - 19.5, steps[1] - 19.5, steps[2]) * (2.1 * RADIUS);
+        builder.grain(position + Vec3::z() * 4.5e-3, RADIUS);
     }
     builder.wall(Wall::triangles(surface.clone()).moving(WallMotion::Velocity(twist)));
     let mut system = builder.build().unwrap();
@@ -384,6 +383,6 @@ fn lists_miss_no_contact_with_a_large_surface() {
         assert_eq!(found, expected);
         assert!(found.iter().sum::<usize>() > 100);
     }
-    let lists = &system.scratch.neighbours.surfaces;
+    let lists = &system.scratch.neighbors.surfaces;
     assert!(lists.ids.len() < 3200 && lists.triangles.len() < 10 * lists.ids.len());
 }

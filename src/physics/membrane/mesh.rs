@@ -78,7 +78,7 @@ pub struct Mesh {
     /// Edges of each triangle: edge `k` joins its vertices `k` and `k + 1`.
     pub edges_of_triangle: Vec<[u32; 3]>,
     /// Triangle across each edge of each triangle, `NONE` on the boundary.
-    pub neighbours_of_triangle: Vec<[u32; 3]>,
+    pub neighbors_of_triangle: Vec<[u32; 3]>,
     /// Vertices of each boundary loop, in right-handed order about the outward normal of a lid that closes it.
     /// Empty for a closed mesh.
     pub rims: Vec<Vec<u32>>,
@@ -205,7 +205,7 @@ impl Mesh {
             hinges: Vec::with_capacity(inner.len()),
             triangles_of_edge: Vec::with_capacity(inner.len() + outer.len()),
             edges_of_triangle: vec![[NONE; 3]; triangles.len()],
-            neighbours_of_triangle: vec![[NONE; 3]; triangles.len()],
+            neighbors_of_triangle: vec![[NONE; 3]; triangles.len()],
             is_on_rim: vec![false; positions.len()],
             triangles_of_vertex: triangles_of_vertex(positions.len(), &triangles),
             slots_of_vertex: Incidence { starts: vec![], entries: vec![] },
@@ -239,7 +239,7 @@ impl Mesh {
         for (side, other) in [(up, down), (down, up)] {
             let (triangle, slot) = (side.triangle as usize, side.slot as usize);
             self.edges_of_triangle[triangle][slot] = edge;
-            self.neighbours_of_triangle[triangle][slot] = other.triangle;
+            self.neighbors_of_triangle[triangle][slot] = other.triangle;
         }
     }
 

@@ -34,7 +34,7 @@ use crate::{
         Real,
         real::{real, real_of},
     },
-    physics::{Model, System, law::PairLaw, neighbours::update_pair_masses},
+    physics::{Model, System, law::PairLaw, neighbors::update_pair_masses},
 };
 
 /// Growth per relaxation time √(m/(p d)).
@@ -280,7 +280,7 @@ pub fn resize(system: &mut System, final_radii: &[Real], scale: Real) {
         model.radius_max = model.radius_max.max(*radius);
     }
     // This also records how much of the skin of the neighbor lists the growth has used.
-    update_pair_masses(state, &mut scratch.neighbours);
+    update_pair_masses(state, &mut scratch.neighbors);
 }
 
 /// Mean overlap of touching pairs, divided by the sum of their radii.

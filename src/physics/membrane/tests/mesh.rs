@@ -62,7 +62,7 @@ fn connectivity_is_consistent() {
             let edge = mesh.edges[mesh.edges_of_triangle[t][k] as usize];
             // Oracle: definition of edge k of a triangle and of the triangle across it.
             assert!(edge == [a, b] || edge == [b, a]);
-            let across = mesh.neighbours_of_triangle[t][k];
+            let across = mesh.neighbors_of_triangle[t][k];
             if across != NONE {
                 let other = mesh.triangles[across as usize];
                 assert!(other.contains(&a) && other.contains(&b) && across as usize != t);

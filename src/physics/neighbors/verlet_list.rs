@@ -3,7 +3,7 @@
 use super::cell_grid::{CellGrid, id};
 use crate::{
     base::{Real, Vec3, parallel},
-    physics::{Model, State, scratch::Neighbours},
+    physics::{Model, State, scratch::Neighbors},
 };
 
 /// Number of grains in one parallel task.
@@ -22,7 +22,7 @@ pub(super) fn build(
     grid: &CellGrid,
     positions: &[Vec3],
     state: &mut State,
-    lists: &mut Neighbours,
+    lists: &mut Neighbors,
 ) {
     let radii = &state.grains.radii;
     let beyond = model.grain_law.range() + lists.skin;
@@ -129,7 +129,7 @@ pub(super) fn kept_memories(old_ids: &[[u32; 2]], old: &[Real], ids: &[[u32; 2]]
 }
 
 /// Indexes the pairs of each grain: as first grain, which are contiguous, and as second grain.
-fn index_by_grain(ids: &[[u32; 2]], n_grains: usize, lists: &mut Neighbours) {
+fn index_by_grain(ids: &[[u32; 2]], n_grains: usize, lists: &mut Neighbors) {
     lists.first_starts = starts(ids.iter().map(|pair| pair[0]), n_grains);
     (lists.second_starts, lists.second_pairs) = index_by_second(ids, n_grains);
 }

@@ -3,7 +3,7 @@
 //!
 //! Displacements are relative to the carrier, the first wall, so moving the whole gripper does not cause rebuilds.
 //! Code that moves grains, vertices or walls other than by `integrate`, or changes the bodies, must set
-//! `Neighbours::is_built` to false. Contact history survives rebuilds: lists are sorted, and one pass over the old
+//! `Neighbors::is_built` to false. Contact history survives rebuilds: lists are sorted, and one pass over the old
 //! and the new list transfers it.
 
 mod body_list;
@@ -22,14 +22,14 @@ use bounds::Bounds;
 use super::{
     Controls, Model, Scratch, State,
     membrane::MembraneContact,
-    scratch::{Neighbours, PatchForces},
+    scratch::{Neighbors, PatchForces},
     state::Patches,
 };
 use crate::base::Real;
 
 /// Rebuilds the lists if they may be incomplete.
 pub fn refresh(model: &Model, controls: &Controls, state: &mut State, scratch: &mut Scratch) {
-    let Scratch { neighbours: lists, sample_forces, .. } = scratch;
+    let Scratch { neighbors: lists, sample_forces, .. } = scratch;
     lists.bodies.is_built &= lists.is_built;
     let of_bodies = (&mut lists.bodies, sample_forces);
     body_list::refresh(model, controls, state, lists.vertex_travel, of_bodies);
@@ -38,7 +38,7 @@ pub fn refresh(model: &Model, controls: &Controls, state: &mut State, scratch: &
 
 /// Rebuilds all lists of grains if they may be incomplete.
 fn refresh_grains(model: &Model, controls: &Controls, state: &mut State, scratch: &mut Scratch) {
-    let lists = &mut scratch.neighbours;
+    let lists = &mut scratch.neighbors;
     let used = 2.0 * used(model, controls, state, lists);
     // The factor reserves a part of the skin for the motion of the last substep, which is not measured yet.
     let is_complete = lists.is_built && used < 0.9 * lists.skin;
@@ -86,7 +86,7 @@ fn refresh_grains(model: &Model, controls: &Controls, state: &mut State, scratch
 }
 
 /// Largest displacement or growth of anything since the last build (m).
-fn used(model: &Model, controls: &Controls, state: &State, lists: &Neighbours) -> Real {
+fn used(model: &Model, controls: &Controls, state: &State, lists: &Neighbors) -> Real {
     if !lists.is_built {
         return 0.0;
     }
@@ -98,7 +98,7 @@ fn used(model: &Model, controls: &Controls, state: &State, lists: &Neighbours) -
 }
 
 /// Removes the patches of grains without candidate triangles, which have none until the next build.
-fn remove_patches(lists: &Neighbours, springs: &mut [Patches], forces: &mut Vec<PatchForces>) {
+fn remove_patches(lists: &Neighbors, springs: &mut [Patches], forces: &mut Vec<PatchForces>) {
     forces.resize(springs.len(), PatchForces::NONE);
     for (i, (patches, forces)) in springs.iter_mut().zip(forces).enumerate() {
         if lists.triangle_starts[i] == lists.triangle_starts[i + 1] {
@@ -108,7 +108,7 @@ fn remove_patches(lists: &Neighbours, springs: &mut [Patches], forces: &mut Vec<
 }
 
 /// Updates the effective radii and masses of the listed pairs. Must be called after radii or masses change.
-pub fn update_pair_masses(state: &State, lists: &mut Neighbours) {
+pub fn update_pair_masses(state: &State, lists: &mut Neighbors) {
     let reduced = |a: f64, b: f64| a * b / (a + b);
     let of_pairs = |quantity: &[f64]| {
         let ids = state.pair_ids.iter().map(|ids| ids.map(|id| id as usize));

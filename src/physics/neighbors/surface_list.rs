@@ -13,7 +13,7 @@ use crate::{
         contact::{bodies::signed_distance, surfaces::motion},
         membrane::contact_geometry::closest_on_triangle,
         model::{BodyModel, TouchedSurface},
-        scratch::{Neighbours, SurfaceLists},
+        scratch::{Neighbors, SurfaceLists},
     },
 };
 
@@ -27,7 +27,7 @@ pub(super) fn build(
     controls: &Controls,
     state: &State,
     (grid, bounds): (&CellGrid, &Bounds),
-    lists: &mut Neighbours,
+    lists: &mut Neighbors,
 ) {
     let (skin, walls) = (lists.skin, std::mem::take(&mut lists.wall_gaps));
     let entries = &mut lists.surfaces;
@@ -70,7 +70,7 @@ pub(super) fn displacement(
     model: &Model,
     controls: &Controls,
     state: &State,
-    lists: &Neighbours,
+    lists: &Neighbors,
 ) -> Real {
     let carried = state.carrier_position() - lists.carrier_position;
     let entries = &lists.surfaces;

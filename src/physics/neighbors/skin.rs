@@ -17,7 +17,7 @@
 
 use crate::{
     base::Real,
-    physics::{Model, scratch::Neighbours},
+    physics::{Model, scratch::Neighbors},
 };
 
 /// b/a, measured with boxes of grains at rest and flowing.
@@ -31,7 +31,7 @@ const SKIN_SHARE_MIN: Real = 1.0 / 8.0;
 
 /// The skin (m) with the lowest cost if motion continues as since the last build, during which `used` (m) of the
 /// skin was used up.
-pub(super) fn optimal(model: &Model, lists: &Neighbours, used: Real) -> Real {
+pub(super) fn optimal(model: &Model, lists: &Neighbors, used: Real) -> Real {
     let n = lists.n_since_build.max(1);
     #[expect(clippy::cast_precision_loss, reason = "a count of substeps")]
     let per_substep = used / n as Real;
@@ -41,7 +41,7 @@ pub(super) fn optimal(model: &Model, lists: &Neighbours, used: Real) -> Real {
 }
 
 /// True if lists should be rebuilt with a thinner skin although they are complete.
-pub(super) fn is_too_thick(model: &Model, lists: &Neighbours, used: Real) -> bool {
+pub(super) fn is_too_thick(model: &Model, lists: &Neighbors, used: Real) -> bool {
     lists.n_since_build == REVIEW_STEP && TOO_THICK * optimal(model, lists, used) < lists.skin
 }
 
@@ -61,8 +61,8 @@ mod tests {
         builder.build_model().unwrap()
     }
 
-    fn lists(skin: Real, n_since_build: u64) -> Neighbours {
-        Neighbours { is_built: true, skin, n_since_build, ..Neighbours::default() }
+    fn lists(skin: Real, n_since_build: u64) -> Neighbors {
+        Neighbors { is_built: true, skin, n_since_build, ..Neighbors::default() }
     }
 
     /// Oracle: the cost formula above, evaluated for many skins.

@@ -10,7 +10,7 @@ use crate::{
     physics::{
         Model, State,
         boundary::wall::WallShape,
-        scratch::{Neighbours, WallForce},
+        scratch::{Neighbors, WallForce},
         state::ListedSprings,
     },
 };
@@ -21,7 +21,7 @@ pub(super) fn build(
     model: &Model,
     state: &mut State,
     bounds: &Bounds,
-    lists: &mut Neighbours,
+    lists: &mut Neighbors,
     wall_forces: &mut Vec<WallForce>,
 ) {
     let mut ids = Vec::new();
@@ -63,7 +63,7 @@ pub(super) fn build(
 }
 
 /// Largest distance by which a wall has approached the grains since the last build, relative to the carrier (m).
-pub(super) fn displacement(model: &Model, state: &State, lists: &Neighbours) -> Real {
+pub(super) fn displacement(model: &Model, state: &State, lists: &Neighbors) -> Real {
     let carried = state.carrier_position() - lists.carrier_position;
     let walls = model.walls.iter().zip(&lists.walls_at_build).zip(&state.walls);
     walls

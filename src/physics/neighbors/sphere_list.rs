@@ -7,7 +7,7 @@ use super::{
 };
 use crate::{
     base::{Real, Vec3, parallel},
-    physics::{Model, State, scratch::Neighbours, state::ListedSprings},
+    physics::{Model, State, scratch::Neighbors, state::ListedSprings},
 };
 
 /// Number of vertices in one parallel task.
@@ -20,7 +20,7 @@ pub(super) fn build(
     radius: Real,
     grid: &CellGrid,
     state: &mut State,
-    lists: &mut Neighbours,
+    lists: &mut Neighbors,
 ) {
     let n_vertices = state.membrane.positions.len();
     let beyond = radius + lists.skin;
@@ -46,7 +46,7 @@ pub(super) fn build(
 }
 
 /// Empties the list.
-pub(super) fn clear(state: &mut State, lists: &mut Neighbours) {
+pub(super) fn clear(state: &mut State, lists: &mut Neighbors) {
     state.springs.spheres = ListedSprings::default();
     lists.sphere_starts = vec![0; state.grains.len() + 1];
 }

@@ -3,14 +3,14 @@
 use super::cell_grid::{CellGrid, id};
 use crate::{
     base::{Real, Vec3, parallel},
-    physics::{Model, State, membrane::contact_geometry::closest_on_triangle, scratch::Neighbours},
+    physics::{Model, State, membrane::contact_geometry::closest_on_triangle, scratch::Neighbors},
 };
 
 /// Number of triangles in one parallel task.
 const CHUNK: usize = 128;
 
 /// Lists, for each grain, the triangles within contact plus skin, ascending.
-pub(super) fn build(model: &Model, grid: &CellGrid, state: &State, lists: &mut Neighbours) {
+pub(super) fn build(model: &Model, grid: &CellGrid, state: &State, lists: &mut Neighbors) {
     let triangles = &model.membrane.mesh.triangles;
     let skin = lists.skin;
     let mut chunks = vec![Vec::new(); triangles.len().div_ceil(CHUNK)];
@@ -44,7 +44,7 @@ pub(super) fn build(model: &Model, grid: &CellGrid, state: &State, lists: &mut N
 }
 
 /// Empties the lists.
-pub(super) fn clear(state: &State, lists: &mut Neighbours) {
+pub(super) fn clear(state: &State, lists: &mut Neighbors) {
     lists.triangles.clear();
     lists.candidate_grains.clear();
     lists.membrane_grains.clear();
