@@ -92,7 +92,7 @@ impl PairLaw {
         }
     }
 
-    /// How far beyond contact a force may act (m): what lists of neighbors must know.
+    /// Distance beyond contact up to which a force may act (m). Neighbor lists include this range.
     pub fn range(&self) -> Real {
         self.with(Range)
     }
