@@ -14,7 +14,7 @@ use std::{
     cell::Cell,
     ops::Range,
     sync::{
-        Mutex,
+        Arc, Mutex,
         atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering},
     },
 };
@@ -24,17 +24,37 @@ const CHUNKS_PER_THREAD: usize = 4;
 /// Iterations of a waiting loop before it starts to yield.
 const N_SPINS: u32 = 20_000;
 
-/// Starts the solver's threads. They run at lower priority than the threads that publish, because
-/// a solver that occupies every core would otherwise delay messages by tens of milliseconds.
+/// The solver threads. Clones share the same threads. Several sessions may use one pool and then take turns. Results
+/// do not depend on the number of threads.
 ///
-/// # Errors
-/// If the operating system cannot start the threads.
-pub fn pool(n_threads: usize) -> Result<rayon::ThreadPool, rayon::ThreadPoolBuildError> {
-    rayon::ThreadPoolBuilder::new()
-        .num_threads(n_threads)
-        .thread_name(|i| format!("solver-{i}"))
-        .start_handler(|_| lower_priority())
-        .build()
+/// The threads run at lower priority than the threads that publish, because a solver that occupies every core would
+/// otherwise delay messages by tens of milliseconds.
+#[derive(Clone, Debug)]
+pub struct ThreadPool(Arc<rayon::ThreadPool>);
+
+/// The operating system cannot start the solver threads.
+#[derive(Debug, thiserror::Error)]
+#[error("cannot start the solver threads: {0}; use fewer threads")]
+pub struct ThreadPoolError(#[from] rayon::ThreadPoolBuildError);
+
+impl ThreadPool {
+    /// Starts `n_threads` solver threads; 0 means one per processor.
+    ///
+    /// # Errors
+    /// If the operating system cannot start the threads.
+    pub fn new(n_threads: usize) -> Result<Self, ThreadPoolError> {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(n_threads)
+            .thread_name(|i| format!("solver-{i}"))
+            .start_handler(|_| lower_priority())
+            .build()?;
+        Ok(Self(Arc::new(pool)))
+    }
+
+    /// Number of threads.
+    pub fn n_threads(&self) -> usize {
+        self.0.current_num_threads()
+    }
 }
 
 /// Lowers the priority of the calling thread: 10 nicer than the process. A failure only costs latency, so it
@@ -82,9 +102,9 @@ thread_local! {
 }
 
 /// Runs `work` on one thread of `pool`. Parallel loops in it are shared with the other threads.
-pub fn lead<R: Send>(pool: &rayon::ThreadPool, work: impl FnOnce() -> R + Send) -> R {
+pub fn lead<R: Send>(pool: &ThreadPool, work: impl FnOnce() -> R + Send) -> R {
     let team = Team {
-        n_threads: pool.current_num_threads(),
+        n_threads: pool.n_threads(),
         current: Mutex::new(None),
         turn: AtomicU64::new(0),
         next: AtomicUsize::new(0),
@@ -93,7 +113,7 @@ pub fn lead<R: Send>(pool: &rayon::ThreadPool, work: impl FnOnce() -> R + Send) 
         has_panicked: AtomicBool::new(false),
     };
     let work = Mutex::new(Some(work));
-    let results = pool.broadcast(|context| {
+    let results = pool.0.broadcast(|context| {
         if context.index() != 0 {
             team.help();
             return None;
@@ -429,7 +449,7 @@ mod tests {
         // which is thousands of times slower.
         let n_loops = if cfg!(miri) { 8 } else { 1000 };
         for n_threads in [1, 2, 5] {
-            let pool = pool(n_threads).unwrap();
+            let pool = ThreadPool::new(n_threads).unwrap();
             lead(&pool, || {
                 for n in (0..n_loops).map(|k| k * 7 % 311) {
                     let mut a = vec![0_usize; n];
@@ -451,7 +471,7 @@ mod tests {
     #[test]
     fn a_panic_in_a_loop_propagates_to_the_leader() {
         // Oracle: the panic itself. If it were not propagated, the team would wait forever.
-        let pool = pool(2).unwrap();
+        let pool = ThreadPool::new(2).unwrap();
         let result = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
             lead(&pool, || {
                 let mut out = vec![0_u8; 1000];

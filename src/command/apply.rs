@@ -1,4 +1,4 @@
-//! Commands become controls: checked, limited, or refused with a reason.
+//! Applies commands: checks, limits or rejects them, and keeps the setpoints.
 
 use super::{Command, CommandCounts, CommandRecord, JOINTS, Limit, Outcome, PoseCommand, Refusal};
 use crate::{
@@ -7,14 +7,14 @@ use crate::{
     scene::{Object, Scene},
 };
 
-/// How far a quaternion's length may be from 1.
+/// Largest deviation of the length of a quaternion from 1.
 const NORMALISED: Real = 1e-3;
-/// Frame of everything.
+/// The world frame.
 pub const WORLD: &str = "world";
-/// Frame of the flange, in the rim's plane.
+/// The frame of the flange, in the plane of the rim.
 pub const FLANGE: &str = "gripper_flange";
 
-/// Frame of an object, at its centre of mass.
+/// The frame of an object, at its center of mass.
 pub fn object_frame(name: &str) -> String {
     format!("object/{name}")
 }
@@ -23,11 +23,11 @@ pub fn object_frame(name: &str) -> String {
 pub struct Frames {
     /// The flange in the world.
     pub flange: Pose,
-    /// The objects in the world, in the scene's order.
+    /// The objects in the world, in the order of the scene.
     pub objects: Vec<Pose>,
 }
 
-/// What was commanded, and what has become of it.
+/// Setpoints and counts of the commands so far.
 pub struct CommandProcessor {
     names: Vec<String>,
     gauge_range: [Real; 2],
@@ -39,7 +39,7 @@ pub struct CommandProcessor {
     pub(super) counts: CommandCounts,
 }
 
-/// A commanded pose and when it came.
+/// A commanded pose and its time.
 #[derive(Clone, Copy)]
 pub(super) struct Target {
     pub(super) pose: Pose,
@@ -47,7 +47,7 @@ pub(super) struct Target {
 }
 
 impl CommandProcessor {
-    /// A desk for `scene`: the flange shall stay where it is.
+    /// A processor for `scene`; the flange stays where it is.
     pub fn new(scene: &Scene) -> Self {
         Self {
             names: scene.objects.iter().map(|object| object.name.clone()).collect(),
@@ -61,53 +61,53 @@ impl CommandProcessor {
         }
     }
 
-    /// Forgets what was commanded, not what was counted.
+    /// Resets the setpoints but not the counts.
     pub fn restart(&mut self, scene: &Scene) {
         let counts = self.counts;
         *self = Self { counts, ..Self::new(scene) };
     }
 
-    /// Goes on counting from `counts`.
+    /// Continues counting from `counts`.
     pub fn count_on(&mut self, counts: CommandCounts) {
         self.counts = counts;
     }
 
-    /// Makes room for an object that comes last.
+    /// Adds an object behind all others.
     pub fn insert(&mut self, object: &Object) {
         self.names.push(object.name.clone());
         self.drive_timeouts_ns.push(drive_timeout_ns(object));
         self.drives.push(None);
     }
 
-    /// Forgets object `i`.
+    /// Removes object `i`.
     pub fn remove(&mut self, i: usize) {
         self.names.remove(i);
         self.drive_timeouts_ns.remove(i);
         self.drives.remove(i);
     }
 
-    /// Object `i` was put elsewhere: nothing drives it any more.
+    /// Stops driving object `i`.
     pub fn release(&mut self, i: usize) {
         self.drives[i] = None;
     }
 
-    /// The flange was put elsewhere and shall stay there.
+    /// Sets the pose of the flange after it was teleported.
     pub fn place_flange(&mut self, pose: Pose, now_ns: u64) {
         self.flange = Target { pose, time_ns: now_ns };
     }
 
-    /// Simulated time has become zero: what was commanded before was commanded at the start.
+    /// Simulated time was reset: earlier commands count as commanded at the start.
     pub fn restart_time(&mut self) {
         self.flange.time_ns = 0;
         self.drives.iter_mut().flatten().for_each(|drive| drive.time_ns = 0);
     }
 
-    /// How commands fared so far.
+    /// Number of commands so far, by outcome.
     pub fn counts(&self) -> CommandCounts {
         self.counts
     }
 
-    /// Set-point of the gauge pressure, within the pump's range [Pa].
+    /// Setpoint of the gauge pressure, within the range of the pump (Pa).
     pub fn gauge_setpoint(&self) -> Real {
         self.gauge_setpoint
     }
@@ -117,7 +117,7 @@ impl CommandProcessor {
         self.drives[i].is_some()
     }
 
-    /// Takes the commands that arrived before the tick that starts at `now_ns`.
+    /// Applies the commands that arrived before the tick that starts at `now_ns` (ns).
     pub fn take(
         &mut self,
         commands: &[Command],
@@ -185,15 +185,15 @@ impl CommandProcessor {
         }
     }
 
-    fn set_gauge(&mut self, asked_pa: Real) -> Option<Limit> {
+    fn set_gauge(&mut self, requested_pa: Real) -> Option<Limit> {
         let [min, max] = self.gauge_range;
-        let set_pa = asked_pa.clamp(min, max);
+        let set_pa = requested_pa.clamp(min, max);
         self.gauge_setpoint = set_pa;
-        let is_limited = asked_pa < min || asked_pa > max;
-        is_limited.then_some(Limit::PumpRange { asked_pa, set_pa })
+        let is_limited = requested_pa < min || requested_pa > max;
+        is_limited.then_some(Limit::PumpRange { asked_pa: requested_pa, set_pa })
     }
 
-    /// All joints or none: nothing is set before everything has been checked.
+    /// Sets all joints or none: everything is checked first.
     fn set_joints(
         &mut self,
         names: &[String],
@@ -267,20 +267,20 @@ impl CommandProcessor {
                 }
             },
         };
-        // Huge finite numbers may overflow on the way into the world, and a way that overflows has
-        // no direction.
+        // Huge finite numbers may overflow in world coordinates, and an infinite distance has no
+        // direction.
         for value in pose.translation.vector.iter() {
             finite("position in the world, squared,", value * value)?;
         }
         Ok(pose)
     }
 
-    /// A jump is further than the body can go in the time since the command before.
+    /// A pose is a jump if the body cannot reach it in the time since the previous command.
     fn jump(&self, before: &Target, pose: &Pose, now_ns: u64) -> Option<Limit> {
-        let way = pose.translation.vector - before.pose.translation.vector;
-        let distance_m = way.norm();
+        let delta = pose.translation.vector - before.pose.translation.vector;
+        let distance_m = delta.norm();
         let elapsed = std::time::Duration::from_nanos(now_ns - before.time_ns).as_secs_f64();
-        // A millimetre and a tick of grace: stamps fall between ticks.
+        // A tolerance of a millimeter and a tick, because stamps fall between ticks.
         let allowed_m = self.speed_max * (elapsed + 1e-3) + 1e-3;
         (distance_m > allowed_m).then_some(Limit::PoseJump { distance_m, allowed_m })
     }

@@ -1,5 +1,4 @@
-//! What the outside may do to the world between two ticks, and no body could do by moving: put
-//! things elsewhere, add and remove them, go back to the start.
+//! Discontinuous changes between ticks: teleport, insert, remove, reset, load.
 
 use std::fmt;
 
@@ -10,53 +9,53 @@ use crate::{
     scene::{Object, Scene},
 };
 
-/// One change. Like a command it is a plain value: equal changes at equal ticks give equal bits.
+/// A discontinuous change. Equal changes at equal ticks give equal bits.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Change {
-    /// Goes back to the start.
+    /// Resets to the start.
     Reset(Scope),
-    /// Puts an object elsewhere, at once.
+    /// Teleports an object.
     PlaceObject {
         /// Name of the object.
         object: String,
-        /// Pose of its centre of mass in the world.
+        /// Pose of its center of mass in the world.
         pose: Pose,
-        /// Velocity of its centre of mass, world axes.
+        /// Velocity of its center of mass (m/s, rad/s), world axes.
         twist: Twist,
     },
-    /// Puts the gripper elsewhere, at once: flange, membrane and grains as one, and at rest.
+    /// Teleports the gripper: flange, membrane and grains as one, and at rest.
     PlaceFlange {
         /// Pose of the flange in the world.
         pose: Pose,
     },
-    /// What the wrist sensor reads now is zero from here on.
+    /// Zeroes the wrist sensor at its current reading.
     ZeroForceSensor,
-    /// Changes a property of materials or pump.
+    /// Sets a parameter of a material or the pump.
     SetParameter {
-        /// Which.
+        /// The parameter.
         parameter: TunableParameter,
         /// Its new value, SI.
         value: f64,
     },
     /// Adds an object. Its pose is that of its shape's origin.
     Insert(Box<Object>),
-    /// Takes an object away.
+    /// Removes an object.
     Remove {
         /// Name of the object.
         object: String,
     },
-    /// Another scene takes the place of this one.
+    /// Replaces the scene.
     LoadScene(Box<SettledScene>),
 }
 
-/// A scene that can begin at once.
+/// A scene with its settled state.
 #[derive(Clone, PartialEq)]
 pub struct SettledScene {
-    /// The scene; its ticks are as long as those of the one before.
+    /// The scene; the length of its ticks is that of the current scene.
     pub scene: Scene,
-    /// Its settled bag, as a cache of start states keeps it.
+    /// Its settled state, from `Session::start_state`.
     pub start: Vec<u8>,
-    /// True lets simulated time go on; otherwise it is zero again.
+    /// True continues simulated time; false resets it to zero.
     pub keeps_time: bool,
 }
 
@@ -71,25 +70,25 @@ impl fmt::Display for Change {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Reset(scope) => write!(f, "reset of {scope}"),
-            Self::PlaceObject { object, .. } => write!(f, "`{object}` put elsewhere"),
-            Self::PlaceFlange { .. } => f.write_str("the gripper put elsewhere"),
+            Self::PlaceObject { object, .. } => write!(f, "`{object}` moved"),
+            Self::PlaceFlange { .. } => f.write_str("gripper moved"),
             Self::Insert(object) => write!(f, "object `{}` added", object.name),
-            Self::Remove { object } => write!(f, "object `{object}` taken away"),
-            Self::ZeroForceSensor => f.write_str("wrist sensor set to zero"),
+            Self::Remove { object } => write!(f, "object `{object}` removed"),
+            Self::ZeroForceSensor => f.write_str("wrist sensor zeroed"),
             Self::SetParameter { parameter, value } => write!(f, "{parameter:?} set to {value}"),
             Self::LoadScene(it) => write!(f, "scene `{}` loaded", it.scene.name),
         }
     }
 }
 
-/// A property that may change while time goes on. New ones come last: recordings hold their places.
+/// A parameter that may change during a run. New ones go last, because recordings hold their index.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum TunableParameter {
-    /// Time constant of pump and line [s].
+    /// Time constant of the pump and its line (s).
     ChamberLag,
-    /// Largest rate of the pressure [Pa/s].
+    /// Maximum rate of the pressure (Pa/s).
     ChamberRateMax,
-    /// Dissipation time of contacts between grains [s].
+    /// Dissipation time of contacts between grains (s).
     GrainDissipationTime,
     /// Friction between grains.
     GrainFriction,
@@ -100,7 +99,7 @@ pub enum TunableParameter {
 }
 
 impl TunableParameter {
-    /// Its value in a scene, SI.
+    /// Its value in a scene (SI).
     pub fn get(self, scene: &Scene) -> f64 {
         match self {
             Self::ChamberLag => scene.chamber.lag,
@@ -112,7 +111,7 @@ impl TunableParameter {
         }
     }
 
-    /// Changes a scene.
+    /// Sets it in a scene (SI).
     pub fn set(self, scene: &mut Scene, value: f64) {
         match self {
             Self::ChamberLag => scene.chamber.lag = value,
@@ -124,7 +123,7 @@ impl TunableParameter {
         }
     }
 
-    /// Smallest and largest sensible value, SI.
+    /// Smallest and largest allowed value (SI).
     pub fn range(self) -> [f64; 2] {
         match self {
             Self::ChamberLag => [1e-3, 60.0],
@@ -135,20 +134,20 @@ impl TunableParameter {
     }
 }
 
-/// What goes back to the start.
+/// What a reset restores.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Scope {
     /// Simulated time becomes zero.
     pub time: bool,
-    /// Poses, velocities, forces, pressure and commands are those of the start; objects of the
-    /// scene that were removed are back.
+    /// Poses, velocities, forces, pressure and setpoints become those of the start; removed objects
+    /// of the scene return.
     pub state: bool,
-    /// Objects that were added are gone.
+    /// Inserted objects are removed.
     pub spawned: bool,
 }
 
 impl Scope {
-    /// Everything goes back.
+    /// Everything.
     pub const ALL: Self = Self { time: true, state: true, spawned: true };
 }
 

@@ -1,53 +1,54 @@
-//! What the outside may ask. A closed list: sources make commands, `apply` carries them out.
+//! Commands: the continuous inputs of a session. Sources create them, `apply` applies them.
 //!
-//! A command holds the values exactly as they arrived, even senseless ones: what is refused is
-//! recorded too.
+//! A command holds the values exactly as they arrived, even invalid ones, because rejected
+//! commands are recorded too.
 
-pub mod apply;
+pub mod apply; // commands to setpoints
 pub mod change; // discontinuous changes between ticks
 mod saved_change; // changes as bytes
 mod saved_setpoints; // setpoints as bytes
 
-/// One wish of the outside.
+pub use apply::{FLANGE, WORLD, object_frame};
+
+/// A command to the gripper or an object.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Command {
-    /// Set-point of the chamber's gauge pressure [Pa]: negative is vacuum, positive blows off.
+    /// Setpoint of the gauge pressure in the membrane: negative is vacuum, positive inflates.
     Vacuum {
-        /// Gauge pressure [Pa].
+        /// Gauge pressure (Pa).
         gauge_pa: f64,
     },
-    /// Pose that the flange shall move to.
+    /// Pose to which the flange moves, within its speed and acceleration limits.
     FlangePose(PoseCommand),
-    /// Pose that drives an object kinematically until its time-out or a release.
+    /// Pose that drives an object kinematically until its timeout or a release.
     ObjectPose {
         /// Name of the object.
         object: String,
-        /// Where it shall be.
+        /// Pose of its center of mass.
         pose: PoseCommand,
     },
-    /// Set-points of the gripper's joints, as `~/joint_states` names them; joints that are not named
-    /// keep theirs.
+    /// Setpoints of the joints of the gripper, named as in [`JOINTS`]; the other joints keep theirs.
     Joints {
-        /// Stamp of the message [ns].
+        /// Stamp of the message (ns).
         stamp_ns: i64,
         /// Names of the joints.
         names: Vec<String>,
-        /// Position of each: share of the strongest vacuum, m, rad.
+        /// Position of each: fraction of the strongest vacuum (1), m, rad.
         positions: Vec<f64>,
     },
-    /// Gives a driven object back to dynamics at once.
+    /// Stops driving an object; it moves freely again.
     ObjectRelease {
         /// Name of the object.
         object: String,
     },
 }
 
-/// Names of the gripper's joints: the vacuum, then the flange along and about the world's axes.
+/// Names of the joints of the gripper: the vacuum, then the flange along and about the world axes.
 pub const JOINTS: [&str; 7] =
     ["vacuum", "flange_x", "flange_y", "flange_z", "flange_roll", "flange_pitch", "flange_yaw"];
 
 impl Command {
-    /// Stamp of a command that has one [ns].
+    /// Stamp of the command, if it has one (ns).
     pub fn stamp_ns(&self) -> Option<i64> {
         match self {
             Self::FlangePose(pose) | Self::ObjectPose { pose, .. } => Some(pose.stamp_ns),
@@ -60,113 +61,114 @@ impl Command {
 /// A pose as it arrived.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PoseCommand {
-    /// Frame the pose is given in; empty means `world`.
+    /// Frame of the pose: `world` (also if empty), `gripper_flange` or `object/NAME`.
     pub frame_id: String,
-    /// Stamp of the message [ns]; recorded, not used.
+    /// Stamp of the message (ns); used by lockstep and recorded.
     pub stamp_ns: i64,
-    /// Position x, y, z [m].
+    /// Position x, y, z (m).
     pub position: [f64; 3],
-    /// Orientation x, y, z, w.
+    /// Orientation as a unit quaternion x, y, z, w.
     pub orientation: [f64; 4],
 }
 
-/// What became of a command.
+/// Outcome of a command.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Outcome {
-    /// Carried out as asked.
+    /// Applied as requested.
     Applied,
-    /// Carried out within a limit; says which.
+    /// Applied within a limit.
     Limited(Limit),
-    /// Not carried out; says why.
+    /// Rejected.
     Refused(Refusal),
 }
 
-/// Why a command was carried out only in part.
+/// The limit that a command exceeded.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Limit {
-    /// The pressure was beyond the pump's range and was clamped.
+    /// The pressure was outside the range of the pump and was clamped.
     PumpRange {
-        /// Asked for [Pa].
+        /// Requested (Pa).
         asked_pa: f64,
-        /// Set instead [Pa].
+        /// Applied (Pa).
         set_pa: f64,
     },
-    /// The pose is further away than one command period allows; it is approached at the limits.
+    /// The pose is too far from the previous one for the time between them; it is approached at the
+    /// speed limit.
     PoseJump {
-        /// Distance to the pose commanded before [m].
+        /// Distance to the previously commanded pose (m).
         distance_m: f64,
-        /// Distance that the velocity limit allows in the time since then [m].
+        /// Distance that the speed limit allows in the time since then (m).
         allowed_m: f64,
     },
 }
 
-/// Why a command was not carried out.
+/// Why a command was rejected.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Refusal {
     /// A value is NaN or infinite.
     #[error("{field} is {value}: send finite numbers")]
     NotFinite {
-        /// Which value.
+        /// The field.
         field: &'static str,
         /// The value.
         value: f64,
     },
-    /// The quaternion's length is not one.
-    #[error("orientation has length {length}, more than 1e-3 from 1: normalise the quaternion")]
+    /// The length of the quaternion is not one.
+    #[error("orientation has length {length}, more than 1e-3 from 1: normalize the quaternion")]
     NotNormalised {
         /// Length of the quaternion.
         length: f64,
     },
-    /// The frame is not one of this scene's.
+    /// The frame is unknown.
     #[error("unknown frame `{frame_id}`: use one of {known}")]
     UnknownFrame {
-        /// What was asked for.
+        /// The requested name.
         frame_id: String,
-        /// What there is.
+        /// The known names.
         known: String,
     },
-    /// The joint is not one of the gripper's.
+    /// The joint is unknown.
     #[error("unknown joint `{joint}`: use some of {known}")]
     UnknownJoint {
-        /// What was asked for.
+        /// The requested name.
         joint: String,
-        /// What there is.
+        /// The known names.
         known: String,
     },
-    /// There is not one position for each joint.
+    /// The number of positions differs from the number of joints.
     #[error("{n_positions} positions for {n_names} joints: send one for each")]
     JointsWithoutPosition {
-        /// How many joints.
+        /// Number of joints.
         n_names: usize,
-        /// How many positions.
+        /// Number of positions.
         n_positions: usize,
     },
-    /// The object is not one of this scene's.
+    /// The object is unknown.
     #[error("unknown object `{object}`: the scene has {known}")]
     UnknownObject {
-        /// What was asked for.
+        /// The requested name.
         object: String,
-        /// What there is.
+        /// The known names.
         known: String,
     },
 }
 
-/// A command and its fate, as recorded.
+/// A command and its outcome, as recorded.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CommandRecord {
-    /// What was asked.
+    /// The command.
     pub command: Command,
-    /// What became of it.
+    /// The outcome.
     pub outcome: Outcome,
 }
 
-/// Commands so far, by fate.
+/// Number of commands so far, by outcome.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct CommandCounts {
-    /// Carried out as asked.
+    /// Applied as requested.
     pub n_applied: u64,
-    /// Carried out within a limit.
+    /// Applied within a limit.
     pub n_limited: u64,
-    /// Not carried out.
+    /// Rejected.
     pub n_refused: u64,
 }

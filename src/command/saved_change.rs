@@ -1,6 +1,6 @@
-//! Changes of the world as bytes, so that a recorded run can be changed again in the same way.
+//! Changes as bytes, so that a recorded run can be simulated again.
 //!
-//! All numbers come back with their bits; nothing is checked that was checked when it was changed first.
+//! All numbers keep their bits. Nothing is checked again.
 
 use std::path::{Path, PathBuf};
 
@@ -13,14 +13,14 @@ use crate::{
     scene::{self, Controller, Material, Object, Scene, Shape},
 };
 
-/// Bytes that are no change that this version knows.
+/// The bytes are not a change that this version knows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{n_bytes} bytes are no change of the world that this version knows")]
+#[error("{n_bytes} bytes are not a change that this version knows")]
 pub struct UnknownChange {
     n_bytes: usize,
 }
 
-/// The numbers of a change. New kinds come last, so that older recordings stay readable.
+/// The numbers of a change. New kinds go last, so that older recordings stay readable.
 #[derive(Serialize, Deserialize)]
 enum Saved {
     Reset { time: bool, state: bool, spawned: bool },
@@ -80,13 +80,13 @@ impl Change {
                 keeps_time: it.keeps_time,
             },
         };
-        postcard::to_stdvec(&saved).expect("numbers and names always serialise")
+        postcard::to_stdvec(&saved).expect("numbers and names always serialize")
     }
 
-    /// The change in `bytes`, with the same bits.
+    /// Reads the change in `bytes`, with the same bits.
     ///
     /// # Errors
-    /// If they are none.
+    /// If the bytes are not a change.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, UnknownChange> {
         let unknown = || UnknownChange { n_bytes: bytes.len() };
         Ok(match postcard::from_bytes(bytes).map_err(|_| unknown())? {
@@ -110,8 +110,8 @@ impl Change {
     }
 }
 
-/// The scene with one ball, out of everything's way, for all its objects: those are saved as numbers,
-/// because their meshes are in files that may be gone.
+/// The scene with one distant ball instead of its objects. The objects are saved as numbers, because
+/// their mesh files may be gone.
 fn without_files(scene: &Scene) -> Scene {
     let name = match (&scene.controller, scene.objects.first()) {
         (Controller::Builtin(parameters), _) => parameters.object.clone(),
@@ -120,7 +120,7 @@ fn without_files(scene: &Scene) -> Scene {
     };
     let flange = scene.flange.pose.translation.vector;
     let ball = Object {
-        // The built-in controller goes by it.
+        // The built-in controller refers to it.
         name,
         shape: Shape::Sphere { radius: 0.01 },
         material: scene.grains.material,

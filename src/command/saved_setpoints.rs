@@ -1,4 +1,4 @@
-//! The desk as bytes: what was commanded last goes on to hold after a run is taken up again.
+//! Setpoints as bytes, so that they still hold after a session is resumed.
 
 use serde::{Deserialize, Serialize};
 
@@ -11,7 +11,7 @@ use crate::{
     cosim::saved_state::{SavedStateError, pose, pose_row, same_counts},
 };
 
-/// A pose and when it was commanded [ns].
+/// A pose and when it was commanded (ns).
 type SavedTarget = ([Real; 7], u64);
 
 /// All of a desk that evolves.
@@ -24,7 +24,7 @@ struct Numbers {
 }
 
 impl CommandProcessor {
-    /// The bytes of what was commanded.
+    /// The setpoints as bytes.
     pub fn save(&self) -> Vec<u8> {
         let saved = |target: &Target| (pose_row(&target.pose), target.time_ns);
         let CommandCounts { n_applied, n_limited, n_refused } = self.counts;
@@ -37,7 +37,7 @@ impl CommandProcessor {
         postcard::to_stdvec(&numbers).expect("a list of numbers always serialises")
     }
 
-    /// Takes up what was commanded before.
+    /// Restores saved setpoints.
     ///
     /// # Errors
     /// If the bytes are no desk, or that of a scene with another number of objects.

@@ -1,5 +1,5 @@
-//! A plant that fits on a page, to try the controller on: a springy bag, an object on a table,
-//! and a grip that holds while there is vacuum.
+//! A minimal plant for tests of the controller: an elastic gripper, an object on a table, and a grip
+//! that holds under vacuum.
 
 use super::Observation;
 use crate::{
@@ -8,13 +8,13 @@ use crate::{
 };
 
 const TICK: Real = 0.001;
-const BAG_LENGTH: Real = 0.04;
+const GRIPPER_LENGTH: Real = 0.04;
 const OBJECT_HEIGHT: Real = 0.07;
 const STIFFNESS: Real = 500.0;
 const WEIGHT: Real = 2.5;
 const LAG: Real = 0.05;
 
-/// The plant's state.
+/// State of the plant.
 pub(super) struct MockPlant {
     n_ticks: u32,
     flange: Vec3,
@@ -22,17 +22,17 @@ pub(super) struct MockPlant {
     gauge: Real,
     gauge_setpoint: Real,
     force: Real,
-    /// Height of the flange over the object while it is gripped [m].
+    /// Height of the flange above the object while it is gripped (m).
     grip: Option<Real>,
-    /// Speed at which a gripped object slips down [m/s].
+    /// Speed at which a gripped object slips down (m/s).
     pub(super) slip: Real,
-    /// Vacuum below which the grip holds [Pa].
+    /// Vacuum below which the grip holds (Pa).
     pub(super) gauge_holding: Real,
-    /// Greatest height that the object had over its place [m].
+    /// Greatest height of the object above its start (m).
     pub(super) lifted_max: Real,
-    /// Greatest change of the flange's set-point in a tick [m].
+    /// Greatest change of the flange setpoint in a tick (m).
     pub(super) step_max: Real,
-    /// Greatest push force [N].
+    /// Greatest push force (N).
     pub(super) push_max: Real,
 }
 
@@ -64,7 +64,7 @@ impl MockPlant {
         }
     }
 
-    /// Height of the object over its place [m].
+    /// Height of the object over its place (m).
     pub(super) fn lifted(&self) -> Real {
         self.object.z - OBJECT_HEIGHT / 2.0
     }
@@ -83,7 +83,7 @@ impl MockPlant {
         }
         self.gauge += (self.gauge_setpoint - self.gauge) * TICK / LAG;
         self.n_ticks += 1;
-        let overlap = self.object.z + OBJECT_HEIGHT / 2.0 - (self.flange.z - BAG_LENGTH);
+        let overlap = self.object.z + OBJECT_HEIGHT / 2.0 - (self.flange.z - GRIPPER_LENGTH);
         let is_above = (self.flange - self.object).xy().norm() < 1e-3;
         let holds = self.gauge < self.gauge_holding && is_above;
         self.grip = match self.grip {

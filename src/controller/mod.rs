@@ -1,7 +1,7 @@
-//! Who decides what the gripper does: a pure state machine from observations to commands.
+//! The built-in controller: a pure state machine from observations to commands.
 //!
-//! It knows neither clock nor wire, so the built-in controller and the ROS 2 example in another
-//! process are the same machine behind different ears and hands.
+//! It uses neither clock nor network. The built-in controller and the ROS 2 example in another
+//! process are the same state machine with different I/O.
 
 #[cfg(test)]
 mod mock_plant;

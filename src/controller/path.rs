@@ -1,23 +1,23 @@
-//! A set-point that walks straight to its goal, with a ramp at either end.
+//! A setpoint that moves straight to its goal, with a ramp at either end.
 
 use crate::base::{Real, Vec3};
 
-/// Time in which the set-point reaches its full speed [s].
+/// Time in which the setpoint reaches full speed (s).
 const RAMP: Real = 0.1;
-/// Distance at which the goal counts as reached [m].
+/// Distance at which the goal counts as reached (m).
 const ARRIVED: Real = 1e-6;
 
-/// A moving set-point.
+/// A moving setpoint.
 #[derive(Clone, Debug)]
 pub(super) struct Path {
-    /// Where it is [m].
+    /// Position (m).
     pub(super) position: Vec3,
-    /// How fast it moves [m/s].
+    /// Speed (m/s).
     speed: Real,
 }
 
 impl Path {
-    /// A set-point at rest.
+    /// A setpoint at rest.
     pub(super) fn at(position: Vec3) -> Self {
         Self { position, speed: 0.0 }
     }
@@ -27,10 +27,10 @@ impl Path {
         self.speed = 0.0;
     }
 
-    /// Walks towards `goal` for `dt` [s], at most at `speed_max` [m/s]. True on arrival.
-    pub(super) fn walk(&mut self, goal: &Vec3, speed_max: Real, dt: Real) -> bool {
-        let way = goal - self.position;
-        let distance = way.norm();
+    /// Moves towards `goal` for `dt` (s), at most at `speed_max` (m/s). True on arrival.
+    pub(super) fn advance(&mut self, goal: &Vec3, speed_max: Real, dt: Real) -> bool {
+        let delta = goal - self.position;
+        let distance = delta.norm();
         if distance <= ARRIVED {
             self.position = *goal;
             self.speed = 0.0;
@@ -40,7 +40,7 @@ impl Path {
         let braking = (2.0 * acceleration * distance).sqrt();
         self.speed = (self.speed + acceleration * dt).min(speed_max).min(braking);
         let step = (self.speed * dt).min(distance);
-        self.position += way * (step / distance);
+        self.position += delta * (step / distance);
         false
     }
 }
@@ -59,7 +59,7 @@ mod tests {
         let mut n_steps = 0;
         loop {
             let before = path.position;
-            let arrived = path.walk(&goal, speed_max, dt);
+            let arrived = path.advance(&goal, speed_max, dt);
             assert!((path.position - before).norm() <= speed_max * dt * (1.0 + 1e-12));
             if arrived {
                 break;

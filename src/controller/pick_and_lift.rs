@@ -1,8 +1,8 @@
-//! Pick and lift: travel over the object, come down until it is felt, push in, let the grains
-//! settle, evacuate, lift, hold, put back, vent, retreat.
+//! Pick and lift: travel over the object, approach until contact, push in, let the grains settle,
+//! evacuate, lift, hold, lower, vent, retreat.
 //!
-//! Nothing here knows the scene's geometry: the object is found by its pose and by touch, and it
-//! is put back where it stood, however much it slipped or sagged on the way.
+//! The controller does not use the geometry of the scene: it finds the object by its pose and by
+//! contact, and puts it back where it stood, however much it slipped or sagged.
 
 use super::path::Path;
 use crate::{
@@ -11,63 +11,63 @@ use crate::{
     scene,
 };
 
-/// Time between two pose commands [s].
+/// Time between two pose commands (s).
 const PERIOD: Real = 0.01;
 /// Pose commands between two repetitions of the pressure command.
 const PRESSURE_EVERY: u64 = 10;
-/// How long to wait for the pressure before giving up [s].
+/// How long to wait for the pressure before giving up (s).
 const TIMEOUT: Real = 5.0;
-/// How much lower than it stood the object may be put, searching for the table [m].
+/// Depth below the original height to which the object is lowered in search of the table (m).
 const SEARCH_DEPTH: Real = 0.003;
-/// Speed of that search [m/s].
+/// Speed of that search (m/s).
 const SEARCH_SPEED: Real = 0.025;
-/// Height over the table in which lowering is slow [m].
+/// Height above the table below which lowering is slow (m).
 const SLOW_HEIGHT: Real = 0.005;
 
-/// What the controller sees.
+/// Input of the controller.
 #[derive(Clone, Copy, Debug)]
 pub struct Observation {
-    /// Simulated time [s].
+    /// Simulated time (s).
     pub time_s: Real,
     /// Pose of the flange.
     pub flange_pose: Pose,
-    /// Force of the object on the gripper, flange axes [N].
+    /// Force of the object on the gripper, flange axes (N).
     pub contact_force: Vec3,
-    /// Gauge pressure in the chamber [Pa].
+    /// Gauge pressure in the chamber (Pa).
     pub gauge_pa: Real,
     /// Pose of the object.
     pub object_pose: Pose,
 }
 
-/// What the controller is doing.
+/// Phase of the controller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Phase {
-    /// Moving over the object.
+    /// Moves over the object.
     Travel,
-    /// Coming down until the object is felt.
+    /// Moves down until contact.
     Approach,
-    /// Pushing the bag over the object.
+    /// Pushes the gripper onto the object.
     Push,
-    /// Letting the grains come to rest.
+    /// Waits for the grains to come to rest.
     Settle,
-    /// Evacuating and waiting for the pressure.
+    /// Evacuates and waits for the pressure.
     Evacuate,
-    /// Lifting.
+    /// Lifts the object.
     Lift,
-    /// Holding the object up.
+    /// Holds the object up.
     Hold,
-    /// Putting it back.
+    /// Puts the object back.
     Lower,
-    /// Letting it go.
+    /// Releases the object.
     Vent,
-    /// Moving away.
+    /// Moves away.
     Retreat,
     /// Finished.
     Done,
 }
 
 impl Phase {
-    /// One word for people and topics.
+    /// Name for people and topics.
     pub fn name(self) -> &'static str {
         match self {
             Self::Travel => "travel",
@@ -90,32 +90,32 @@ impl Phase {
 pub struct PickAndLift {
     parameters: scene::PickAndLift,
     phase: Phase,
-    /// When the phase began [s].
+    /// When the phase began (s).
     since: Real,
-    /// Where the phase leads the flange [m].
+    /// Goal of the flange in this phase (m).
     goal: Vec3,
-    /// What has been seen and commanded; `None` before the first observation.
+    /// Progress; `None` before the first observation.
     run: Option<Run>,
 }
 
 #[derive(Clone, Debug)]
 struct Run {
     path: Path,
-    /// Flange height at touch [m].
+    /// Height of the flange at contact (m).
     touch_height: Real,
-    /// Height of the object before it was lifted [m].
+    /// Height of the object before it was lifted (m).
     rest_height: Real,
-    /// When the pressure was reached [s].
+    /// When the pressure was reached (s).
     gripped_at: Option<Real>,
-    /// Gauge pressure asked for [Pa].
+    /// Commanded gauge pressure (Pa).
     pressure: Real,
-    /// When the last pose was commanded [s].
+    /// When the last pose was commanded (s).
     commanded_at: Real,
     n_commands: u64,
 }
 
 impl PickAndLift {
-    /// A machine that starts wherever the flange is when it is first seen.
+    /// A controller that starts from the pose of the flange in the first observation.
     pub fn new(parameters: &scene::PickAndLift) -> Self {
         Self {
             parameters: parameters.clone(),
@@ -126,7 +126,12 @@ impl PickAndLift {
         }
     }
 
-    /// What it is doing.
+    /// Name of the object to lift.
+    pub fn object(&self) -> &str {
+        &self.parameters.object
+    }
+
+    /// The current phase.
     pub fn phase(&self) -> Phase {
         self.phase
     }
@@ -136,8 +141,8 @@ impl PickAndLift {
         self.phase == Phase::Done
     }
 
-    /// What to command now. Call it whenever something new was seen, at 100 Hz or faster:
-    /// commands come at most at 100 Hz.
+    /// Returns the commands for an observation. Call it at 100 Hz or faster; it returns pose
+    /// commands at 100 Hz at most.
     pub fn decide(&mut self, seen: &Observation) -> Vec<Command> {
         let Some(mut run) = self.run.take().or_else(|| self.begin(seen)) else { return Vec::new() };
         self.react(&mut run, seen);
@@ -173,7 +178,7 @@ impl PickAndLift {
         })
     }
 
-    /// Goes to another phase. A new pressure is commanded with the next pose.
+    /// Enters a phase. A new pressure is commanded with the next pose.
     fn enter(&mut self, phase: Phase, run: &mut Run, seen: &Observation, pressure: Real) {
         self.phase = phase;
         self.since = seen.time_s;
@@ -185,7 +190,7 @@ impl PickAndLift {
         }
     }
 
-    /// Ends phases by what was felt, seen or waited for.
+    /// Ends phases by force, position or time.
     fn react(&mut self, run: &mut Run, seen: &Observation) {
         let p = self.parameters.clone();
         let waited = seen.time_s - self.since;
@@ -209,7 +214,7 @@ impl PickAndLift {
             Phase::Hold if p.hold_time <= waited => {
                 let lifted = object_height - run.rest_height;
                 if lifted < p.lift_height / 2.0 {
-                    // It fell: there is nothing to put back.
+                    // The object fell: there is nothing to put back.
                     self.enter(Phase::Vent, run, seen, p.vent_pressure);
                 } else {
                     self.enter(Phase::Lower, run, seen, p.grip_pressure);
@@ -246,20 +251,20 @@ impl PickAndLift {
         }
     }
 
-    /// Moves the set-point on, and ends phases on arrival.
+    /// Advances the setpoint and ends phases on arrival.
     fn move_on(&mut self, run: &mut Run, seen: &Observation, dt: Real) {
         let speed = self.speed(run);
-        let arrived = run.path.walk(&self.goal, speed, dt);
+        let arrived = run.path.advance(&self.goal, speed, dt);
         if !arrived {
             return;
         }
         match self.phase {
             Phase::Travel => {
                 self.enter(Phase::Approach, run, seen, 0.0);
-                // The object's centre: the bag must have touched long before.
+                // The center of the object: contact must happen long before.
                 self.goal.z = seen.object_pose.translation.vector.z;
             }
-            // It went all the way down and felt nothing.
+            // No contact all the way down.
             Phase::Approach => {
                 self.enter(Phase::Retreat, run, seen, 0.0);
                 self.goal.z += self.parameters.retreat_height;
@@ -284,7 +289,7 @@ impl PickAndLift {
     }
 }
 
-/// The flange keeps the orientation it is seen with.
+/// The flange keeps its observed orientation.
 fn pose_command(seen: &Observation, position: &Vec3) -> Command {
     let q = seen.flange_pose.rotation.coords;
     #[expect(clippy::cast_possible_truncation, reason = "2^63 ns are 292 years")]
@@ -321,13 +326,13 @@ mod tests {
         }
     }
 
-    /// Runs to the end; returns the phases in the order they came.
-    fn play(toy: &mut MockPlant, parameters: &scene::PickAndLift) -> Vec<Phase> {
+    /// Runs to the end and returns the phases in order.
+    fn play(plant: &mut MockPlant, parameters: &scene::PickAndLift) -> Vec<Phase> {
         let mut controller = PickAndLift::new(parameters);
         let mut phases = vec![controller.phase()];
         for _ in 0..60_000 {
-            let commands = controller.decide(&toy.observe());
-            toy.tick(&commands);
+            let commands = controller.decide(&plant.observe());
+            plant.tick(&commands);
             if phases.last() != Some(&controller.phase()) {
                 phases.push(controller.phase());
             }
@@ -342,52 +347,52 @@ mod tests {
         Vec3::new(0.0, 0.0, 0.15)
     }
 
-    /// Oracles: the lift height asked for, the object's place before, and the speed limit times
+    /// Oracles: the lift height asked for, the original position of the object, and the speed limit times
     /// the command period.
     #[test]
     fn lifts_holds_and_puts_back() {
-        let mut toy = MockPlant::new(start());
-        let phases = play(&mut toy, &parameters());
+        let mut plant = MockPlant::new(start());
+        let phases = play(&mut plant, &parameters());
         assert!(phases.is_sorted(), "{phases:?}");
         assert_eq!(phases.len(), 11, "every phase once: {phases:?}");
-        assert!((toy.lifted_max - 0.1).abs() < 1e-6, "lifted {} m", toy.lifted_max);
-        assert!(toy.lifted().abs() < 1e-9, "put back");
-        assert!(toy.step_max <= 0.05 * PERIOD * 1.0001, "steps of {} m", toy.step_max);
+        assert!((plant.lifted_max - 0.1).abs() < 1e-6, "lifted {} m", plant.lifted_max);
+        assert!(plant.lifted().abs() < 1e-9, "put back");
+        assert!(plant.step_max <= 0.05 * PERIOD * 1.0001, "steps of {} m", plant.step_max);
     }
 
     #[test]
-    fn an_object_that_slips_is_put_down_on_the_table_not_above_it() {
-        let mut toy = MockPlant::new(start());
-        toy.slip = 0.002;
-        let phases = play(&mut toy, &parameters());
+    fn slipping_object_is_put_down_on_the_table() {
+        let mut plant = MockPlant::new(start());
+        plant.slip = 0.002;
+        let phases = play(&mut plant, &parameters());
         assert!(phases.contains(&Phase::Lower), "{phases:?}");
-        assert!(0.09 < toy.lifted_max, "lifted {} m", toy.lifted_max);
+        assert!(0.09 < plant.lifted_max, "lifted {} m", plant.lifted_max);
         // Lowering at the wrong depth would press with 500 N/m times the slip of 8 mm, 4 N more.
-        assert!(toy.push_max < 500.0 * 0.0291, "pushed with {} N", toy.push_max);
+        assert!(plant.push_max < 500.0 * 0.0291, "pushed with {} N", plant.push_max);
     }
 
     #[test]
-    fn without_vacuum_nothing_is_lifted_and_the_run_still_ends() {
-        let mut toy = MockPlant::new(start());
-        let phases = play(&mut toy, &scene::PickAndLift { grip_pressure: 0.0, ..parameters() });
-        assert!(toy.lifted_max.abs() < 1e-12, "lifted {} m", toy.lifted_max);
+    fn without_vacuum_nothing_is_lifted() {
+        let mut plant = MockPlant::new(start());
+        let phases = play(&mut plant, &scene::PickAndLift { grip_pressure: 0.0, ..parameters() });
+        assert!(plant.lifted_max.abs() < 1e-12, "lifted {} m", plant.lifted_max);
         assert!(!phases.contains(&Phase::Lower), "nothing to put back: {phases:?}");
     }
 
     #[test]
-    fn a_pump_that_never_gets_there_is_given_up() {
-        let mut toy = MockPlant::new(start());
+    fn weak_pump_ends_in_venting() {
+        let mut plant = MockPlant::new(start());
         let phases =
-            play(&mut toy, &scene::PickAndLift { grip_pressure_reached: 1.1, ..parameters() });
+            play(&mut plant, &scene::PickAndLift { grip_pressure_reached: 1.1, ..parameters() });
         assert!(!phases.contains(&Phase::Lift), "{phases:?}");
     }
 
     #[test]
-    fn the_push_stops_at_its_force_limit() {
-        let mut toy = MockPlant::new(start());
-        play(&mut toy, &scene::PickAndLift { push_force_max: 5.0, ..parameters() });
-        // Tolerance: one period at push speed, 0.1 mm, times the toy's 500 N/m; and putting back
+    fn push_stops_at_its_force_limit() {
+        let mut plant = MockPlant::new(start());
+        play(&mut plant, &scene::PickAndLift { push_force_max: 5.0, ..parameters() });
+        // Tolerance: one period at push speed, 0.1 mm, times the plant's 500 N/m; and putting back
         // presses until the touch force of 0.1 N is felt, which adds as much and a period more.
-        assert!(toy.push_max < 5.0 + 0.05 + 0.15, "pushed with {} N", toy.push_max);
+        assert!(plant.push_max < 5.0 + 0.05 + 0.15, "pushed with {} N", plant.push_max);
     }
 }

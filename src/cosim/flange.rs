@@ -30,7 +30,7 @@ pub struct Limits {
     pub acceleration_max: Real,
     /// Angular speed (rad/s).
     pub angular_speed_max: Real,
-    /// Angular acceleration [rad/s²].
+    /// Angular acceleration (rad/s²).
     pub angular_acceleration_max: Real,
 }
 

@@ -150,7 +150,7 @@ impl RapierWorld {
         self.bulks[i].mass
     }
 
-    /// Momentum [kg m/s] and angular momentum about the centre of mass [kg m²/s] of object `i`.
+    /// Momentum (kg m/s) and angular momentum about the centre of mass (kg m²/s) of object `i`.
     pub fn momentum(&self, i: usize) -> (Vec3, Vec3) {
         let motion = self.motion(i);
         let bulk = &self.bulks[i];

@@ -421,6 +421,16 @@ mod tests {
     }
 
     #[test]
+    fn the_memory_of_moving_walls_is_restored() {
+        // Oracle: the state that was written.
+        let mut before = state(0);
+        before.wall_memory = vec![WallMemory::default(), WallMemory { time: 0.25, force: -1.5 }];
+        let after = read(&write(&before)).unwrap();
+        assert_eq!(after.wall_memory, before.wall_memory);
+        assert_eq!(digest(&after), digest(&before));
+    }
+
+    #[test]
     fn springs_at_walls_are_written_and_digested_as_if_all_were_listed() {
         // Oracle: the array of all walls with all grains that earlier versions kept.
         let state = state(0);

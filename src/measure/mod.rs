@@ -45,9 +45,9 @@ pub struct Packing {
     pub jammed_fraction: Real,
     /// Share of sliding contacts among contacts between grains.
     pub sliding_fraction: Real,
-    /// Largest overlap between grains [m].
+    /// Largest overlap between grains (m).
     pub overlap_max: Real,
-    /// Largest overlap between grain and membrane [m].
+    /// Largest overlap between grain and membrane (m).
     pub membrane_overlap_max: Real,
 }
 
@@ -88,7 +88,7 @@ pub fn packing(state: &State, scratch: &Scratch) -> Packing {
     packing
 }
 
-/// Sum of normal force magnitudes on each grain [N].
+/// Sum of normal force magnitudes on each grain (N).
 pub fn normal_forces(state: &State, scratch: &Scratch) -> Vec<Real> {
     let mut forces = vec![0.0; state.grains.len()];
     for (pair, ids) in scratch.pair_forces.iter().zip(&state.pair_ids) {
@@ -109,7 +109,7 @@ pub fn normal_forces(state: &State, scratch: &Scratch) -> Vec<Real> {
     forces
 }
 
-/// Kinetic energy of grains and membrane [J].
+/// Kinetic energy of grains and membrane (J).
 pub fn kinetic_energy(model: &Model, state: &State) -> Real {
     let grains = &state.grains;
     let of_grains: Real = (0..grains.len())
@@ -126,17 +126,17 @@ pub fn kinetic_energy(model: &Model, state: &State) -> Real {
     of_grains + of_membrane
 }
 
-/// Volume of all grains [m³].
+/// Volume of all grains (m³).
 pub fn grain_volume(state: &State) -> Real {
     state.grains.radii.iter().map(|r| 4.0 / 3.0 * std::f64::consts::PI * r.powi(3)).sum()
 }
 
-/// Mass of grains and membrane [kg].
+/// Mass of grains and membrane (kg).
 pub fn mass(model: &Model, state: &State) -> Real {
     state.grains.masses.iter().sum::<Real>() + model.membrane.mass()
 }
 
-/// Volume enclosed by membrane and flange [m³].
+/// Volume enclosed by membrane and flange (m³).
 pub fn enclosed_volume(model: &Model, state: &State) -> Real {
     pressure::volume(&model.membrane.mesh, &state.membrane.positions)
 }

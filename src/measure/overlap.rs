@@ -7,10 +7,10 @@
 //! S       = R² (2π − Σ (a/R) φ_a − Σ atan2(R h_ab, −a b))           (Gauss–Bonnet)
 //! h_ab    = √(R² − a² − b²)
 //!
-//! R    radius of the sphere, whose center is the origin             [m]
-//! S    area of the sphere's part of the surface                     [m²]
-//! A_a  area of the part of the surface in the plane x = a           [m²]
-//! φ_a  angle of the arc that bounds both                            [rad]
+//! R    radius of the sphere, whose center is the origin             (m)
+//! S    area of the sphere's part of the surface                     (m²)
+//! A_a  area of the part of the surface in the plane x = a           (m²)
+//! φ_a  angle of the arc that bounds both                            (rad)
 //! ```
 //!
 //! Negative coordinates are mirrored: what lies beyond −a and what lies beyond a make up the ball
@@ -20,7 +20,7 @@ use std::f64::consts::PI;
 
 use crate::base::{Real, Vec3};
 
-/// Volume [m³] of the sphere around `center` with `radius` in the box from `low` to `high` [m].
+/// Volume (m³) of the sphere around `center` with `radius` in the box from `low` to `high` (m).
 pub fn sphere_in_box(center: &Vec3, radius: Real, low: &Vec3, high: &Vec3) -> Real {
     let (from, to) = (low - center, high - center);
     if (from.max() <= -radius) && (radius <= to.min()) {

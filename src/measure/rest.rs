@@ -37,7 +37,7 @@ pub fn unbalanced_force(model: &Model, state: &State, scratch: &Scratch) -> Real
     (net / real(grains.len())) / (sum / real(n_contacts))
 }
 
-/// Energy stored in the contacts of grains with each other, with walls and with the membrane [J].
+/// Energy stored in the contacts of grains with each other, with walls and with the membrane (J).
 /// The membrane's friction springs are left out.
 pub fn elastic_energy(model: &Model, state: &State, scratch: &Scratch) -> Real {
     let radii = &state.grains.radii;
@@ -74,15 +74,15 @@ pub fn elastic_energy(model: &Model, state: &State, scratch: &Scratch) -> Real {
     energy
 }
 
-/// Energy of one contact [J].
+/// Energy of one contact (J).
 fn stored(law: &PairLaw, radius: Real, overlap: Real, stretch_squared: Real) -> Real {
     let contact_radius = (radius * overlap).sqrt();
     let normal = 8.0 / 15.0 * law.modulus * contact_radius * overlap * overlap;
     normal + 0.5 * (16.0 / 3.0 * law.shear_modulus * contact_radius) * stretch_squared
 }
 
-/// Inertial number at the strain rate [1/s] of grains with `diameter` [m] and `density` [kg/m³]
-/// under `pressure` [Pa].
+/// Inertial number at the strain rate (1/s) of grains with `diameter` (m) and `density` (kg/m³)
+/// under `pressure` (Pa).
 pub fn inertial_number(strain_rate: Real, diameter: Real, density: Real, pressure: Real) -> Real {
     strain_rate.abs() * diameter * (density / pressure).sqrt()
 }

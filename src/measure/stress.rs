@@ -4,10 +4,10 @@
 //! σ_ij = 1/V Σ_c f_i l_j       over all contacts of grains with grains, walls and membrane
 //! p    = tr σ / 3
 //!
-//! f  force of the contact on one of its partners                          [N]
+//! f  force of the contact on one of its partners                          (N)
 //! l  from the other partner's center to its own; from the contact point
-//!    on wall or membrane to the center                                    [m]
-//! V  volume that the grains take up between walls and membrane            [m³]
+//!    on wall or membrane to the center                                    (m)
+//! V  volume that the grains take up between walls and membrane            (m³)
 //! ```
 //!
 //! Pressure is positive. Source: Love (1927), Weber (1966); for grains at rest without body forces
@@ -65,7 +65,7 @@ pub fn branches(model: &Model, state: &State, scratch: &Scratch) -> Vec<Branch> 
     branches
 }
 
-/// Mean stress [Pa] of all contact forces of the last substep in `volume` [m³].
+/// Mean stress (Pa) of all contact forces of the last substep in `volume` (m³).
 pub fn contact_stress(model: &Model, state: &State, scratch: &Scratch, volume: Real) -> Mat3 {
     mean_stress(&branches(model, state, scratch), volume)
 }

@@ -4,9 +4,9 @@
 //! g(r)  = ⟨pairs at r … r + Δ⟩ / (ρ_n 4/3 π ((r + Δ)³ − r³))        center to center, → 1 far away
 //! g₄₂(r) = 1/N Σ_i n_i(r) / (4π (r/R̄)²)                             Götz (2024), eq. 42
 //!
-//! n_i(r)  grains that the sphere of radius r about grain i cuts       [-]
-//! ρ_n     grains per volume                                          [1/m³]
-//! R̄       mean radius                                                [m]
+//! n_i(r)  grains that the sphere of radius r about grain i cuts       (-)
+//! ρ_n     grains per volume                                          (1/m³)
+//! R̄       mean radius                                                (m)
 //! ```
 //!
 //! In a bounded sample only the part of each shell inside the sample counts: its exact volume replaces
@@ -34,22 +34,22 @@ pub fn solid_fraction(positions: &[Vec3], radii: &[Real], low: &Vec3, high: &Vec
     solid / (high - low).product()
 }
 
-/// Distances are counted in bins of `width` [m], `n_bins` of them.
+/// Distances are counted in bins of `width` (m), `n_bins` of them.
 #[derive(Clone, Copy, Debug)]
 pub struct Bins {
-    /// Width of a bin [m].
+    /// Width of a bin (m).
     pub width: Real,
     /// How many there are.
     pub n_bins: usize,
 }
 
 impl Bins {
-    /// Middle of bin `k` [m].
+    /// Middle of bin `k` (m).
     pub fn middle(&self, k: usize) -> Real {
         (real(k) + 0.5) * self.width
     }
 
-    /// Largest distance that is counted [m].
+    /// Largest distance that is counted (m).
     pub fn reach(&self) -> Real {
         real(self.n_bins) * self.width
     }

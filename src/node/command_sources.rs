@@ -1,4 +1,4 @@
-//! Everyone who may command: the built-in controller and the outside.
+//! All sources of commands: the built-in controller and external sources.
 
 use std::time::Duration;
 
@@ -6,99 +6,83 @@ use crate::{
     command::Command,
     controller::{Observation, Phase, PickAndLift},
     io::source::{Source, SourceCounters},
-    scene::{self, Controller, Scene},
+    scene::{Controller, Scene},
     snapshot::Snapshot,
 };
 
 /// All sources of commands of a run.
 pub struct CommandSources {
-    builtin: Option<Builtin>,
-    outside: Vec<Box<dyn Source>>,
-}
-
-struct Builtin {
-    machine: PickAndLift,
-    parameters: scene::PickAndLift,
+    builtin: Option<PickAndLift>,
+    external: Vec<Box<dyn Source>>,
 }
 
 impl CommandSources {
-    /// The built-in controller, if `scene` asks for it, and `outside`.
-    pub fn new(scene: &Scene, outside: Vec<Box<dyn Source>>) -> Self {
-        let builtin = match &scene.controller {
-            Controller::Builtin(parameters) => Some(Builtin::new(parameters)),
-            Controller::Topics { .. } => None,
-        };
-        Self { builtin, outside }
+    /// The built-in controller, if `scene` selects it, and external sources.
+    pub fn new(scene: &Scene, external: Vec<Box<dyn Source>>) -> Self {
+        Self { builtin: builtin(scene), external }
     }
 
-    /// Only what `outside` says, whatever `scene` asks for.
-    pub fn from_outside(outside: Vec<Box<dyn Source>>) -> Self {
-        Self { builtin: None, outside }
+    /// External sources only, whatever controller the scene selects.
+    pub fn from_external(external: Vec<Box<dyn Source>>) -> Self {
+        Self { builtin: None, external }
     }
 
-    /// Commands for the next tick. Those from outside come last, so that a person can overrule
-    /// the built-in controller.
-    pub fn drain(&mut self, seen: &Snapshot) -> Vec<Command> {
-        let mut commands = self.builtin.as_mut().map(|it| it.decide(seen)).unwrap_or_default();
-        commands.extend(self.outside.iter_mut().flat_map(|source| source.drain(seen)));
+    /// Returns the commands for the next tick. External commands come last, so that a person can
+    /// overrule the built-in controller.
+    pub fn drain(&mut self, snapshot: &Snapshot) -> Vec<Command> {
+        let mut commands = self.builtin.as_mut().map(|it| decide(it, snapshot)).unwrap_or_default();
+        commands.extend(self.external.iter_mut().flat_map(|source| source.drain(snapshot)));
         commands
     }
 
-    /// The world is at its start again: so is the built-in controller.
-    pub fn restart(&mut self) {
-        if let Some(builtin) = &mut self.builtin {
-            builtin.machine = PickAndLift::new(&builtin.parameters);
+    /// Drops the external commands that have arrived so far.
+    pub fn discard(&mut self, snapshot: &Snapshot) {
+        self.external.iter_mut().for_each(|source| drop(source.drain(snapshot)));
+    }
+
+    /// Restarts the built-in controller, if there is one, with the parameters of `scene`.
+    pub fn restart(&mut self, scene: &Scene) {
+        if let (Some(controller), Some(restarted)) = (&mut self.builtin, builtin(scene)) {
+            *controller = restarted;
         }
     }
 
-    /// Another scene has been loaded: what was commanded before is not for it. The built-in controller
-    /// goes by its numbers, if it has some.
-    pub fn scene_loaded(&mut self, scene: &Scene, seen: &Snapshot) {
-        for source in &mut self.outside {
-            drop(source.drain(seen));
-        }
-        if let (Some(builtin), Controller::Builtin(parameters)) =
-            (&mut self.builtin, &scene.controller)
-        {
-            *builtin = Builtin::new(parameters);
-        }
-    }
-
-    /// What the built-in controller is doing.
+    /// Phase of the built-in controller.
     pub fn phase(&self) -> Option<Phase> {
-        self.builtin.as_ref().map(|it| it.machine.phase())
+        self.builtin.as_ref().map(PickAndLift::phase)
     }
 
     /// True when the built-in controller has finished.
     pub fn is_done(&self) -> bool {
-        self.builtin.as_ref().is_some_and(|it| it.machine.is_done())
+        self.builtin.as_ref().is_some_and(PickAndLift::is_done)
     }
 
-    /// True if the run must wait for a first command.
+    /// True while the run must wait for a first command.
     pub fn is_waiting(&self) -> bool {
-        self.builtin.is_none() && !self.outside.iter().any(|source| source.has_heard())
+        self.builtin.is_none() && !self.external.iter().any(|source| source.has_received())
     }
 
-    /// What became of the messages from outside, source by source.
+    /// Counters of the external sources, by name.
     pub fn counters(&self) -> Vec<(&'static str, SourceCounters)> {
-        self.outside.iter().map(|source| (source.name(), source.counters())).collect()
+        self.external.iter().map(|source| (source.name(), source.counters())).collect()
     }
 }
 
-impl Builtin {
-    fn new(parameters: &scene::PickAndLift) -> Self {
-        Self { machine: PickAndLift::new(parameters), parameters: parameters.clone() }
+fn builtin(scene: &Scene) -> Option<PickAndLift> {
+    match &scene.controller {
+        Controller::Builtin(parameters) => Some(PickAndLift::new(parameters)),
+        Controller::Topics { .. } => None,
     }
+}
 
-    fn decide(&mut self, seen: &Snapshot) -> Vec<Command> {
-        let found = seen.objects.iter().find(|it| it.name == self.parameters.object);
-        let Some(object) = found else { return Vec::new() };
-        self.machine.decide(&Observation {
-            time_s: Duration::from_nanos(seen.time_ns).as_secs_f64(),
-            flange_pose: seen.flange.pose,
-            contact_force: seen.contact_wrench.force,
-            gauge_pa: seen.chamber.gauge,
-            object_pose: object.body.pose,
-        })
-    }
+fn decide(controller: &mut PickAndLift, snapshot: &Snapshot) -> Vec<Command> {
+    let found = snapshot.objects.iter().find(|it| it.name == controller.object());
+    let Some(object) = found else { return Vec::new() };
+    controller.decide(&Observation {
+        time_s: Duration::from_nanos(snapshot.time_ns).as_secs_f64(),
+        flange_pose: snapshot.flange.pose,
+        contact_force: snapshot.contact_wrench.force,
+        gauge_pa: snapshot.chamber.gauge,
+        object_pose: object.body.pose,
+    })
 }

@@ -1,5 +1,5 @@
-//! The doors to the outside that a scene asks for: recording, streams, ROS 2. A door whose feature
-//! was not built says so when it is asked for.
+//! Opens the connections that a scene enables: recording, streams, ROS 2. A connection whose feature
+//! is missing is an error that names the feature.
 
 #[cfg(feature = "bag")]
 use std::time::Duration;
@@ -27,49 +27,73 @@ pub(super) struct Sizes {
     pub(super) n_vertices: usize,
 }
 
-/// Opens what the scene asks for. What cannot be opened is said and left out, unless the run
-/// would be pointless without it.
+/// Opens the connections of a scene. One that cannot be opened is logged and left out, unless the
+/// run depends on it.
 pub(super) struct Connections<'a> {
-    /// What is asked for.
-    pub(super) scene: &'a Scene,
-    /// Where it is from.
+    /// The scene.
+    pub(super) scene: &'a Arc<Scene>,
+    /// Its file.
     #[cfg_attr(
         not(feature = "ros"),
-        expect(dead_code, reason = "without ROS 2 nobody asks for others beside it")
+        expect(dead_code, reason = "only ROS 2 clients load other scenes")
     )]
     pub(super) scene_file: &'a Path,
-    /// Makes messages for all who carry them.
+    /// Encodes the messages of all connections.
     #[cfg_attr(
         not(any(feature = "ros", feature = "bag")),
-        expect(dead_code, reason = "without them nobody carries messages")
+        expect(dead_code, reason = "without them no messages are sent")
     )]
     pub(super) encoder: &'a Arc<Encoder>,
-    /// Where faults are said.
+    /// Shows messages.
     pub(super) progress: &'a Progress,
-    /// Length of a substep [s].
-    #[cfg_attr(not(feature = "bag"), expect(dead_code, reason = "only recordings tell it"))]
+    /// Length of a substep (s).
+    #[cfg_attr(not(feature = "bag"), expect(dead_code, reason = "only recordings hold it"))]
     pub(super) substep_s: f64,
-    /// What the recording says of the run besides what it always says.
-    #[cfg_attr(not(feature = "bag"), expect(dead_code, reason = "only recordings tell it"))]
+    /// Additional metadata for the recording.
+    #[cfg_attr(not(feature = "bag"), expect(dead_code, reason = "only recordings hold it"))]
     pub(super) facts: &'a [(&'static str, String)],
 }
 
-/// Those who may command and ask from outside.
+/// Why the ROS 2 node could not be started.
+#[derive(Debug, thiserror::Error)]
+pub(super) enum ConnectError {
+    /// The scene disables it.
+    #[error("`outputs.ros.enabled` is false")]
+    Disabled,
+    /// Built without it.
+    #[cfg(not(feature = "ros"))]
+    #[error("ROS 2 needs a jamgrip that was built with feature `ros`")]
+    NoFeature,
+    /// The environment selects no usable discovery range.
+    #[cfg(feature = "ros")]
+    #[error(transparent)]
+    Range(#[from] crate::ros::discovery::DiscoveryRangeError),
+    /// The node or one of its entities could not be created.
+    #[cfg(feature = "ros")]
+    #[error(transparent)]
+    Ros(#[from] crate::ros::node::RosError),
+    /// A sink could not be started.
+    #[cfg(feature = "ros")]
+    #[error("cannot start the thread of a sink: {0}")]
+    Sink(#[from] std::io::Error),
+}
+
+/// External inputs of a run.
 #[derive(Default)]
 pub struct ExternalInputs {
-    /// Those who command.
+    /// Sources of commands.
     pub sources: Vec<Box<dyn Source>>,
-    /// Those who ask.
-    pub front: Option<SimulationServer>,
-    /// Another simulator's time [ns], if it is followed.
+    /// The service server.
+    pub server: Option<SimulationServer>,
+    /// Time of another simulator (ns), if the run follows its clock.
     pub clock: Option<Arc<AtomicU64>>,
 }
 
 impl Connections<'_> {
-    /// Opens all of them.
+    /// Opens all connections.
     ///
     /// # Errors
-    /// If the run would be pointless.
+    /// If a connection fails that the run depends on.
     pub(super) fn open(&self, sizes: Sizes) -> Result<(OutputSinks, ExternalInputs), RunError> {
         let mut outputs = OutputSinks::default();
         if self.scene.outputs.bag.enabled {
@@ -78,22 +102,22 @@ impl Connections<'_> {
         if self.scene.outputs.stream {
             self.open_stream(&mut outputs, sizes);
         }
-        let mut outside = ExternalInputs::default();
+        let mut external = ExternalInputs::default();
         let opened = if self.scene.outputs.ros.enabled {
-            self.open_ros(&mut outputs, &mut outside)
+            self.open_ros(&mut outputs, &mut external)
         } else {
-            Err("outputs.ros.enabled is false".to_owned())
+            Err(ConnectError::Disabled)
         };
         match opened {
             Err(reason) if matches!(self.scene.controller, Controller::Topics { .. }) => {
-                return Err(RunError::NoTopics(reason));
+                return Err(RunError::NoTopics(reason.to_string()));
             }
             Err(reason) if self.scene.outputs.ros.enabled => {
-                self.progress.say(&format!("{reason}; the run goes on without ROS 2"));
+                self.progress.say(&format!("{reason}; the run continues without ROS 2"));
             }
             _ => {}
         }
-        Ok((outputs, outside))
+        Ok((outputs, external))
     }
 
     #[cfg(feature = "bag")]
@@ -115,15 +139,15 @@ impl Connections<'_> {
             }
             (Err(reason), OnError::Stop) => return Err(RunError::Recording(reason)),
             (Err(reason), OnError::Continue) => {
-                self.progress.say(&format!("{reason}; the run goes on without a recording"));
+                self.progress.say(&format!("{reason}; the run continues without a recording"));
             }
         }
         Ok(())
     }
 
     #[cfg(not(feature = "bag"))]
-    fn open_bag(&self, _outlets: &mut OutputSinks) -> Result<(), RunError> {
-        let reason = "this jamgrip was built without recordings (feature `bag`)".to_owned();
+    fn open_bag(&self, _outputs: &mut OutputSinks) -> Result<(), RunError> {
+        let reason = "recordings need a jamgrip that was built with feature `bag`".to_owned();
         if self.scene.outputs.bag.on_error == OnError::Stop {
             return Err(RunError::Recording(reason));
         }
@@ -131,9 +155,9 @@ impl Connections<'_> {
         Ok(())
     }
 
-    /// What the recording says about the run, so that it can be run again.
+    /// Describes the run in the recording, so that it can be simulated again.
     #[cfg(feature = "bag")]
-    fn subject(&self) -> crate::bag::Subject {
+    fn subject(&self) -> crate::bag::RunDescription {
         let bag = &self.scene.outputs.bag;
         let whole_ns = |time: f64| Duration::from_secs_f64(time).as_nanos();
         let format = crate::bag::Format {
@@ -155,10 +179,10 @@ impl Connections<'_> {
         facts.push((INPUTS, serde_json::json!(inputs).to_string()));
         facts.extend_from_slice(self.facts);
         let scene_text = crate::scene::to_yaml(self.scene);
-        crate::bag::Subject { scene_text, scene_files: self.scene_files(), facts, format }
+        crate::bag::RunDescription { scene_text, scene_files: self.scene_files(), facts, format }
     }
 
-    /// The mesh files of the scene. One that has gone since it was read is said and left out.
+    /// The mesh files of the scene. One that can no longer be read is logged and left out.
     #[cfg(feature = "bag")]
     fn scene_files(&self) -> Vec<(String, Vec<u8>)> {
         let mut files = Vec::new();
@@ -171,7 +195,7 @@ impl Connections<'_> {
                 }
                 Err(error) => {
                     let path = file.display();
-                    self.progress.say(&format!("{path}: not kept in the recording: {error}"));
+                    self.progress.say(&format!("{path}: not stored in the recording: {error}"));
                 }
             }
         }
@@ -191,7 +215,7 @@ impl Connections<'_> {
     fn bag_delivery(&self) -> crate::io::fanout::Delivery {
         use crate::{io::fanout::Delivery, scene::OnFull};
 
-        // A second of ticks: long enough for a disk to catch its breath.
+        // A second of ticks: enough for a disk that stalls for a moment.
         let depth = 1000;
         match self.scene.outputs.bag.on_full {
             OnFull::Wait => Delivery::Every { depth },
@@ -205,16 +229,16 @@ impl Connections<'_> {
 
         match Stream::open(&prefix(), sizes.n_grains, sizes.n_vertices) {
             Ok(stream) => outputs.stream = Some(stream),
-            Err(error) => self.progress.say(&format!("{error}; the run goes on without streams")),
+            Err(error) => self.progress.say(&format!("{error}; the run continues without streams")),
         }
     }
 
     #[cfg(not(feature = "shm"))]
-    fn open_stream(&self, _outlets: &mut OutputSinks, sizes: Sizes) {
+    fn open_stream(&self, _outputs: &mut OutputSinks, sizes: Sizes) {
         let Sizes { n_grains, n_vertices } = sizes;
         self.progress.say(&format!(
-            "this jamgrip was built without streams (feature `shm`): {n_grains} grains and \
-             {n_vertices} vertices stay inside"
+            "streams need a jamgrip that was built with feature `shm`; {n_grains} grains and \
+             {n_vertices} vertices are not streamed"
         ));
     }
 
@@ -222,8 +246,8 @@ impl Connections<'_> {
     fn open_ros(
         &self,
         outputs: &mut OutputSinks,
-        outside: &mut ExternalInputs,
-    ) -> Result<(), String> {
+        external: &mut ExternalInputs,
+    ) -> Result<(), ConnectError> {
         use crate::{
             io::{fanout::Delivery, published::PublishedUpTo},
             ros::{
@@ -236,35 +260,34 @@ impl Connections<'_> {
             wire::topics::full_name,
         };
 
-        let reach =
+        let range =
             DiscoveryRange::choose(&self.scene.outputs.ros, |name| std::env::var(name).ok());
-        let reach = reach.map_err(|error| error.to_string())?;
-        let node = RosNode::join_as(&self.scene.outputs.ros.node, &reach);
-        let node = node.map_err(|error| error.to_string())?;
+        let node = RosNode::join_as(&self.scene.outputs.ros.node, &range?);
+        let node = node?;
         let log = Arc::clone(&node);
-        self.progress.add_listener(Box::new(move |text| log.say(text)));
+        self.progress.add_listener(Box::new(move |text| log.warn(text)));
         let published = Arc::new(PublishedUpTo::default());
-        let sink = RosSink::new(&node, self.encoder).map_err(|error| error.to_string())?;
-        let sink = sink.announcing(&published);
-        let source = RosSource::new(&node, self.encoder).map_err(|error| error.to_string())?;
-        // Old states are worth nothing to a controller, but half a second bridges a hiccup.
+        let sink = RosSink::new(&node, self.encoder)?;
+        let sink = sink.reporting_to(&published);
+        let source = RosSource::new(&node, self.encoder)?;
+        // Old states are of no use to a controller, but half a second bridges a short stall.
         let delivery = Delivery::Latest { depth: 500 };
-        outputs.fanout.add(Box::new(sink), delivery).map_err(|error| error.to_string())?;
-        outside.sources.push(Box::new(source));
+        outputs.fanout.add(Box::new(sink), delivery)?;
+        external.sources.push(Box::new(source));
         if self.encoder.follows_clock() {
             let name = full_name(&self.scene.outputs.ros, "/clock");
-            let clock = RosClock::new(&node, &name).map_err(|error| error.to_string())?;
-            outside.clock = Some(clock.time_ns());
-            outside.sources.push(Box::new(clock));
+            let clock = RosClock::new(&node, &name)?;
+            external.clock = Some(clock.time_ns());
+            external.sources.push(Box::new(clock));
         }
         let ros = &self.scene.outputs.ros;
         let prefix = ros.interfaces_prefix.as_deref();
-        let (mut offers, asked) = services::asked(&ros.node, prefix);
-        let mut channels = services::channels(&ros.node, prefix);
+        let (mut offers, asked) = services::endpoints(&ros.node, prefix);
+        let mut channels = services::action_topics(&ros.node, prefix);
         offers.iter_mut().for_each(|it| it.name = full_name(ros, &it.name));
         channels.iter_mut().for_each(|it| it.name = full_name(ros, &it.name));
-        let bench = RosServiceServer::open(&node, &offers, &channels, &published);
-        let bench = Box::new(bench.map_err(|error| error.to_string())?);
+        let services = RosServiceServer::open(&node, &offers, &channels, &published);
+        let services = Box::new(services?);
         let is_stopped = matches!(self.scene.controller, Controller::Topics { .. });
         let version = match self.scene.outputs.ros.interfaces_version {
             Some(1) => Version::One,
@@ -272,19 +295,19 @@ impl Connections<'_> {
             _ => Version::of_distribution(&std::env::var("ROS_DISTRO").unwrap_or_default()),
         };
         let simulator = Simulator::new(self.scene, asked, is_stopped)
-            .with_channels(channels.len())
-            .beside(self.scene_file)
-            .speaking(version);
-        outside.front = Some(SimulationServer::new(simulator, bench, published));
+            .with_n_topics(channels.len())
+            .with_scene_file(self.scene_file)
+            .with_version(version);
+        external.server = Some(SimulationServer::new(simulator, services, published));
         Ok(())
     }
 
     #[cfg(not(feature = "ros"))]
     fn open_ros(
         &self,
-        _outlets: &mut OutputSinks,
-        _outside: &mut ExternalInputs,
-    ) -> Result<(), String> {
-        Err("this jamgrip was built without ROS 2 (feature `ros`)".to_owned())
+        _outputs: &mut OutputSinks,
+        _external: &mut ExternalInputs,
+    ) -> Result<(), ConnectError> {
+        Err(ConnectError::NoFeature)
     }
 }

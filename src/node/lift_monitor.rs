@@ -1,42 +1,42 @@
-//! What came of a run: how high the object was lifted, whether it was held, how hard it was
-//! pushed. Judged from snapshots alone, whoever gave the commands.
+//! Metrics of a lift: how high the object was lifted, whether it was held, how hard it was pushed.
+//! They are computed from snapshots alone, whatever controlled the run.
 
 use crate::{base::Real, snapshot::Snapshot};
 
-/// The flange holds when it is slower than this [m/s] …
+/// The flange holds still when it is slower than this (m/s) …
 const STILL_SPEED: Real = 1e-3;
-/// … for this time [s] …
+/// … for this time (s) …
 const STILL_TIME: Real = 0.1;
-/// … this far above the lowest place it has been [m] …
+/// … this far above its lowest height so far (m) …
 const RAISED: Real = 0.02;
-/// … and the pump is asked for a vacuum beyond this [Pa].
+/// … and the commanded gauge pressure is below this (Pa).
 const VACUUM: Real = -1e3;
-/// Share of the flange's rise that a held object has at least.
+/// Smallest fraction of the rise of the flange at which an object counts as held.
 const HELD_SHARE: Real = 0.9;
-/// Largest overlap of grains, over their diameter, at which Hertz' law is trusted.
+/// Largest overlap of grains, over their diameter, at which Hertz' law is valid.
 const OVERLAP_LIMIT: Real = 0.1;
 
-/// Watches a run.
+/// Computes the metrics of a run.
 #[derive(Clone, Debug)]
 pub struct LiftMonitor {
     object_lowest: Real,
     flange_lowest: Real,
     still_since: Option<Real>,
-    verdict: LiftMetrics,
+    metrics: LiftMetrics,
 }
 
-/// What came of a run.
+/// Metrics of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LiftMetrics {
-    /// Greatest height of the object over its lowest place before [m].
+    /// Greatest height of the object above its lowest height before (m).
     pub lift_height: Real,
-    /// Time for which the flange held still, raised and under vacuum [s].
+    /// Time for which the flange held still, raised and under vacuum (s).
     pub hold_time: Real,
-    /// Smallest share of the flange's rise that the object had in that time.
+    /// Smallest ratio of the rise of the object to that of the flange in that time.
     pub hold_share_min: Real,
-    /// Greatest upward force of the object on the gripper [N].
+    /// Greatest upward force of the object on the gripper (N).
     pub peak_push_force: Real,
-    /// Greatest downward force of the object on the gripper [N].
+    /// Greatest downward force of the object on the gripper (N).
     pub peak_pull_force: Real,
     /// Largest overlap between grains over the mean diameter.
     pub overlap_ratio_max: Real,
@@ -50,7 +50,7 @@ impl LiftMetrics {
         0.0 < self.hold_time && HELD_SHARE <= self.hold_share_min
     }
 
-    /// True if no grain overlapped more than the contact law bears.
+    /// True if no overlap was outside the validity of the contact law.
     pub fn is_valid(&self) -> bool {
         self.overlap_ratio_max <= OVERLAP_LIMIT
     }
@@ -67,30 +67,30 @@ impl Default for LiftMonitor {
             object_lowest: Real::INFINITY,
             flange_lowest: Real::INFINITY,
             still_since: None,
-            verdict: LiftMetrics::default(),
+            metrics: LiftMetrics::default(),
         }
     }
 }
 
 impl LiftMonitor {
-    /// Looks at the end of a tick of `tick` seconds.
-    pub fn look(&mut self, seen: &Snapshot, tick: Real) {
+    /// Takes the results of a tick of `tick` seconds.
+    pub fn update(&mut self, seen: &Snapshot, tick: Real) {
         let time = std::time::Duration::from_nanos(seen.time_ns).as_secs_f64();
         let flange = seen.flange.pose.translation.vector.z;
         let force = seen.contact_force_world();
-        let verdict = &mut self.verdict;
-        verdict.peak_push_force = verdict.peak_push_force.max(force.z);
-        verdict.peak_pull_force = verdict.peak_pull_force.max(-force.z);
+        let metrics = &mut self.metrics;
+        metrics.peak_push_force = metrics.peak_push_force.max(force.z);
+        metrics.peak_pull_force = metrics.peak_pull_force.max(-force.z);
         let overlap = seen.jamming.overlap_ratio_max;
-        verdict.overlap_ratio_max = verdict.overlap_ratio_max.max(overlap);
+        metrics.overlap_ratio_max = metrics.overlap_ratio_max.max(overlap);
         let overlap = seen.jamming.membrane_overlap_ratio_max;
-        verdict.membrane_overlap_ratio_max = verdict.membrane_overlap_ratio_max.max(overlap);
+        metrics.membrane_overlap_ratio_max = metrics.membrane_overlap_ratio_max.max(overlap);
         self.flange_lowest = self.flange_lowest.min(flange);
         let Some(object) = seen.objects.first() else { return };
         let height = object.body.pose.translation.vector.z;
         self.object_lowest = self.object_lowest.min(height);
         let lifted = height - self.object_lowest;
-        verdict.lift_height = verdict.lift_height.max(lifted);
+        metrics.lift_height = metrics.lift_height.max(lifted);
         let raised = flange - self.flange_lowest;
         let is_still = seen.flange.twist.linear.norm() < STILL_SPEED;
         let since = *self.still_since.get_or_insert(time);
@@ -101,15 +101,15 @@ impl LiftMonitor {
             && seen.chamber.gauge_setpoint < VACUUM
         {
             let share = lifted / raised;
-            let is_first = verdict.hold_time == 0.0;
-            verdict.hold_share_min =
-                if is_first { share } else { verdict.hold_share_min.min(share) };
-            verdict.hold_time += tick;
+            let is_first = metrics.hold_time == 0.0;
+            metrics.hold_share_min =
+                if is_first { share } else { metrics.hold_share_min.min(share) };
+            metrics.hold_time += tick;
         }
     }
 
-    /// The verdict so far.
-    pub fn verdict(&self) -> LiftMetrics {
-        self.verdict
+    /// The metrics so far.
+    pub fn metrics(&self) -> LiftMetrics {
+        self.metrics
     }
 }

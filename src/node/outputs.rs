@@ -1,5 +1,5 @@
-//! Everywhere a run's results go: sinks behind their queues, and the zero-copy streams, which are
-//! written on the tick's own thread.
+//! Outputs of a run: sinks behind their queues, and the zero-copy streams, which are written on
+//! the thread of the tick.
 
 use std::{path::PathBuf, sync::Arc, time::Duration};
 
@@ -12,7 +12,7 @@ use crate::{
     wire::to_ros::Encoder,
 };
 
-/// How long a sink may take to complete its work at the end.
+/// How long a sink may take to close.
 const TIMEOUT: Duration = Duration::from_secs(30);
 
 /// All outputs of a run.
@@ -25,23 +25,23 @@ pub struct OutputSinks {
     pub stream: Option<crate::shm::stream::Stream>,
     /// Folder of the recording.
     pub bag: Option<PathBuf>,
-    /// True if the run shall end when the recording fails.
+    /// True if the run ends when the recording fails.
     pub stops_with_bag: bool,
-    /// Who makes messages, as the sinks were opened with it or as it became since.
+    /// The current encoder.
     pub encoder: Option<Arc<Encoder>>,
 }
 
-/// What became of the outputs.
+/// Result of closing the outputs.
 #[derive(Debug, Default)]
 pub struct Closed {
-    /// What became of the packets, output by output.
+    /// Counters of the outputs.
     pub counters: Vec<SinkCounters>,
-    /// What went wrong since the last look.
-    pub faults: Vec<String>,
+    /// Errors since the last call of `take_errors`.
+    pub errors: Vec<String>,
 }
 
 impl OutputSinks {
-    /// Gives out one tick. Waits only for a recording that was asked to miss nothing.
+    /// Publishes one tick. Waits only for a recording that must not drop packets.
     pub fn publish(&mut self, view: &View<'_>, packet: &Arc<Packet>) {
         self.write_stream(view);
         self.fanout.publish(packet);
@@ -57,7 +57,7 @@ impl OutputSinks {
     #[cfg(not(feature = "shm"))]
     fn write_stream(&mut self, _view: &View<'_>) {}
 
-    /// What became of the packets so far, output by output.
+    /// Counters of the outputs so far.
     pub fn counters(&self) -> Vec<SinkCounters> {
         self.fanout.counters().into_iter().chain(self.stream_counters()).collect()
     }
@@ -73,26 +73,26 @@ impl OutputSinks {
     }
 
     #[cfg(feature = "shm")]
-    fn take_stream_fault(&mut self) -> Option<String> {
-        self.stream.as_mut()?.take_fault()
+    fn take_stream_error(&mut self) -> Option<String> {
+        self.stream.as_mut()?.take_error()
     }
 
     #[cfg(not(feature = "shm"))]
-    fn take_stream_fault(&mut self) -> Option<String> {
+    fn take_stream_error(&mut self) -> Option<String> {
         None
     }
 
-    /// What went wrong since the last call, and whether the run must end for it.
-    pub fn take_faults(&mut self) -> (Vec<String>, bool) {
-        let faults = self.fanout.take_faults();
-        let must_stop = self.stops_with_bag && faults.iter().any(|fault| fault.sink == "bag");
-        let texts = faults.into_iter().map(|fault| fault.text);
-        (texts.chain(self.take_stream_fault()).collect(), must_stop)
+    /// Errors since the last call, and whether the run must end because of them.
+    pub fn take_errors(&mut self) -> (Vec<String>, bool) {
+        let errors = self.fanout.take_errors();
+        let must_stop = self.stops_with_bag && errors.iter().any(|error| error.sink == "bag");
+        let texts = errors.into_iter().map(|error| error.text);
+        (texts.chain(self.take_stream_error()).collect(), must_stop)
     }
 
-    /// Completes everything.
+    /// Closes all outputs.
     pub fn close(mut self) -> Closed {
-        let (mut faults, _) = self.take_faults();
+        let (mut errors, _) = self.take_errors();
         let mut counters = self.counters();
         let (ends, late) = self.fanout.close(TIMEOUT);
         for end in ends {
@@ -100,7 +100,7 @@ impl OutputSinks {
                 *before = end.counters;
             }
         }
-        faults.extend(late.into_iter().map(|fault| fault.text));
-        Closed { counters, faults }
+        errors.extend(late.into_iter().map(|error| error.text));
+        Closed { counters, errors }
     }
 }

@@ -1,4 +1,4 @@
-//! What the run needs of the thing it runs: a session, or a toy in tests.
+//! The interface between the run loop and the system that runs: a session, or a mock in tests.
 
 use std::error::Error;
 
@@ -6,55 +6,54 @@ use super::schedule::Parts;
 use crate::{
     command::{Command, change::Change},
     cosim::refused::ChangeError,
-    physics::health::Diverged,
+    physics::{health::Diverged, membrane::mesh::Mesh},
     session::Session,
-    simulator::Subject,
-    snapshot::{Snapshot, checkpoint::Checkpoint, take, view::View},
-    wire::to_ros::Encoder,
+    simulator::WorldAccess,
+    snapshot::{Snapshot, checkpoint::Checkpoint, view::View},
 };
 
-/// Something that ticks and can be looked at.
-pub trait Plant: Subject {
-    /// Why it cannot go on.
-    type Fault: Error + Send + Sync + 'static;
+/// A system that can be run.
+pub trait Plant: WorldAccess {
+    /// Why it cannot continue.
+    type Error: Error + Send + Sync + 'static;
 
-    /// Advances by one tick under the commands that arrived since the last.
+    /// Applies `commands` and advances by one tick.
     ///
     /// # Errors
-    /// If the system cannot go on.
-    fn tick(&mut self, commands: &[Command]) -> Result<(), Self::Fault>;
+    /// If the system cannot continue.
+    fn tick(&mut self, commands: &[Command]) -> Result<(), Self::Error>;
 
-    /// A copy of what the outside may see, with the large parts asked for.
+    /// Copies the results of the last tick, with the large parts that `parts` selects.
     fn snapshot(&self, parts: Parts) -> Snapshot;
 
-    /// All that is needed to go on from here, if it can be saved.
+    /// Everything needed to resume from here, if it can be saved.
     fn checkpoint(&self) -> Option<Checkpoint> {
         None
     }
 
-    /// Who tells of it in the way of `before`, now that another scene was loaded.
-    fn encoder(&self, _before: &Encoder) -> Option<Encoder> {
+    /// Mesh of the membrane, if there is one.
+    fn mesh(&self) -> Option<&Mesh> {
         None
     }
 
-    /// Length of a substep [s].
+    /// Length of a substep (s).
     fn substep_s(&self) -> f64 {
         0.0
     }
 
-    /// A borrowed look at everything. `seen` is the snapshot of the same tick.
+    /// Borrows the results of the last tick. `seen` is the snapshot of the same tick.
     fn view<'a>(&'a self, seen: &'a Snapshot) -> View<'a>;
 }
 
 impl Plant for Session {
-    type Fault = Diverged;
+    type Error = Diverged;
 
     fn tick(&mut self, commands: &[Command]) -> Result<(), Diverged> {
         Self::tick(self, commands)
     }
 
     fn snapshot(&self, parts: Parts) -> Snapshot {
-        take::snapshot(self, parts)
+        Self::snapshot(self, parts)
     }
 
     fn checkpoint(&self) -> Option<Checkpoint> {
@@ -62,9 +61,8 @@ impl Plant for Session {
         self.save().map(|bytes| Checkpoint { tick, time_ns, digest, bytes })
     }
 
-    fn encoder(&self, before: &Encoder) -> Option<Encoder> {
-        let mesh = &self.coupled().system.model.membrane.mesh;
-        Some(before.of_scene(self.scene(), &mesh.triangles, &mesh.positions))
+    fn mesh(&self) -> Option<&Mesh> {
+        Some(&self.coupled().system.model.membrane.mesh)
     }
 
     fn substep_s(&self) -> f64 {
@@ -72,13 +70,13 @@ impl Plant for Session {
     }
 
     fn view<'a>(&'a self, seen: &'a Snapshot) -> View<'a> {
-        take::view(self, seen)
+        Self::view(self, seen)
     }
 }
 
-impl Subject for Session {
-    fn look(&self) -> Snapshot {
-        take::snapshot(self, Parts::ALL)
+impl WorldAccess for Session {
+    fn full_snapshot(&self) -> Snapshot {
+        Self::snapshot(self, Parts::ALL)
     }
 
     fn change(&mut self, change: &Change) -> Result<(), ChangeError> {

@@ -1,33 +1,33 @@
-//! Which parts of a snapshot are due at which tick.
+//! What is due at which tick.
 
 pub use crate::snapshot::Parts;
 use crate::{scene::Outputs, snapshot::due};
 
-/// Rates in simulated time, cut to ticks.
+/// Rates in simulated time, rounded to ticks.
 #[derive(Clone, Copy, Debug)]
 pub struct Schedule {
     membrane: Interval,
     grains: Interval,
     contacts: Interval,
     statistics: Interval,
-    /// Rate of checkpoints [Hz], and the length of a tick [ns].
+    /// Rate of checkpoints (Hz), and the length of a tick (ns).
     checkpoints: Option<(f64, u64)>,
 }
 
 impl Schedule {
-    /// The rates of `outputs` for ticks of `tick_ns`.
+    /// The rates of `outputs` for ticks of `tick_ns` (ns).
     pub fn new(outputs: &Outputs, tick_ns: u64) -> Self {
-        let rhythm = |rate| Interval::new(rate, tick_ns);
+        let interval = |rate| Interval::new(rate, tick_ns);
         Self {
-            membrane: rhythm(outputs.membrane_rate),
-            grains: rhythm(outputs.grains_rate),
-            contacts: rhythm(outputs.contacts_rate),
-            statistics: rhythm(outputs.statistics_rate),
+            membrane: interval(outputs.membrane_rate),
+            grains: interval(outputs.grains_rate),
+            contacts: interval(outputs.contacts_rate),
+            statistics: interval(outputs.statistics_rate),
             checkpoints: outputs.bag.checkpoint_rate.map(|rate| (rate, tick_ns)),
         }
     }
 
-    /// What is due at `time_ns`, the end of a tick.
+    /// Parts due at `time_ns`, the end of a tick (ns).
     pub fn parts(&self, time_ns: u64) -> Parts {
         Parts {
             membrane: self.membrane.is_due(time_ns),
@@ -36,7 +36,7 @@ impl Schedule {
         }
     }
 
-    /// True if all that is needed to go on is to be kept at `time_ns`, besides the start.
+    /// True if a checkpoint is due at `time_ns`, in addition to the one at the start.
     pub fn checkpoint(&self, time_ns: u64) -> bool {
         self.checkpoints.is_some_and(|(rate, tick_ns)| due::is_due(rate, time_ns, tick_ns))
     }
@@ -61,7 +61,7 @@ impl Interval {
         Self { period_ns: period_ns.max(tick_ns), tick_ns }
     }
 
-    /// Due in the first tick and then in the first tick of each period.
+    /// Due in the first tick, then in the first tick of each period.
     fn is_due(self, time_ns: u64) -> bool {
         let Some(start_ns) = time_ns.checked_sub(self.tick_ns) else { return true };
         start_ns % self.period_ns < self.tick_ns
@@ -76,8 +76,8 @@ mod tests {
     #[test]
     fn rates_are_kept_on_average() {
         let count = |rate| {
-            let rhythm = Interval::new(rate, 1_000_000);
-            (1..=10_000_u64).filter(|tick| rhythm.is_due(tick * 1_000_000)).count()
+            let interval = Interval::new(rate, 1_000_000);
+            (1..=10_000_u64).filter(|tick| interval.is_due(tick * 1_000_000)).count()
         };
         assert_eq!(count(30.0), 300);
         assert_eq!(count(1000.0), 10_000);

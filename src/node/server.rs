@@ -1,5 +1,4 @@
-//! The simulator at its bench: questions are taken between two ticks, answers go out behind their
-//! tick.
+//! Serves requests between ticks. A response is sent after the messages of its tick.
 
 use std::{sync::Arc, time::Duration};
 
@@ -11,69 +10,70 @@ use crate::{
     snapshot::Snapshot,
 };
 
-/// Questions that are answered between two ticks while time goes on; more wait for the next.
+/// Largest number of requests served between two ticks; the others wait for the next.
 const PER_TICK: usize = 16;
-/// Packets that steps may run ahead of what is published.
+/// Largest number of packets that steps may be ahead of publication.
 const LEAD_MAX: u64 = 100;
-/// How long is waited for a publisher that has fallen behind.
+/// How long to wait for a publisher that has fallen behind.
 const TIMEOUT: Duration = Duration::from_secs(1);
 
-/// The simulator, and those who ask it.
+/// The simulator and its service server.
 pub struct SimulationServer {
     simulator: Simulator,
-    bench: Box<dyn ServiceServer>,
+    services: Box<dyn ServiceServer>,
     published: Arc<PublishedUpTo>,
     loader: Option<Loader>,
 }
 
 impl SimulationServer {
-    /// A simulator that is asked at `bench`; answers stay behind what `published` counts.
+    /// A simulator that serves the requests of `services`. Responses wait until `published` has
+    /// counted the packet of their tick.
     pub fn new(
         simulator: Simulator,
-        bench: Box<dyn ServiceServer>,
+        services: Box<dyn ServiceServer>,
         published: Arc<PublishedUpTo>,
     ) -> Self {
-        Self { simulator, bench, published, loader: None }
+        Self { simulator, services, published, loader: None }
     }
 
-    /// The same, which can load other scenes.
+    /// The same, able to load other scenes.
     pub fn with_loader(self, loader: Loader) -> Self {
         Self { loader: Some(loader), ..self }
     }
 
-    /// Answers what waits. `n_packets` is the number of the last packet given out.
+    /// Serves waiting requests. `n_packets` is the number of the last published packet.
     pub fn handle_requests(&mut self, world: &mut World<'_>, n_packets: u64) -> Changed {
-        for call in self.bench.take(PER_TICK) {
-            if let Err(fault) = self.simulator.handle_requests(&call, world) {
-                self.bench.report_malformed(fault);
+        for call in self.services.take(PER_TICK) {
+            if let Err(error) = self.simulator.handle_request(&call, world) {
+                self.services.report_malformed(error);
             }
         }
         self.load(world);
         let changed = self.simulator.take_changed();
-        // What tells of changes is the next packet.
+        // The next packet reports the changes.
         self.send(n_packets + u64::from(!changed.changes.is_empty()));
         changed
     }
 
-    /// Hands on what shall be loaded, and takes in what has been.
+    /// Passes scenes to the loader and takes the settled ones.
     fn load(&mut self, world: &mut World<'_>) {
-        let wanted = self.simulator.take_wanted();
+        let wanted = self.simulator.take_scene_to_settle();
         match (&mut self.loader, wanted) {
             (Some(loader), Some(scene)) => loader.begin(scene),
             (None, Some(_)) => {
                 let why = "this run cannot load other scenes".to_owned();
-                self.simulator.loaded(Err(why), world);
+                self.simulator.finish_loading(Err(why), world);
             }
             _ => {}
         }
         if let Some(settled) = self.loader.as_mut().and_then(Loader::poll) {
-            self.simulator.loaded(settled, world);
+            self.simulator.finish_loading(settled, world);
         }
     }
 
-    /// A tick has ended, and packet `n_packets` tells of it.
+    /// A tick has ended; packet `n_packets` holds its results.
     pub fn ticked(&mut self, seen: &Snapshot, n_packets: u64) {
-        self.simulator.ticked(seen);
+        self.simulator.finish_tick(seen);
         self.send(n_packets);
         if self.simulator.is_stepping() {
             self.published.wait_for(n_packets.saturating_sub(LEAD_MAX), TIMEOUT);
@@ -81,14 +81,14 @@ impl SimulationServer {
     }
 
     fn send(&mut self, n_packets: u64) {
-        for outgoing in self.simulator.take_out() {
-            self.bench.send(outgoing, n_packets);
+        for outgoing in self.simulator.take_outgoing() {
+            self.services.send(outgoing, n_packets);
         }
     }
 
-    /// Waits for a question, at most this long.
+    /// Waits for a request, at most this long.
     pub fn wait(&mut self, at_most: Duration) {
-        self.bench.wait(at_most);
+        self.services.wait(at_most);
     }
 
     /// The simulator.
@@ -96,22 +96,22 @@ impl SimulationServer {
         &self.simulator
     }
 
-    /// A first command has come.
+    /// A first command has arrived.
     pub fn first_command(&mut self) {
         self.simulator.first_command();
     }
 
-    /// Stops time where it is.
+    /// Pauses the simulation.
     pub fn pause(&mut self) {
         self.simulator.pause();
     }
 
-    /// True if a question has led to a command that sets a waiting run going.
+    /// True if a request has produced a command that starts a waiting run.
     pub fn has_commands(&self) -> bool {
         self.simulator.has_commands()
     }
 
-    /// Commands that questions have led to.
+    /// Takes the commands that requests have produced.
     pub fn take_commands(&mut self) -> Vec<Command> {
         self.simulator.take_commands()
     }

@@ -1,30 +1,30 @@
-//! A session at its first tick: with a settled bag from the cache, or settled now and kept.
+//! Creates the session of a run, with its settled state from the cache or computed and cached.
 
-use std::sync::Arc;
-
-use crate::host::cache::{Cache, Found};
-use crate::host::progress_bar::Progress;
+use crate::host::{
+    cache::{Cache, Lookup},
+    progress_bar::Progress,
+};
 use crate::{
     cosim::compile::{CompileError, Compiled},
     physics::health::Diverged,
     session::Session,
 };
 
-/// Why there is no session.
+/// Why a session could not be created.
 #[derive(Debug, thiserror::Error)]
 pub enum StartError {
-    /// The scene cannot be compiled.
+    /// The scene cannot be simulated.
     #[error(transparent)]
     Compile(#[from] CompileError),
-    /// The solver's threads could not be started.
-    #[error("the solver's threads cannot be started: {0}; ask for fewer")]
-    Threads(#[from] rayon::ThreadPoolBuildError),
-    /// The bag could not be filled.
-    #[error("filling the bag: {0}")]
+    /// The solver threads could not be started.
+    #[error(transparent)]
+    Threads(#[from] crate::base::parallel::ThreadPoolError),
+    /// Filling the membrane with grains diverged.
+    #[error("filling the membrane: {0}")]
     Settle(#[from] Diverged),
 }
 
-/// A session and where its grains came from.
+/// A session and where its settled state came from.
 pub struct Started {
     /// The session.
     pub session: Session,
@@ -32,25 +32,25 @@ pub struct Started {
     pub origin: &'static str,
 }
 
-/// Starts a session of a compiled scene.
+/// Creates the session of a compiled scene.
 ///
 /// # Errors
-/// If the bag cannot be filled. A cache that cannot be read or written costs time only.
+/// If filling the membrane fails. A cache that cannot be read or written is only reported.
 pub fn start(
     compiled: Compiled,
     cache: &Cache,
     progress: &Progress,
 ) -> Result<Started, StartError> {
     let key = compiled.start_digest();
-    let (scene, pool) = (compiled.scene.clone(), Arc::clone(&compiled.pool));
+    let (scene, pool) = (compiled.scene.clone(), compiled.pool.clone());
     let compiled = match cache.load(key) {
-        Found::Nothing => compiled,
-        Found::Damaged(path) => {
+        Lookup::Missing => compiled,
+        Lookup::Damaged(path) => {
             let path = path.display();
-            progress.say(&format!("start state {path}: the file is damaged; it is settled anew"));
+            progress.say(&format!("start state {path}: the file is damaged; it is computed again"));
             compiled
         }
-        Found::State(bytes) => match Session::from_start_state(compiled, &bytes) {
+        Lookup::State(bytes) => match Session::from_start_state(compiled, &bytes) {
             Ok(session) => return Ok(Started { session, origin: "cached" }),
             Err(error) => {
                 progress.say(&error);

@@ -1,11 +1,5 @@
-//! What a run leaves on standard output: a short table for people, or one line of JSON.
+//! Summary of a run, as rows of text and as JSON.
 
-use std::{
-    fmt,
-    io::{self, Write},
-};
-
-use comfy_table::Table;
 use serde_json::{Map, Value, json};
 
 use super::lift_monitor::LiftMetrics;
@@ -14,7 +8,7 @@ use crate::{
     io::{sink::SinkCounters, source::SourceCounters},
 };
 
-/// Everything worth saying about a run.
+/// Summary of a run.
 #[derive(Clone, Debug)]
 pub struct Summary {
     /// Name of the scene.
@@ -23,19 +17,19 @@ pub struct Summary {
     pub seed: u64,
     /// Why it ended.
     pub ending: String,
-    /// What came of it.
-    pub verdict: LiftMetrics,
+    /// Metrics of the lift.
+    pub metrics: LiftMetrics,
     /// Simulated over wall time.
     pub real_time_factor: f64,
-    /// Wall time of all ticks [s].
+    /// Wall time of all ticks (s).
     pub wall_time_s: f64,
-    /// Wall time from the start of the program to the first tick [s].
+    /// Wall time from the start of the program to the first tick (s).
     pub start_time_s: f64,
-    /// Where the settled grains came from.
+    /// Where the settled state came from: `cached` or `settled`.
     pub start_state: &'static str,
-    /// Simulated time [s].
+    /// Simulated time (s).
     pub sim_time_s: f64,
-    /// Length of a substep [s].
+    /// Length of a substep (s).
     pub substep_s: f64,
     /// Number of grains.
     pub n_grains: usize,
@@ -45,25 +39,16 @@ pub struct Summary {
     pub state_digest: u64,
     /// Folder of the recording.
     pub bag: Option<String>,
-    /// What became of the packets, output by output.
+    /// Counters of the outputs.
     pub sinks: Vec<SinkCounters>,
-    /// What became of the messages from outside, source by source.
+    /// Counters of the external sources, by name.
     pub sources: Vec<(&'static str, SourceCounters)>,
-    /// Commands by their fate.
+    /// Commands by outcome.
     pub commands: CommandCounts,
 }
 
 impl Summary {
-    /// Writes the table, or the line of JSON, to standard output.
-    ///
-    /// # Errors
-    /// If standard output cannot be written.
-    pub fn print(&self, as_json: bool) -> io::Result<()> {
-        let mut out = io::stdout().lock();
-        if as_json { writeln!(out, "{}", self.to_json()) } else { writeln!(out, "{self}") }
-    }
-
-    /// The summary for machines. Numbers that are not finite become null.
+    /// The summary as JSON. Numbers that are not finite become null.
     pub fn to_json(&self) -> Value {
         let of_sinks = |count: fn(&SinkCounters) -> u64| -> Map<String, Value> {
             self.sinks.iter().map(|it| (it.name.to_owned(), count(it).into())).collect()
@@ -75,11 +60,11 @@ impl Summary {
             "scene": self.scene,
             "seed": self.seed,
             "ending": self.ending,
-            "lift_height_m": self.verdict.lift_height,
-            "held": self.verdict.is_held(),
-            "hold_time_s": self.verdict.hold_time,
-            "peak_push_force_n": self.verdict.peak_push_force,
-            "peak_pull_force_n": self.verdict.peak_pull_force,
+            "lift_height_m": self.metrics.lift_height,
+            "held": self.metrics.is_held(),
+            "hold_time_s": self.metrics.hold_time,
+            "peak_push_force_n": self.metrics.peak_push_force,
+            "peak_pull_force_n": self.metrics.peak_pull_force,
             "real_time_factor": self.real_time_factor,
             "wall_time_s": self.wall_time_s,
             "start_time_s": self.start_time_s,
@@ -101,29 +86,30 @@ impl Summary {
                 "refused": self.commands.n_refused,
             },
             "validity": {
-                "is_within_limits": self.verdict.is_valid(),
-                "overlap_ratio_max": self.verdict.overlap_ratio_max,
-                "overlap_ratio_limit": self.verdict.overlap_limit(),
-                "membrane_overlap_ratio_max": self.verdict.membrane_overlap_ratio_max,
+                "is_within_limits": self.metrics.is_valid(),
+                "overlap_ratio_max": self.metrics.overlap_ratio_max,
+                "overlap_ratio_limit": self.metrics.overlap_limit(),
+                "membrane_overlap_ratio_max": self.metrics.membrane_overlap_ratio_max,
             },
         })
     }
 
     fn outcome(&self) -> &'static str {
-        match (self.verdict.hold_time == 0.0, self.verdict.is_held()) {
+        match (self.metrics.hold_time == 0.0, self.metrics.is_held()) {
             (true, _) => "never held up",
             (false, true) => "held",
             (false, false) => "dropped or not lifted",
         }
     }
 
-    fn rows(&self) -> Vec<[String; 2]> {
-        let verdict = &self.verdict;
+    /// Name and value of the most important results, as text.
+    pub fn rows(&self) -> Vec<[String; 2]> {
+        let metrics = &self.metrics;
         let row = |name: &str, value: String| [name.to_owned(), value];
         let mut rows = vec![
             row("ended", self.ending.clone()),
-            row("peak push force", format!("{:.2} N", verdict.peak_push_force)),
-            row("lift height", format!("{:.1} mm", verdict.lift_height * 1e3)),
+            row("peak push force", format!("{:.2} N", metrics.peak_push_force)),
+            row("lift height", format!("{:.1} mm", metrics.lift_height * 1e3)),
             row("object", self.outcome().to_owned()),
             row("simulated", format!("{:.3} s", self.sim_time_s)),
             row("real-time factor", format!("{:.3}", self.real_time_factor)),
@@ -131,8 +117,8 @@ impl Summary {
                 "grain overlap",
                 format!(
                     "{:.1} % of the diameter, contact law good to {:.0} %",
-                    verdict.overlap_ratio_max * 1e2,
-                    verdict.overlap_limit() * 1e2
+                    metrics.overlap_ratio_max * 1e2,
+                    metrics.overlap_limit() * 1e2
                 ),
             ),
             row("state digest", format!("{:016x}", self.state_digest)),
@@ -144,15 +130,5 @@ impl Summary {
         }
         rows.push(row("recorded in", self.bag.clone().unwrap_or_else(|| "none".to_owned())));
         rows
-    }
-}
-
-impl fmt::Display for Summary {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let mut table = Table::new();
-        table.load_style(comfy_table::presets::UTF8_FULL_CONDENSED);
-        table.set_header([self.scene.as_str(), ""]);
-        table.add_rows(self.rows());
-        write!(f, "{table}")
     }
 }

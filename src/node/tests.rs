@@ -1,4 +1,4 @@
-//! The run loop, tried on a plant that counts and on sinks that remember.
+//! The run loop, on a plant that counts ticks and sinks that remember packets.
 
 use std::{
     error::Error,
@@ -19,7 +19,7 @@ use crate::{
         source::{Source, SourceCounters},
     },
     scene,
-    simulator::Subject,
+    simulator::WorldAccess,
     snapshot::{BodySnapshot, ChamberSnapshot, JammingSnapshot, ObjectSnapshot, view::View},
 };
 
@@ -39,8 +39,8 @@ struct Counter {
 #[error("broken")]
 struct Broken;
 
-impl Subject for Counter {
-    fn look(&self) -> Snapshot {
+impl WorldAccess for Counter {
+    fn full_snapshot(&self) -> Snapshot {
         snapshot(self.n_ticks)
     }
 
@@ -50,7 +50,7 @@ impl Subject for Counter {
 }
 
 impl Plant for Counter {
-    type Fault = Broken;
+    type Error = Broken;
 
     fn tick(&mut self, commands: &[Command]) -> Result<(), Broken> {
         if self.breaks_at == Some(self.n_ticks) {
@@ -111,7 +111,7 @@ pub(super) fn snapshot(tick: u64) -> Snapshot {
     }
 }
 
-/// Says one thing when it has been asked `after` times whether it was heard.
+/// Sends one command after `after` calls of `has_heard`.
 struct Late {
     after: Mutex<u32>,
     command: Option<Command>,
@@ -126,7 +126,7 @@ impl Source for Late {
         self.command.take().into_iter().collect()
     }
 
-    fn has_heard(&self) -> bool {
+    fn has_received(&self) -> bool {
         let mut after = self.after.lock().unwrap();
         *after = after.saturating_sub(1);
         *after == 0
@@ -159,28 +159,19 @@ impl Sink for Memory {
     }
 }
 
-/// A crew for commands over topics that ends at tick 100.
-fn context(outside: Vec<Box<dyn Source>>) -> RunContext {
+/// A context with commands over topics that ends at tick 100.
+fn context(external: Vec<Box<dyn Source>>) -> RunContext {
     let text = "{ name: x, controller: topics, object: { shape: { sphere: { radius: 1 mm } }, \
                 position: [0 m, 0 m, 1 mm] } }";
     let scene = scene::parse(text, "x", std::path::Path::new(""), &[]).unwrap();
-    RunContext {
-        front: None,
-        checkpoints: Vec::new(),
+    let inputs = Inputs {
+        command_sources: CommandSources::new(&scene, external),
         gate: Gate::new(scene::Lockstep::OFF),
-        n_packets: 0,
-        has_missed: false,
-        command_sources: CommandSources::new(&scene, outside),
-        outputs: OutputSinks::default(),
-        schedule: Schedule::new(&scene.outputs, TICK_NS),
-        lift_monitor: LiftMonitor::default(),
-        progress: Progress::new(true),
-        shutdown: Shutdown::default(),
-        tick_ns: TICK_NS,
-        end_ns: Some(100 * TICK_NS),
-        is_real_time: false,
-        about: RunStatistics::default(),
-    }
+        server: None,
+    };
+    let (progress, shutdown) = (Progress::new(true), Shutdown::default());
+    let supervision = Supervision { progress, shutdown, end_ns: Some(100 * TICK_NS) };
+    RunContext::new(Arc::new(scene), inputs, OutputSinks::default(), supervision)
 }
 
 fn late() -> Vec<Box<dyn Source>> {
@@ -189,7 +180,7 @@ fn late() -> Vec<Box<dyn Source>> {
 }
 
 #[test]
-fn a_run_waits_for_its_first_command_and_loses_no_tick() {
+fn run_waits_for_first_command_and_loses_no_tick() {
     let mut context = context(late());
     let ticks = Arc::new(Mutex::new(Vec::new()));
     let memory = Memory { ticks: Arc::clone(&ticks), fails_at: None };
@@ -200,15 +191,15 @@ fn a_run_waits_for_its_first_command_and_loses_no_tick() {
     assert_eq!(report.last.snapshot.tick.0, 100);
     assert_eq!(plant.commands, [(1, Command::Vacuum { gauge_pa: -5.0 })], "before the first tick");
     let closed = context.outputs.close();
-    assert!(closed.faults.is_empty(), "{:?}", closed.faults);
+    assert!(closed.errors.is_empty(), "{:?}", closed.errors);
     let mut seen = ticks.lock().unwrap().clone();
     seen.dedup();
     assert_eq!(seen, (0..=100).collect::<Vec<_>>(), "the start while it waits, then every tick");
 }
 
-/// Oracle: counting. The time that a run was given is that of its ticks together.
+/// Oracle: counting. The duration of a run counts its ticks, whatever resets simulated time.
 #[test]
-fn a_run_is_as_long_as_it_was_told_whatever_becomes_of_time() {
+fn run_lasts_as_long_as_requested_when_time_is_reset() {
     let mut context = context(late());
     let mut plant = Counter { restarts_at: Some(60), ..Counter::default() };
     let report = run(&mut plant, &mut context);
@@ -217,24 +208,24 @@ fn a_run_is_as_long_as_it_was_told_whatever_becomes_of_time() {
 }
 
 #[test]
-fn a_run_ends_where_the_plant_cannot_go_on() {
+fn run_ends_when_the_plant_fails() {
     let mut context = context(late());
     let mut plant = Counter { breaks_at: Some(7), ..Counter::default() };
     let report = run(&mut plant, &mut context);
     assert!(report.ending.is_err());
-    assert_eq!(report.last.snapshot.tick.0, 7, "the last whole tick is reported");
+    assert_eq!(report.last.snapshot.tick.0, 7, "the last complete tick is reported");
 }
 
 #[test]
-fn a_request_to_end_is_heard_even_while_waiting() {
+fn shutdown_is_noticed_while_waiting() {
     let mut context = context(Vec::new());
-    context.shutdown.request();
+    context.supervision.shutdown.request();
     let report = run(&mut Counter::default(), &mut context);
     assert_eq!(report.ending.unwrap(), Ending::Interrupted);
 }
 
 #[test]
-fn a_failed_recording_ends_the_run_only_if_the_scene_says_so() {
+fn failed_recording_ends_the_run_only_if_the_scene_says_so() {
     for (stops_with_bag, expected) in [(true, Ending::RecordingFailed), (false, Ending::TimeUp)] {
         let mut context = context(late());
         let memory = Memory { ticks: Arc::default(), fails_at: Some(10) };
@@ -248,7 +239,7 @@ fn a_failed_recording_ends_the_run_only_if_the_scene_says_so() {
 
 /// Oracle: heights by hand. The object follows the flange up by 100 mm, then sags by 5 or 20 mm.
 #[test]
-fn an_object_is_held_if_it_stays_above_nine_tenths() {
+fn object_is_held_above_nine_tenths() {
     for (sag, is_held) in [(0.005, true), (0.02, false)] {
         let mut lift_monitor = LiftMonitor::default();
         for tick in 0..1000 {
@@ -262,14 +253,14 @@ fn an_object_is_held_if_it_stays_above_nine_tenths() {
             seen.objects[0].body.pose.translation.vector.z = 0.035 + up - sagged * up / 0.1;
             seen.chamber.gauge_setpoint = -90e3;
             seen.contact_wrench.force.z = if tick < 100 { 7.0 } else { -2.5 };
-            lift_monitor.look(&seen, 1e-3);
+            lift_monitor.update(&seen, 1e-3);
         }
-        let verdict = lift_monitor.verdict();
-        assert_eq!(verdict.is_held(), is_held, "{verdict:?}");
-        assert!((verdict.lift_height - 0.1).abs() < 1e-12, "{verdict:?}");
+        let metrics = lift_monitor.metrics();
+        assert_eq!(metrics.is_held(), is_held, "{metrics:?}");
+        assert!((metrics.lift_height - 0.1).abs() < 1e-12, "{metrics:?}");
         // 900 ticks up, of which the first 100 ms do not count as still.
-        assert!((verdict.hold_time - 0.8).abs() < 2e-3, "{verdict:?}");
-        assert!((verdict.peak_push_force - 7.0).abs() < 1e-12, "{verdict:?}");
-        assert!((verdict.peak_pull_force - 2.5).abs() < 1e-12, "{verdict:?}");
+        assert!((metrics.hold_time - 0.8).abs() < 2e-3, "{metrics:?}");
+        assert!((metrics.peak_push_force - 7.0).abs() < 1e-12, "{metrics:?}");
+        assert!((metrics.peak_pull_force - 2.5).abs() < 1e-12, "{metrics:?}");
     }
 }

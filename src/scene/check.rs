@@ -13,7 +13,7 @@ use super::{
 };
 use crate::base::{Pose, Real};
 
-/// Penetration at the start that round-off in a scene file may cause [m].
+/// Penetration at the start that round-off in a scene file may cause (m).
 const TOUCHING: Real = 1e-6;
 /// Loosest packing that grains fall into by themselves.
 const SOLID_FRACTION_LOOSE: Real = 0.55;

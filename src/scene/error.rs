@@ -19,7 +19,7 @@ pub enum SceneError {
     #[error(transparent)]
     Syntax(#[from] SyntaxError),
     /// An override is not `key=value`.
-    #[error("--set {text}: not of the form key=value; write for example --set object.friction=0")]
+    #[error("override `{text}`: not of the form key=value; write for example `object.friction=0`")]
     NotAnOverride {
         /// As given.
         text: String,

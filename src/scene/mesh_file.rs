@@ -7,7 +7,7 @@ use crate::base::{Real, Vec3};
 /// A closed surface.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Surface {
-    /// Vertices [m].
+    /// Vertices (m).
     pub vertices: Vec<Vec3>,
     /// Vertex indices of each triangle, counter-clockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
@@ -25,7 +25,12 @@ pub(super) enum MeshError {
     /// Not a format we read.
     #[error("is neither .stl nor .obj")]
     UnknownFormat,
+    /// Built without the feature that reads meshes.
+    #[cfg(not(feature = "meshes"))]
+    #[error("needs a jamgrip that was built with feature `meshes`")]
+    NoFeature,
     /// The reader gave up.
+    #[cfg(feature = "meshes")]
     #[error("cannot be read as a mesh: {reason}")]
     Malformed {
         /// What the reader said.
@@ -85,6 +90,18 @@ fn open(file: &Path) -> Result<BufReader<File>, MeshError> {
         .map_err(|error| MeshError::Unreadable { reason: error.to_string() })
 }
 
+#[cfg(not(feature = "meshes"))]
+fn read_stl(file: &Path) -> Result<Corners, MeshError> {
+    open(file)?;
+    Err(MeshError::NoFeature)
+}
+
+#[cfg(not(feature = "meshes"))]
+fn read_obj(file: &Path) -> Result<Corners, MeshError> {
+    read_stl(file)
+}
+
+#[cfg(feature = "meshes")]
 fn read_stl(file: &Path) -> Result<Corners, MeshError> {
     let mut reader = open(file)?;
     let mesh = stl_io::read_stl(&mut reader)
@@ -96,6 +113,7 @@ fn read_stl(file: &Path) -> Result<Corners, MeshError> {
     Ok(mesh.faces.iter().map(|face| face.vertices.map(point)).collect())
 }
 
+#[cfg(feature = "meshes")]
 fn read_obj(file: &Path) -> Result<Corners, MeshError> {
     let options = tobj::LoadOptions { triangulate: true, ..Default::default() };
     // Materials are colours; a surface has none.
@@ -147,7 +165,7 @@ fn unmatched_edges(triangles: &[[u32; 3]]) -> usize {
     balance.values().filter(|it| **it != (1, 1)).count()
 }
 
-/// Enclosed volume [m³]; negative if the triangles face inward.
+/// Enclosed volume (m³); negative if the triangles face inward.
 fn volume(surface: &Surface) -> Real {
     let p = |index: u32| surface.vertices[index as usize];
     let six = |t: &[u32; 3]| p(t[0]).dot(&p(t[1]).cross(&p(t[2])));

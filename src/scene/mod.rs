@@ -4,6 +4,7 @@
 //! `text` is the way from YAML to here: `yaml` makes a tree with places, `schema` walks its keys
 //! with their units and limits, `check` joins them; all faults come at once. `print` goes back.
 
+pub mod builder; // a base scene with changed keys
 pub mod error; // what can be wrong with a scene
 pub mod json; // YAML to JSON
 pub mod print; // scene to text
@@ -15,16 +16,19 @@ pub mod text; // text to scene
 
 mod check;
 mod extent;
+pub(crate) mod keys;
 mod mesh_file;
 mod read;
 pub(crate) mod schema;
 mod schema_outputs;
 mod tree;
+#[cfg(feature = "meshes")]
 mod urdf;
 pub(crate) mod unset;
 pub(crate) mod visit;
 mod yaml;
 
+pub use builder::SceneBuilder;
 pub use error::SceneError;
 pub use print::to_yaml;
 pub use text::{load, parse};
@@ -42,7 +46,7 @@ pub struct Scene {
     pub seed: u64,
     /// Ticks and substeps.
     pub time: Time,
-    /// Gravity [m/s²].
+    /// Gravity (m/s²).
     pub gravity: Vec3,
     /// The grains.
     pub grains: Grains,
@@ -65,9 +69,9 @@ pub struct Scene {
 /// How time is cut.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Time {
-    /// Length of a tick [ns].
+    /// Length of a tick (ns).
     pub tick_ns: u64,
-    /// Substep set by hand [s]; `None` derives it from material and mesh.
+    /// Substep set by hand (s); `None` derives it from material and mesh.
     pub substep: Option<Real>,
     /// Fraction of the critical step that a derived substep takes.
     pub safety: Real,
@@ -78,11 +82,11 @@ pub struct Time {
 /// Surface and bulk of a material in the contact law.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Material {
-    /// Young's modulus [Pa].
+    /// Young's modulus (Pa).
     pub youngs_modulus: Real,
     /// Poisson's ratio.
     pub poisson_ratio: Real,
-    /// Density [kg/m³].
+    /// Density (kg/m³).
     pub density: Real,
 }
 
@@ -91,15 +95,15 @@ pub struct Material {
 pub struct Grains {
     /// Number of grains.
     pub count: usize,
-    /// Smallest radius [m].
+    /// Smallest radius (m).
     pub radius_min: Real,
-    /// Largest radius [m].
+    /// Largest radius (m).
     pub radius_max: Real,
     /// Material of the grains.
     pub material: Material,
     /// Coulomb friction between grains, and of grains with the flange's plate.
     pub friction: Real,
-    /// Dissipation time A of the viscoelastic normal force [s].
+    /// Dissipation time A of the viscoelastic normal force (s).
     pub dissipation_time: Real,
     /// Damping of the tangential spring γ_t.
     pub tangential_damping: Real,
@@ -108,11 +112,11 @@ pub struct Grains {
 /// The bag: the lower half of an icosphere, clamped to the flange at its rim.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Membrane {
-    /// Radius of the half sphere [m].
+    /// Radius of the half sphere (m).
     pub radius: Real,
     /// Subdivision frequency of the icosphere, even; 16 gives 1321 vertices.
     pub frequency: usize,
-    /// Thickness [m].
+    /// Thickness (m).
     pub thickness: Real,
     /// Material of the sheet and of its contacts.
     pub material: Material,
@@ -120,15 +124,15 @@ pub struct Membrane {
     pub friction: Real,
     /// Damping ratio of the springs γ_sp.
     pub spring_damping: Real,
-    /// Elastic bending constant of the hinges k_el [N m].
+    /// Elastic bending constant of the hinges k_el (N m).
     pub bending_stiffness: Real,
-    /// Dissipative bending constant of the hinges k_diss [N s].
+    /// Dissipative bending constant of the hinges k_diss (N s).
     pub bending_damping: Real,
     /// Share by which the springs' rest lengths are shortened after filling.
     pub rest_length_shrink: Real,
     /// Radius the bag is held at while it is filled, over `radius`.
     pub fill_stretch: Real,
-    /// Dissipation time A of the contacts [s].
+    /// Dissipation time A of the contacts (s).
     pub dissipation_time: Real,
     /// Damping of the tangential spring γ_t of the contacts.
     pub tangential_damping: Real,
@@ -137,15 +141,15 @@ pub struct Membrane {
 /// The air and its pump.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Chamber {
-    /// Ambient pressure, absolute [Pa].
+    /// Ambient pressure, absolute (Pa).
     pub ambient: Real,
     /// Strongest vacuum [Pa gauge], negative.
     pub gauge_min: Real,
     /// Strongest overpressure [Pa gauge], at least 0.
     pub gauge_max: Real,
-    /// Time constant of the first-order lag [s].
+    /// Time constant of the first-order lag (s).
     pub lag: Real,
-    /// Largest rate of the pressure [Pa/s].
+    /// Largest rate of the pressure (Pa/s).
     pub rate_max: Real,
 }
 
@@ -154,20 +158,20 @@ pub struct Chamber {
 pub struct Flange {
     /// Pose at the start.
     pub pose: Pose,
-    /// Largest linear speed [m/s].
+    /// Largest linear speed (m/s).
     pub speed_max: Real,
-    /// Largest linear acceleration [m/s²].
+    /// Largest linear acceleration (m/s²).
     pub acceleration_max: Real,
-    /// Largest angular speed [rad/s].
+    /// Largest angular speed (rad/s).
     pub angular_speed_max: Real,
-    /// Largest angular acceleration [rad/s²].
+    /// Largest angular acceleration (rad/s²).
     pub angular_acceleration_max: Real,
 }
 
 /// A horizontal table: the upper face of a rigid slab.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Table {
-    /// Height of the upper face [m].
+    /// Height of the upper face (m).
     pub height: Real,
     /// Coulomb friction with objects.
     pub friction: Real,
@@ -186,7 +190,7 @@ pub struct Object {
     pub friction: Real,
     /// Pose of the shape's origin at the start.
     pub pose: Pose,
-    /// Time without pose commands after which a driven object is given back to dynamics [s].
+    /// Time without pose commands after which a driven object is given back to dynamics (s).
     pub drive_timeout: Real,
 }
 
@@ -195,40 +199,40 @@ pub struct Object {
 pub enum Shape {
     /// A sphere.
     Sphere {
-        /// Radius [m].
+        /// Radius (m).
         radius: Real,
     },
     /// A box.
     Box {
-        /// Edge lengths [m].
+        /// Edge lengths (m).
         size: Vec3,
     },
     /// A cylinder.
     Cylinder {
-        /// Radius [m].
+        /// Radius (m).
         radius: Real,
-        /// Height [m].
+        /// Height (m).
         height: Real,
     },
     /// A cylinder with half spheres at its ends.
     Capsule {
-        /// Radius [m].
+        /// Radius (m).
         radius: Real,
-        /// Total height [m].
+        /// Total height (m).
         height: Real,
     },
     /// The convex hull of points.
     ConvexHull {
-        /// Points [m].
+        /// Points (m).
         points: Vec<Vec3>,
     },
     /// A closed triangle mesh, outward oriented.
     Mesh {
         /// The file it was read from.
         file: PathBuf,
-        /// Length of one unit of the file [m].
+        /// Length of one unit of the file (m).
         unit: Real,
-        /// Vertices [m].
+        /// Vertices (m).
         vertices: Vec<Vec3>,
         /// Vertex indices of each triangle.
         triangles: Vec<[u32; 3]>,
@@ -242,7 +246,7 @@ pub enum Controller {
     Builtin(PickAndLift),
     /// Commands come from ROS 2 topics; the run waits at its start for a first one.
     Topics {
-        /// Simulated time after which the run ends; `None` runs until it is stopped [s].
+        /// Simulated time after which the run ends; `None` runs until it is stopped (s).
         duration: Option<Real>,
         /// Whether ticks wait for commands.
         lockstep: Lockstep,
@@ -258,7 +262,7 @@ pub struct Lockstep {
     pub follows_clock: bool,
     /// How many ticks such a command lets pass.
     pub steps_per_command: u64,
-    /// Wall time after which a command is missed; `None` waits for ever [s].
+    /// Wall time after which a command is missed; `None` waits for ever (s).
     pub timeout: Option<Real>,
     /// What is done then.
     pub on_timeout: OnTimeout,
@@ -293,48 +297,48 @@ pub struct PickAndLift {
     pub object: String,
     /// Height of the flange over the table while it travels [m]: where it starts.
     pub approach_speed: Real,
-    /// Contact force that counts as touch [N].
+    /// Contact force that counts as touch (N).
     pub touch_force: Real,
-    /// Speed while pushing in [m/s].
+    /// Speed while pushing in (m/s).
     pub push_speed: Real,
-    /// How far the flange goes on after touch [m].
+    /// How far the flange goes on after touch (m).
     pub push_depth: Real,
-    /// Push force at which it stops earlier [N].
+    /// Push force at which it stops earlier (N).
     pub push_force_max: Real,
-    /// Time to relax after pushing [s].
+    /// Time to relax after pushing (s).
     pub settle_time: Real,
-    /// Gauge pressure while gripping [Pa].
+    /// Gauge pressure while gripping (Pa).
     pub grip_pressure: Real,
     /// Share of the grip pressure that must be reached before lifting.
     pub grip_pressure_reached: Real,
-    /// Lifting speed [m/s].
+    /// Lifting speed (m/s).
     pub lift_speed: Real,
-    /// Lifting height [m].
+    /// Lifting height (m).
     pub lift_height: Real,
-    /// Time to hold the object up [s].
+    /// Time to hold the object up (s).
     pub hold_time: Real,
     /// Blow-off pressure for letting go [Pa gauge].
     pub vent_pressure: Real,
-    /// Time to vent [s].
+    /// Time to vent (s).
     pub vent_time: Real,
-    /// How far the flange retreats at the end [m].
+    /// How far the flange retreats at the end (m).
     pub retreat_height: Real,
 }
 
 /// What leaves the process. Rates are in simulated time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outputs {
-    /// Wrenches, object and flange state, tf, joint states [Hz].
+    /// Wrenches, object and flange state, tf, joint states (Hz).
     pub state_rate: Real,
-    /// Pressure and vacuum state [Hz].
+    /// Pressure and vacuum state (Hz).
     pub pressure_rate: Real,
-    /// Membrane vertices [Hz].
+    /// Membrane vertices (Hz).
     pub membrane_rate: Real,
-    /// Grains [Hz].
+    /// Grains (Hz).
     pub grains_rate: Real,
-    /// Contacts and their markers [Hz].
+    /// Contacts and their markers (Hz).
     pub contacts_rate: Real,
-    /// Statistics [Hz].
+    /// Statistics (Hz).
     pub statistics_rate: Real,
     /// Most grains in one ROS 2 message; larger packings are thinned out there.
     pub grains_count_max: usize,
@@ -394,14 +398,14 @@ pub struct Bag {
     pub on_full: OnFull,
     /// What to do when the disk is full or the folder cannot be written.
     pub on_error: OnError,
-    /// How often all that is needed to go on is kept, in simulated time [Hz]; `None` keeps only
+    /// How often all that is needed to go on is kept, in simulated time (Hz); `None` keeps only
     /// the start.
     pub checkpoint_rate: Option<Real>,
     /// How messages are compressed.
     pub compression: BagCompression,
     /// A file that has become as long as this is followed by another [MiB].
     pub split_size: Option<u64>,
-    /// A file that has become as old as this is followed by another, in simulated time [s].
+    /// A file that has become as old as this is followed by another, in simulated time (s).
     pub split_duration: Option<Real>,
 }
 

@@ -46,15 +46,15 @@ const fn scaled(name: &'static str, factor: Real) -> Unit {
 
 const DEGREE: Real = PI / 180.0;
 
-/// Lengths [m].
+/// Lengths (m).
 pub static LENGTH: Dimension = Dimension {
     name: "length",
     units: &[ten("m", 0), only_read("cm", -2), ten("mm", -3), ten("um", -6)],
 };
-/// Times [s].
+/// Times (s).
 pub static TIME: Dimension =
     Dimension { name: "time", units: &[ten("s", 0), ten("ms", -3), ten("us", -6), ten("ns", -9)] };
-/// Pressures and moduli [Pa].
+/// Pressures and moduli (Pa).
 pub static PRESSURE: Dimension = Dimension {
     name: "pressure",
     units: &[
@@ -66,41 +66,41 @@ pub static PRESSURE: Dimension = Dimension {
         only_read("bar", 5),
     ],
 };
-/// Rates of pressure [Pa/s].
+/// Rates of pressure (Pa/s).
 pub static PRESSURE_RATE: Dimension = Dimension {
     name: "pressure rate",
     units: &[ten("Pa/s", 0), ten("kPa/s", 3), ten("MPa/s", 6), only_read("bar/s", 5)],
 };
-/// Mass densities [kg/m³].
+/// Mass densities (kg/m³).
 pub static DENSITY: Dimension =
     Dimension { name: "density", units: &[ten("kg/m^3", 0), only_read("g/cm^3", 3)] };
-/// Speeds [m/s].
+/// Speeds (m/s).
 pub static SPEED: Dimension =
     Dimension { name: "speed", units: &[ten("m/s", 0), only_read("cm/s", -2), ten("mm/s", -3)] };
-/// Accelerations [m/s²].
+/// Accelerations (m/s²).
 pub static ACCELERATION: Dimension =
     Dimension { name: "acceleration", units: &[ten("m/s^2", 0), ten("mm/s^2", -3)] };
-/// Angles [rad].
+/// Angles (rad).
 pub static ANGLE: Dimension =
     Dimension { name: "angle", units: &[ten("rad", 0), scaled("deg", DEGREE)] };
-/// Angular speeds [rad/s].
+/// Angular speeds (rad/s).
 pub static ANGULAR_SPEED: Dimension =
     Dimension { name: "angular speed", units: &[ten("rad/s", 0), scaled("deg/s", DEGREE)] };
-/// Angular accelerations [rad/s²].
+/// Angular accelerations (rad/s²).
 pub static ANGULAR_ACCELERATION: Dimension = Dimension {
     name: "angular acceleration",
     units: &[ten("rad/s^2", 0), scaled("deg/s^2", DEGREE)],
 };
-/// Forces [N].
+/// Forces (N).
 pub static FORCE: Dimension =
     Dimension { name: "force", units: &[ten("N", 0), ten("mN", -3), ten("kN", 3)] };
-/// Bending stiffnesses of hinges [N m].
+/// Bending stiffnesses of hinges (N m).
 pub static TORQUE: Dimension =
     Dimension { name: "torque", units: &[ten("N m", 0), ten("mN m", -3), ten("uN m", -6)] };
-/// Bending dampings of hinges [N s].
+/// Bending dampings of hinges (N s).
 pub static IMPULSE: Dimension =
     Dimension { name: "impulse", units: &[ten("N s", 0), ten("mN s", -3), ten("uN s", -6)] };
-/// Frequencies [Hz].
+/// Frequencies (Hz).
 pub static FREQUENCY: Dimension =
     Dimension { name: "frequency", units: &[ten("Hz", 0), ten("kHz", 3)] };
 

@@ -8,7 +8,7 @@ use std::{
 use super::{
     Object, Scene,
     error::{Problem, SceneError},
-    text, urdf,
+    text,
 };
 
 /// What objects may be written in, as the ends of their files' names.
@@ -46,18 +46,29 @@ pub fn object(uri: &str, string: &str, folder: &Path) -> Result<Object, Resource
         let (path, text) = open(uri, folder)?;
         let inside = path.parent().unwrap_or(folder).to_owned();
         return match path.extension().and_then(|it| it.to_str()) {
-            Some("urdf") => urdf::read(&text, &inside, &blank()?),
+            Some("urdf") => urdf(&text, &inside),
             Some("yaml" | "yml") => of_scene(&text, uri, &inside),
             _ => Err(ResourceFault::UnsupportedFormat(uri.to_owned())),
         };
     }
     if string.contains("<robot") {
-        urdf::read(string, folder, &blank()?)
+        urdf(string, folder)
     } else if string.trim_start().starts_with('<') {
         Err(ResourceFault::UnsupportedFormat("a text that begins with `<`".to_owned()))
     } else {
         of_scene(string, "resource_string", folder)
     }
+}
+
+#[cfg(feature = "meshes")]
+fn urdf(text: &str, folder: &Path) -> Result<Object, ResourceFault> {
+    super::urdf::read(text, folder, &blank()?)
+}
+
+#[cfg(not(feature = "meshes"))]
+fn urdf(_: &str, _: &Path) -> Result<Object, ResourceFault> {
+    let why = "URDF needs a jamgrip that was built with feature `meshes`";
+    Err(ResourceFault::Unsupported(why.to_owned()))
 }
 
 /// The scene in a file, or in a text if no file is named. With `ignores_assets` an object whose mesh
@@ -170,6 +181,7 @@ fn of_scene(text: &str, source: &str, folder: &Path) -> Result<Object, ResourceF
 }
 
 /// An object with all defaults.
+#[cfg(feature = "meshes")]
 fn blank() -> Result<Object, ResourceFault> {
     let text = "name: blank\nobject: { shape: { sphere: { radius: 10 mm } } }\n";
     of_scene(text, "the defaults", Path::new(""))

@@ -15,7 +15,7 @@ use super::{
 };
 use crate::base::{Pose, Quat, Real, Vec3};
 
-/// Numbers below which a box or a thickness is surely a slip of the unit [m].
+/// Numbers below which a box or a thickness is surely a slip of the unit (m).
 const LENGTH_MAX: Real = 10.0;
 /// Density scaling beyond which nothing is quasi-static any more.
 const DENSITY_SCALING_MAX: Real = 1000.0;

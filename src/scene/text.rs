@@ -5,12 +5,12 @@ use std::path::Path;
 use super::{
     Scene, Shape, check,
     error::{Fault, Problem, SceneError},
+    keys::Section,
     mesh_file,
     read::Reader,
     schema,
     tree::{Entry, Node, Place, Value},
-    unset,
-    visit::Visitor,
+    unset::{self, Unset},
     yaml,
 };
 
@@ -77,20 +77,18 @@ pub(crate) struct Layers<'a> {
     pub(crate) on_defaults: bool,
 }
 
-/// The keys of a scene of another kind: how they are walked, and what joins them.
-pub(crate) trait Keys {
-    /// Every key with its unit and its limits.
-    fn walk(&mut self, walk: &mut impl Visitor);
-
+/// A scene of another kind: its keys, and the rules that join them.
+pub(crate) trait Keys: Section + Unset {
     /// Rules that join several keys: key, what is wrong with its value, and the remedy.
     fn unfit(&self) -> Vec<(&'static str, String, &'static str)>;
 }
 
-/// Fills `keys` from layers of text.
+/// Reads a scene of another kind from layers of text.
 ///
 /// # Errors
 /// As for `load`.
-pub(crate) fn fill<K: Keys>(layers: &Layers<'_>, mut keys: K) -> Result<K, SceneError> {
+pub(crate) fn read<K: Keys>(layers: &Layers<'_>) -> Result<K, SceneError> {
+    let mut keys = K::unset();
     let defaults = yaml::parse(DEFAULTS, DEFAULTS_FILE)?;
     let mut written = yaml::parse(layers.text, layers.source)?;
     let (sections, chosen) = layers.variants;
@@ -132,7 +130,7 @@ fn one_override(text: &str) -> Result<Node, SceneError> {
     if path.is_empty() || path.split('.').any(str::is_empty) {
         return Err(not_an_override());
     }
-    let source = format!("--set {text}");
+    let source = format!("override {text}");
     let mut node = yaml::parse(value, &source)?;
     if value.trim().is_empty() {
         node.value = Value::Null;
@@ -223,7 +221,7 @@ mod tests {
         let unknown = complaint(MINIMAL, &["object.fricton=0"]);
         assert_eq!(
             unknown,
-            "--set object.fricton=0: object.fricton: unknown key; did you mean `friction`?"
+            "override object.fricton=0: object.fricton: unknown key; did you mean `friction`?"
         );
         assert!(complaint(MINIMAL, &["seed"]).contains("not of the form key=value"));
     }

@@ -11,7 +11,7 @@ use crate::base::Real;
 /// Where something was written.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Place {
-    /// File, or the `--set` it came from.
+    /// The file or the override.
     pub source: Arc<str>,
     /// Line, from 1; 0 means the source as a whole.
     pub line: u64,

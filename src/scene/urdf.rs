@@ -87,7 +87,7 @@ fn mesh(filename: &str, unit: Real, folder: &Path) -> Result<Shape, ResourceFaul
     Ok(Shape::Mesh { file, unit, vertices, triangles })
 }
 
-/// Volume of a shape [m³].
+/// Volume of a shape (m³).
 fn volume(shape: &Shape) -> Real {
     use std::f64::consts::PI;
     match shape {

@@ -1,16 +1,16 @@
-//! All that is needed to go on, as bytes that nobody outside reads.
+//! A saved session with its tick.
 
 use crate::base::Tick;
 
-/// A run between two ticks.
+/// A saved session, between two ticks.
 #[derive(Clone, Debug)]
 pub struct Checkpoint {
-    /// The tick of the run that ended.
+    /// Ticks since the start of the run.
     pub tick: Tick,
-    /// Time of the run at its end [ns].
+    /// Simulated time since the start of the run (ns).
     pub time_ns: u64,
     /// Digest of the whole state.
     pub digest: u64,
-    /// What `Session::resume` reads.
+    /// The input of `Session::resume`.
     pub bytes: Vec<u8>,
 }

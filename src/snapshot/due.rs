@@ -1,20 +1,19 @@
-//! When something is due, told from simulated time alone: no counters, so nothing can drift.
+//! What is due at which tick. It depends on simulated time alone, so nothing can drift.
 
 /// True if a multiple of 1/rate lies in the tick of `tick_ns` nanoseconds that ends at `time_ns`.
 pub fn is_due(rate_hz: f64, time_ns: u64, tick_ns: u64) -> bool {
     count(rate_hz, time_ns.saturating_sub(tick_ns) as f64) < count(rate_hz, time_ns as f64)
 }
 
-/// Of the instants at which `rate_hz` is due, true for the first after each multiple of
-/// 1/`slower_hz`.
+/// True for the first instant of `rate_hz` after each multiple of 1/`slower_hz`.
 pub fn is_first_of(rate_hz: f64, slower_hz: f64, time_ns: u64) -> bool {
     let (period_ns, instant) = (1e9 / rate_hz, count(rate_hz, time_ns as f64));
     let count_at = |instant: f64| count(slower_hz, instant * period_ns);
     rate_hz <= slower_hz || count_at(instant - 1.0) < count_at(instant)
 }
 
-/// How many multiples of 1/rate lie in (0, time]. A nanosecond of grace keeps multiples that
-/// rounding put just behind.
+/// Number of multiples of 1/rate in (0, time]. A tolerance of a nanosecond keeps multiples that
+/// rounding put just above.
 fn count(rate_hz: f64, time_ns: f64) -> f64 {
     ((time_ns + 1.0) * rate_hz * 1e-9).floor()
 }
@@ -31,7 +30,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_due_keeps_its_rate() {
+    fn rate_is_kept_over_ten_seconds() {
         for (rate, expected) in [(1000.0, 10_000), (333.0, 3330), (30.0, 300), (7.5, 75), (0.3, 3)]
         {
             // Oracle: rate times time.
@@ -40,7 +39,7 @@ mod tests {
     }
 
     #[test]
-    fn of_the_due_the_slower_is_picked() {
+    fn slower_rate_selects_its_share() {
         for (rate, slower, expected) in [(30.0, 10.0, 100), (25.0, 10.0, 100), (5.0, 10.0, 50)] {
             let is_picked =
                 |time_ns| is_due(rate, time_ns, TICK_NS) && is_first_of(rate, slower, time_ns);

@@ -1,12 +1,12 @@
-//! What the outside may see: plain, owned SI data, world frame unless a field says otherwise.
+//! Results of a tick: plain, owned SI data in the world frame unless a field says otherwise.
 //!
-//! The small parts are there at every tick; grains, membrane and contacts only when they are due.
+//! The small parts are always present; grains, membrane and contacts only when selected.
 
-pub mod checkpoint; // all that is needed to go on
-pub mod due;
-pub mod run;
-pub mod take;
-pub mod view;
+pub mod checkpoint; // a saved session with its tick
+pub mod due; // what is due at which tick
+pub mod run; // wall-clock statistics
+mod take; // copies a session
+pub mod view; // results, borrowed
 
 use crate::{
     base::{
@@ -19,42 +19,43 @@ use crate::{
 /// The coupled system at the end of one tick.
 #[derive(Clone, Debug)]
 pub struct Snapshot {
-    /// The tick that ended.
+    /// Number of the tick that ended.
     pub tick: Tick,
-    /// Simulated time at its end [ns].
+    /// Simulated time at its end (ns).
     pub time_ns: u64,
-    /// Ticks since the start of the run. Other than `tick` it counts on when time is reset.
+    /// Ticks since the start of the run. Unlike `tick` it is not reset with simulated time.
     pub run_tick: Tick,
     /// The gripper's flange.
     pub flange: BodySnapshot,
-    /// The objects, in the scene's order.
+    /// The objects, in the order of the scene.
     pub objects: Vec<ObjectSnapshot>,
-    /// Contact wrench of the objects on the gripper, about the flange's origin, flange axes,
-    /// mean over the tick.
+    /// Contact wrench of the objects on the gripper (N, N m), about the origin of the flange,
+    /// flange axes, mean over the tick.
     pub contact_wrench: Wrench,
-    /// Wrench that the whole gripper puts on its mount (what a wrist sensor reads), about the
-    /// flange's origin, flange axes, mean over the tick.
+    /// Reading of a wrist sensor: wrench of the whole gripper on its mount (N, N m), about the
+    /// origin of the flange, flange axes, mean over the tick.
     pub mount_wrench: Wrench,
-    /// The air.
+    /// The air in the membrane.
     pub chamber: ChamberSnapshot,
-    /// How jammed the grains are, and whether the model is still valid.
+    /// State of the packing, and whether it is within the validity of the contact law.
     pub jamming: JammingSnapshot,
-    /// The membrane's vertices, when due.
+    /// The vertices of the membrane, if selected.
     pub membrane: Option<MembraneSnapshot>,
-    /// The grains, when due.
+    /// The grains, if selected.
     pub grains: Option<GrainsSnapshot>,
-    /// Contacts between membrane and objects, when due.
+    /// Contacts between membrane and objects, if selected.
     pub contacts: Option<Vec<ContactSnapshot>>,
-    /// Commands that this tick was given, with their fate.
+    /// Commands applied in this tick and their outcomes.
     pub commands: Vec<CommandRecord>,
-    /// How many commands were applied, limited and refused so far.
+    /// Number of commands applied, limited and rejected so far.
     pub command_counts: CommandCounts,
     /// Digest of the whole state.
     pub digest: u64,
 }
 
 impl Snapshot {
-    /// Force of the object on the gripper, world axes (N).
+    /// Contact force of the objects on the gripper (N), world axes, mean over the tick.
+    #[must_use]
     pub fn contact_force_world(&self) -> Vec3 {
         self.flange.pose.rotation * self.contact_wrench.force
     }
@@ -65,7 +66,7 @@ impl Snapshot {
 pub struct BodySnapshot {
     /// Pose in the world.
     pub pose: Pose,
-    /// Velocity of the frame's origin.
+    /// Velocity of its origin (m/s, rad/s), world axes.
     pub twist: Twist,
 }
 
@@ -74,12 +75,12 @@ pub struct BodySnapshot {
 pub struct ObjectSnapshot {
     /// Name in the scene.
     pub name: String,
-    /// Pose of the body frame, whose origin is the centre of mass, and velocity.
+    /// Pose and velocity of the body frame; its origin is the center of mass.
     pub body: BodySnapshot,
-    /// Total contact wrench (membrane and table) about the centre of mass, gravity excluded,
-    /// mean over the tick; the membrane's share alone while the object is driven.
+    /// Contact wrench of membrane and table on the object (N, N m) about its center of mass,
+    /// without gravity, mean over the tick. While the object is driven, the table is excluded.
     pub contact_wrench: Wrench,
-    /// The membrane's share of it.
+    /// The part of it that the membrane exerts (N, N m).
     pub membrane_wrench: Wrench,
     /// True while pose commands drive the object.
     pub is_driven: bool,
@@ -88,13 +89,13 @@ pub struct ObjectSnapshot {
 /// The air in the membrane.
 #[derive(Clone, Copy, Debug)]
 pub struct ChamberSnapshot {
-    /// Commanded gauge pressure after limits [Pa].
+    /// Commanded gauge pressure, clamped to the range of the pump (Pa).
     pub gauge_setpoint: f64,
-    /// Actual gauge pressure [Pa], negative under vacuum.
+    /// Actual gauge pressure (Pa), negative under vacuum.
     pub gauge: f64,
-    /// Ambient pressure, absolute [Pa].
+    /// Ambient pressure, absolute (Pa).
     pub ambient: f64,
-    /// Volume enclosed by membrane and flange [m³].
+    /// Volume enclosed by the membrane and the flange (m³).
     pub volume: f64,
 }
 
@@ -109,13 +110,13 @@ pub struct JammingSnapshot {
     pub n_object_contacts: usize,
     /// Mean number of contacts per grain.
     pub coordination_number: f64,
-    /// Share of grains with at least four contacts, those that can carry load.
+    /// Fraction of grains with at least four contacts, which can carry load.
     pub jammed_fraction: f64,
-    /// Grain volume over enclosed volume.
+    /// Volume of the grains over the enclosed volume.
     pub solid_fraction: f64,
-    /// Share of sliding contacts among grain contacts.
+    /// Fraction of the grain contacts that slide.
     pub sliding_fraction: f64,
-    /// Kinetic energy of grains and membrane [J].
+    /// Kinetic energy of grains and membrane (J).
     pub kinetic_energy: f64,
     /// Largest overlap between grains over the mean grain diameter.
     pub overlap_ratio_max: f64,
@@ -126,26 +127,26 @@ pub struct JammingSnapshot {
 /// The membrane, vertex by vertex in mesh order.
 #[derive(Clone, Debug, Default)]
 pub struct MembraneSnapshot {
-    /// Positions [m].
+    /// Positions (m).
     pub positions: Vec<Vec3>,
     /// Unit normals, outward.
     pub normals: Vec<Vec3>,
-    /// Magnitude of the contact force on each vertex over its area [Pa].
+    /// Magnitude of the contact force on each vertex over its area (Pa).
     pub contact_pressures: Vec<f64>,
     /// Mean strain of the springs at each vertex.
     pub strains: Vec<f64>,
 }
 
-/// The grains, in order of their ids.
+/// The grains, in the order of their ids.
 #[derive(Clone, Debug, Default)]
 pub struct GrainsSnapshot {
-    /// Positions [m].
+    /// Positions (m).
     pub positions: Vec<Vec3>,
-    /// Radii [m].
+    /// Radii (m).
     pub radii: Vec<f64>,
-    /// Velocities [m/s].
+    /// Velocities (m/s).
     pub velocities: Vec<Vec3>,
-    /// Sum of normal force magnitudes on each grain [N].
+    /// Sum of normal force magnitudes on each grain (N).
     pub normal_forces: Vec<f64>,
 }
 
@@ -154,22 +155,22 @@ pub struct GrainsSnapshot {
 pub struct ContactSnapshot {
     /// Index of the object in the scene.
     pub object: usize,
-    /// Contact point [m].
+    /// Contact point, world (m).
     pub point: Vec3,
     /// Unit normal, from the object to the membrane.
     pub normal: Vec3,
-    /// Force on the object [N].
+    /// Force on the object (N).
     pub force: Vec3,
-    /// Normal force, at least zero [N].
+    /// Normal force, at least zero (N).
     pub normal_force: f64,
-    /// Overlap [m].
+    /// Overlap (m).
     pub overlap: f64,
 }
 
-/// Parts of a snapshot that are large and not taken at every tick.
+/// Selects the large parts of a snapshot. `Parts::default()` selects none.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Parts {
-    /// The membrane's vertices.
+    /// The vertices of the membrane.
     pub membrane: bool,
     /// The grains.
     pub grains: bool,

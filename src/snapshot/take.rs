@@ -1,5 +1,4 @@
-//! Fills snapshots from a session: what the core counts in world axes and overlaps becomes what
-//! the outside wants to know.
+//! Snapshots and views of a session.
 
 use super::{
     BodySnapshot, ChamberSnapshot, ContactSnapshot, GrainsSnapshot, JammingSnapshot,
@@ -13,57 +12,60 @@ use crate::{
     session::Session,
 };
 
-/// A copy of what the outside may see, with the large parts asked for.
-pub fn snapshot(session: &Session, parts: Parts) -> Snapshot {
-    let coupled = session.coupled();
-    let state = &coupled.system.state;
-    let flange = &state.walls[FLANGE];
-    let to_flange = flange.pose.rotation.inverse();
-    let in_flange_axes =
-        |it: &Wrench| Wrench { force: to_flange * it.force, torque: to_flange * it.torque };
-    let means = session.means();
-    Snapshot {
-        tick: session.now(),
-        time_ns: session.time_ns(),
-        run_tick: session.run_tick(),
-        flange: BodySnapshot { pose: flange.pose, twist: flange.twist },
-        objects: objects(session),
-        contact_wrench: in_flange_axes(&means.objects_on_gripper),
-        mount_wrench: session.sensor(),
-        chamber: ChamberSnapshot {
-            gauge_setpoint: session.processor().gauge_setpoint(),
-            gauge: state.gauge,
-            ambient: session.scene().chamber.ambient,
-            volume: measure::enclosed_volume(&coupled.system.model, state),
-        },
-        jamming: jamming(coupled),
-        membrane: parts.membrane.then(|| membrane(session)),
-        grains: parts.grains.then(|| GrainsSnapshot {
-            positions: state.grains.positions.clone(),
-            radii: state.grains.radii.clone(),
-            velocities: state.grains.velocities.clone(),
-            normal_forces: session.normal_forces().to_vec(),
-        }),
-        contacts: parts.contacts.then(|| contacts(coupled)),
-        commands: session.records().to_vec(),
-        command_counts: session.processor().counts(),
-        digest: session.digest(),
+impl Session {
+    /// Copies the results of the last tick. The large parts are copied only if `parts` selects
+    /// them.
+    pub fn snapshot(&self, parts: Parts) -> Snapshot {
+        let coupled = self.coupled();
+        let state = &coupled.system.state;
+        let flange = &state.walls[FLANGE];
+        let to_flange = flange.pose.rotation.inverse();
+        let in_flange_axes =
+            |it: &Wrench| Wrench { force: to_flange * it.force, torque: to_flange * it.torque };
+        let means = self.means();
+        Snapshot {
+            tick: self.now(),
+            time_ns: self.time_ns(),
+            run_tick: self.run_tick(),
+            flange: BodySnapshot { pose: flange.pose, twist: flange.twist },
+            objects: objects(self),
+            contact_wrench: in_flange_axes(&means.objects_on_gripper),
+            mount_wrench: self.sensor(),
+            chamber: ChamberSnapshot {
+                gauge_setpoint: self.processor().gauge_setpoint(),
+                gauge: state.gauge,
+                ambient: self.scene().chamber.ambient,
+                volume: measure::enclosed_volume(&coupled.system.model, state),
+            },
+            jamming: jamming(coupled),
+            membrane: parts.membrane.then(|| membrane(self)),
+            grains: parts.grains.then(|| GrainsSnapshot {
+                positions: state.grains.positions.clone(),
+                radii: state.grains.radii.clone(),
+                velocities: state.grains.velocities.clone(),
+                normal_forces: self.normal_forces().to_vec(),
+            }),
+            contacts: parts.contacts.then(|| contacts(coupled)),
+            commands: self.records().to_vec(),
+            command_counts: self.processor().counts(),
+            digest: self.digest(),
+        }
     }
-}
 
-/// A borrowed look at everything. `seen` is the snapshot of the same tick.
-pub fn view<'a>(session: &'a Session, seen: &'a Snapshot) -> View<'a> {
-    let System { state, scratch, .. } = &session.coupled().system;
-    View {
-        snapshot: seen,
-        grain_positions: &state.grains.positions,
-        grain_velocities: &state.grains.velocities,
-        grain_spins: &state.grains.angular_velocities,
-        grain_radii: &state.grains.radii,
-        grain_normal_forces: session.normal_forces(),
-        vertex_positions: &state.membrane.positions,
-        vertex_velocities: &state.membrane.velocities,
-        vertex_contact_forces: &scratch.vertex_forces,
+    /// Borrows the results of the last tick. `snapshot` is the snapshot of the same tick.
+    pub fn view<'a>(&'a self, snapshot: &'a Snapshot) -> View<'a> {
+        let System { state, scratch, .. } = &self.coupled().system;
+        View {
+            snapshot,
+            grain_positions: &state.grains.positions,
+            grain_velocities: &state.grains.velocities,
+            grain_spins: &state.grains.angular_velocities,
+            grain_radii: &state.grains.radii,
+            grain_normal_forces: self.normal_forces(),
+            vertex_positions: &state.membrane.positions,
+            vertex_velocities: &state.membrane.velocities,
+            vertex_contact_forces: &scratch.vertex_forces,
+        }
     }
 }
 

@@ -1,9 +1,6 @@
 //! Who may use what: the tables. Paths are those of files and folders from the repository's root, so
 //! that moving a file means replacing its path here; an entry that applies to nothing is a failure.
 
-/// The whole library and program.
-const ANYWHERE: &[&str] = &["src/"];
-
 /// Other people's crates, and the files or folders that may name them. The longest path decides.
 pub(crate) const FOREIGN: &[(&str, &[&str])] = &[
     ("rapier3d_f64", &["src/cosim/rapier_world.rs", "src/cosim/volume.rs"]),
@@ -18,8 +15,6 @@ pub(crate) const FOREIGN: &[(&str, &[&str])] = &[
     ),
     ("arrayvec", &["src/physics/"]),
     ("rayon", &["src/base/parallel.rs"]),
-    ("rayon::ThreadPool", ANYWHERE),
-    ("rayon::ThreadPoolBuildError", ANYWHERE),
     ("libc", &["src/base/parallel.rs"]),
     ("rand_chacha", &["src/base/random.rs"]),
     ("xxhash_rust", &["src/base/digest.rs", "src/bag/chain.rs", "src/cosim/saved_state.rs"]),
@@ -46,11 +41,11 @@ pub(crate) const FOREIGN: &[(&str, &[&str])] = &[
     ),
     ("zstd", &["src/bag/writer.rs", "src/bag/reader.rs"]),
     ("indicatif", &["src/host/progress_bar.rs", "src/runner/progress.rs"]),
-    ("comfy_table", &["src/node/summary.rs", "src/runner/table.rs"]),
+    ("comfy_table", &["src/bin/jamgrip/summary.rs", "src/runner/table.rs"]),
     ("plotters", &["src/report/"]),
     ("maud", &["src/report/page.rs", "src/runner/report.rs", "src/replay/page.rs"]),
     ("csv", &["src/runner/folder.rs", "src/benchmarks/history_csv.rs"]),
-    ("ctrlc", &["src/host/shutdown.rs", "src/node/launch.rs"]),
+    ("ctrlc", &["src/host/shutdown.rs"]),
     ("clap", &["src/bin/jamgrip/"]),
     ("env_logger", &["src/bin/jamgrip/main.rs"]),
 ];

@@ -1,10 +1,7 @@
 //! A coarse gripper: the laws of the full one with an eighth of its grains, settled once for all
 //! tests of this binary.
 
-use std::{
-    path::Path,
-    sync::{Arc, OnceLock},
-};
+use std::{path::Path, sync::OnceLock};
 
 use jamgrip::{
     base::{Real, Vec3, parallel},
@@ -55,7 +52,7 @@ pub(crate) fn scene(overrides: &[&str]) -> Scene {
 
 /// The scene compiled for `n_threads` solver threads.
 pub(crate) fn compiled(n_threads: usize, overrides: &[&str]) -> Compiled {
-    Compiled::new(&scene(overrides), &Arc::new(parallel::pool(n_threads).unwrap())).unwrap()
+    Compiled::new(&scene(overrides), &parallel::ThreadPool::new(n_threads).unwrap()).unwrap()
 }
 
 /// Bytes of the settled start state.

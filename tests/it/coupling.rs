@@ -10,7 +10,7 @@ use jamgrip::{
     measure,
     physics::{Controls, Scratch, State, System, substep},
     session::Session,
-    snapshot::{Parts, take},
+    snapshot::Parts,
 };
 
 use crate::coarse;
@@ -32,7 +32,7 @@ fn pushing() -> Coupled {
 fn pushing_with(scaling: Real) -> Coupled {
     let scaling = format!("time.density_scaling={scaling}");
     let mut coupled = coarse::coupled_of(coarse::compiled(1, &[&scaling]));
-    parallel::lead(&parallel::pool(1).unwrap(), || {
+    parallel::lead(&parallel::ThreadPool::new(1).unwrap(), || {
         for tick in 0..90 {
             coupled.advance(&inputs(0.08, if tick < 50 { 0.0 } else { -30e3 }));
         }
@@ -133,7 +133,7 @@ fn momentum_is_kept(scaling: Real) {
     let mass = measure::mass(&coupled.system.model, &coupled.system.state);
     let tick = coupled.plan.tick;
     let (mut worst, mut scale) = (0.0_f64, 0.0_f64);
-    parallel::lead(&parallel::pool(1).unwrap(), || {
+    parallel::lead(&parallel::ThreadPool::new(1).unwrap(), || {
         for k in 0..40 {
             let (before, _) = momenta(&coupled);
             let carried_before = coupled.system.state.walls[FLANGE].twist.linear;
@@ -165,7 +165,7 @@ fn angular_momentum_changes_by_what_flange_objects_and_gravity_give() {
     let mut controls = held_controls(&coupled);
     let dt = coupled.system.model.substep;
     let (mut worst, mut scale) = (0.0_f64, 0.0_f64);
-    parallel::lead(&parallel::pool(1).unwrap(), || {
+    parallel::lead(&parallel::ThreadPool::new(1).unwrap(), || {
         for _ in 0..40 {
             let (_, before) = momenta(&coupled);
             let weight = moment_of_weight(&coupled);
@@ -273,7 +273,7 @@ fn lift(session: &mut Session) -> Hanging {
     let (mut contact, mut on_object, mut mount) = (Vec3::zeros(), Vec3::zeros(), Vec3::zeros());
     for _ in 0..n_ticks {
         session.tick(&[]).unwrap();
-        let seen = take::snapshot(session, Parts::default());
+        let seen = session.snapshot(Parts::default());
         contact += seen.contact_wrench.force / f64::from(n_ticks);
         on_object += seen.objects[0].contact_wrench.force / f64::from(n_ticks);
         mount += seen.mount_wrench.force / f64::from(n_ticks);

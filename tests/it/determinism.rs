@@ -164,7 +164,7 @@ fn coupled_script(mut coupled: Coupled) -> (Vec<u64>, u64) {
         flange_target: Pose::translation(0.0, 0.0, 0.08),
         drives: vec![None],
     };
-    parallel::lead(&parallel::pool(1).unwrap(), || {
+    parallel::lead(&parallel::ThreadPool::new(1).unwrap(), || {
         for _ in 0..80 {
             coupled.advance(&inputs);
             let mut digest = Digest::new();

@@ -15,7 +15,7 @@ const RADIUS: Real = 2e-3;
 
 /// Runs on one thread, where forking costs next to nothing.
 fn alone(test: impl FnOnce() + Send) {
-    parallel::lead(&parallel::pool(1).unwrap(), test);
+    parallel::lead(&parallel::ThreadPool::new(1).unwrap(), test);
 }
 
 /// Overlap at which the plate carries a grain's weight: Hertz, ξ = (m g / k)^(2/3).

@@ -41,7 +41,7 @@ fn run(plan: &dyn Plan, mut is_break: impl FnMut(usize, &str) -> bool) -> Record
         if progress.is_done {
             break;
         }
-        if is_break(slice, progress.stage) {
+        if is_break(slice, progress.phase) {
             let bytes = run.save();
             run = plan.start(CASE).unwrap();
             run.resume(&bytes).unwrap();

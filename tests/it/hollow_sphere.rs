@@ -31,7 +31,7 @@ fn plan() -> Box<dyn Plan> {
 
 /// Advances up to `n_slices`; true at the end.
 fn advance(run: &mut Box<dyn Run>, n_slices: usize) -> bool {
-    let pool = parallel::pool(1).unwrap();
+    let pool = parallel::ThreadPool::new(1).unwrap();
     (0..n_slices).any(|_| parallel::lead(&pool, || run.advance()).unwrap().is_done)
 }
 

@@ -4,9 +4,9 @@
 #[cfg(feature = "bag")]
 mod bags; // recordings, read back by independent libraries
 #[cfg(feature = "bag")]
-mod bags_damaged; // killed, cut off, full disks, and what is saved of it
+mod bags_damaged; // damaged recordings and their repair
 #[cfg(feature = "bag")]
-mod bags_played; // a recording published again
+mod bags_played; // playing recordings
 mod bench; // how fast it is told to be
 mod book; // links of the documentation, and pages made from the code
 mod by_tick; // a made-up system whose numbers follow from its tick
@@ -20,7 +20,7 @@ mod generated_types; // msgs/*.msg and the Rust types agree
 mod grains; // one, two and three grains
 mod gripper; // the gripper experiment, coarse
 mod hollow_sphere; // an object in an evacuated shell of grains
-mod lab; // experiments: side by side, stopped and resumed, told in files
+mod runner; // experiments: in parallel, stopped and resumed, result files
 mod leaks; // what comes through the membranes
 mod lifts; // whole runs: what is lifted, and what is not
 #[cfg(feature = "ros")]
@@ -31,30 +31,30 @@ mod oscillator; // a small experiment whose results are known in closed form
 mod packings; // periodic boxes and dense packings
 mod peers; // independent programs in Python
 #[cfg(feature = "ros")]
-mod private_network; // where tests may speak DDS
+mod private_network; // a network namespace for DDS tests
 #[cfg(feature = "bag")]
-mod replays; // recordings simulated again, branched off, and taken as commands
+mod replays; // recordings verified, branched, and used as commands
 mod rig; // a bare model by hand
-mod ros_layouts; // layouts for viewers name topics that there are
+mod ros_layouts; // layouts of viewers refer to existing topics
 #[cfg(feature = "ros")]
-mod ros_loop; // what goes out reaches others, what others say comes in
+mod ros_loop; // published messages and received commands
 #[cfg(all(feature = "ros", feature = "bag"))]
 mod ros_floods; // ten thousand commands a second
 #[cfg(feature = "ros")]
-mod ros_gripper; // what drivers of grippers offer, and ticks that wait for a controller
+mod ros_gripper; // interfaces of gripper drivers, and ticks that wait for a controller
 #[cfg(feature = "ros")]
 mod ros_program; // the whole program, and clients of its services
 #[cfg(feature = "ros")]
-mod ros_qos; // who hears what
+mod ros_qos; // quality of service
 #[cfg(feature = "ros")]
-mod ros_simulator; // what ROS 2 users ask of a simulator
+mod ros_simulator; // the simulator services
 #[cfg(feature = "ros")]
-mod ros_worlds; // another scene while the program runs
+mod ros_worlds; // loading scenes and spawning objects
 mod setpoints; // how commands become setpoints
 mod scenes; // scenes that run, scenes that are refused
 mod sheet; // a grain on the membrane
 mod spheres; // grains on the spheres of the classic membrane
 #[cfg(feature = "shm")]
-mod stream; // what other processes read in shared memory
+mod stream; // streams in shared memory
 mod synthetic; // a scene and snapshots made up for tests
 mod triaxial; // a small specimen under confining pressure

@@ -68,7 +68,7 @@ impl MockPlant {
 
 /// Runs until `is_over`; waits for a first command as a real run does.
 pub(crate) fn run(node: &Arc<RosNode>, mut is_over: impl FnMut() -> bool) {
-    let encoder = Arc::new(Encoder::new(&scene(), &[], &[]));
+    let encoder = Arc::new(Encoder::new(&Arc::new(scene()), &[], &[]));
     let mut sink = RosSink::new(node, &encoder).unwrap();
     let mut source = RosSource::new(node, &encoder).unwrap();
     let mut system = Synthetic::new("cylinder");
@@ -78,7 +78,7 @@ pub(crate) fn run(node: &Arc<RosNode>, mut is_over: impl FnMut() -> bool) {
     let mut tick = 0;
     while !is_over() {
         std::thread::sleep(Duration::from_micros(300));
-        if !source.has_heard() {
+        if !source.has_received() {
             continue;
         }
         toy.tick(&source.drain(&system.snapshot));

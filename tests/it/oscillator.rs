@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 use jamgrip::{
     experiments::{
         Experiment, Plan, Progress, ResumeError, Run, SceneText, StartError,
-        findings::{Curve, Expected, Findings, Kind, Plot, Quantity, Report, Row, Series},
+        findings::{Curve, Expected, Findings, Kind, Plot, Quantity, Row, RowText, Series},
         record::{Column, Record, Validity},
     },
     host::shutdown::Shutdown,
@@ -89,7 +89,7 @@ impl Plan for Oscillator {
             let analytic: Vec<f64> = times.iter().map(|t| exact(zeta, *t)).collect();
             let worst = |worst: f64, (a, b): (&f64, &f64)| worst.max((a - b).abs());
             let distance = heights.iter().zip(&analytic).fold(0.0, worst);
-            let told = Report {
+            let told = RowText {
                 id: &format!("T1.{}", record.case),
                 quantity: "largest distance from the exact solution",
                 unit: "m",
@@ -183,7 +183,7 @@ impl Run for Swing {
             });
         }
         let share = state.step as f64 / N_STEPS as f64;
-        Ok(Progress { stage: "swinging", share, is_done: state.step == N_STEPS })
+        Ok(Progress { phase: "swinging", share, is_done: state.step == N_STEPS })
     }
 
     fn save(&self) -> Vec<u8> {

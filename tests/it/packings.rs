@@ -89,7 +89,7 @@ fn a_periodic_box_has_no_walls_and_misses_no_pair() {
 #[test]
 fn a_periodic_box_has_the_same_bits_for_any_number_of_threads_and_any_origin_of_images() {
     let run = |n_threads: usize, skin: Real| {
-        parallel::lead(&parallel::pool(n_threads).unwrap(), || {
+        parallel::lead(&parallel::ThreadPool::new(n_threads).unwrap(), || {
             let (mut system, mut growth) = box_of_grains(0.3);
             system.model.skin *= skin;
             for _ in 0..4000 {

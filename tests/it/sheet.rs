@@ -79,7 +79,7 @@ fn resultant(rig: &Rig, contacts: &[PatchForce]) -> (Vec3, Vec3) {
 
 /// Runs on one thread, where forking costs next to nothing.
 pub(crate) fn alone(test: impl FnOnce() + Send) {
-    parallel::pool(1).unwrap().install(test);
+    parallel::lead(&parallel::ThreadPool::new(1).unwrap(), test);
 }
 
 /// Three ways over the patch: along an edge and over its vertices, through vertices along a height,

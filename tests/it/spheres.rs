@@ -190,7 +190,7 @@ struct Way {
 
 fn run(mut rig: Rig, n_threads: usize) -> Way {
     let (mut digests, mut n_loaded_max) = (Vec::new(), 0);
-    parallel::lead(&parallel::pool(n_threads).unwrap(), || {
+    parallel::lead(&parallel::ThreadPool::new(n_threads).unwrap(), || {
         for step in 0..4000 {
             rig.step();
             if step % 100 == 99 {

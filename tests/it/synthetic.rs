@@ -124,7 +124,7 @@ pub(crate) fn corners() -> Vec<Vec3> {
 
 /// The encoder of the scene.
 pub(crate) fn encoder() -> Arc<Encoder> {
-    Arc::new(Encoder::new(&scene(), &TRIANGLES, &corners()))
+    Arc::new(Encoder::new(&Arc::new(scene()), &TRIANGLES, &corners()))
 }
 
 /// The packet of a tick, with the heavy parts when they are due.

@@ -42,8 +42,8 @@ fn finish_with_breaks(plan: &dyn Plan, case: &str) -> (Record, usize) {
     let (mut last, mut n_slices, mut n_breaks) = ("", 0, 0);
     loop {
         let progress = run.advance().unwrap();
-        n_slices = if progress.stage == last { n_slices + 1 } else { 1 };
-        last = progress.stage;
+        n_slices = if progress.phase == last { n_slices + 1 } else { 1 };
+        last = progress.phase;
         if progress.is_done {
             return (run.record(), n_breaks);
         }

@@ -1,4 +1,4 @@
-//! Command line to recordings.
+//! The subcommands `replay` and `bag`.
 
 use std::{
     error::Error,
@@ -17,22 +17,25 @@ use jamgrip::{
         branch::{self, Branch},
         page,
         play::{self, Played},
-        player_command::{Asked, PlayerCommand},
+        player_command::{CommandRequest, PlayerCommand},
         recorded_run::RecordedRun,
-        segment::{Difference, Kind},
+        segment::{Difference, DifferenceKind},
         verify::{self, VerifyReport},
     },
     scene::Scene,
     wire::{from_ros::CommandCodec, topics::topics},
 };
 
-use crate::args_bag::{Bag, Look, Replay};
+use crate::{
+    args_bag::{Bag, Inspect, Replay},
+    summary,
+};
 
-/// A digest differs, something is damaged, or it could not be done.
+/// A digest differs, a recording is damaged, or an error occurred.
 const FAILED: u8 = 1;
-/// The command line is wrong, as clap says it.
+/// The command line is invalid; clap uses the same code.
 const WRONG: u8 = 2;
-/// Someone asked it to end: 128 and the number of SIGINT.
+/// The user interrupted it: 128 plus the number of SIGINT.
 const INTERRUPTED: u8 = 130;
 
 pub(crate) fn replay(args: &Replay) -> Result<ExitCode, Box<dyn Error>> {
@@ -72,11 +75,11 @@ pub(crate) fn run_by(
 fn verify(args: &Replay) -> Result<ExitCode, Box<dyn Error>> {
     let shutdown = Shutdown::listen()?;
     let progress = Progress::new(args.json);
-    let again = RecordedRun::open(&args.bag)?;
-    let verdict = verify::verify(
-        &again,
+    let recorded = RecordedRun::open(&args.bag)?;
+    let report = verify::verify(
+        &recorded,
         &verify::Options {
-            hands: args.hands(),
+            cpu_budget: args.cpu_budget(),
             settles: args.settle,
             from_ns: nanoseconds(args.start.unwrap_or(0.0)),
             to_ns: args.end.map(nanoseconds),
@@ -87,64 +90,70 @@ fn verify(args: &Replay) -> Result<ExitCode, Box<dyn Error>> {
     )?;
     let mut stdout = io::stdout().lock();
     if args.json {
-        writeln!(stdout, "{}", verdict.to_json())?;
+        writeln!(stdout, "{}", report.to_json())?;
     } else {
-        tell(&mut stdout, &verdict)?;
+        print_report(&mut stdout, &report)?;
     }
-    Ok(match &verdict {
+    Ok(match &report {
         it if it.is_interrupted => ExitCode::from(INTERRUPTED),
         it if it.is_equal() => ExitCode::SUCCESS,
         _ => ExitCode::from(FAILED),
     })
 }
 
-fn tell(out: &mut impl Write, verdict: &VerifyReport) -> io::Result<()> {
-    for remark in &verdict.remarks {
+fn print_report(out: &mut impl Write, report: &VerifyReport) -> io::Result<()> {
+    for remark in &report.remarks {
         writeln!(out, "{remark}")?;
     }
-    let VerifyReport { n_ticks, n_compared, start_tick, real_time_factor, .. } = verdict;
-    let ((n_jobs, n_threads), n_checkpoints) = (verdict.shared_out, verdict.n_checkpoints);
+    let VerifyReport { n_ticks, n_compared, start_tick, real_time_factor, .. } = report;
+    let ((n_jobs, n_threads), n_checkpoints) = (report.jobs_and_threads, report.n_checkpoints);
     writeln!(
         out,
-        "{n_ticks} ticks simulated from tick {start_tick} on at {real_time_factor:.3} x real time \
-         ({n_jobs} parts at a time, {n_threads} threads each); \
+        "{n_ticks} ticks simulated from tick {start_tick} at {real_time_factor:.3} x real time \
+         ({n_jobs} segments in parallel, {n_threads} threads each); \
          {n_compared} digests and {n_checkpoints} checkpoints compared"
     )?;
-    match &verdict.first_difference {
-        Some(Difference { tick, kind: Kind::Digest { recorded, simulated } }) => writeln!(
-            out,
-            "tick {tick} differs: {recorded:016x} is recorded, {simulated:016x} was simulated"
-        ),
-        Some(Difference { tick, kind: Kind::Checkpoint(part) }) => {
-            writeln!(out, "checkpoint at tick {tick} differs, although the digests do not: {part}")
+    match &report.first_difference {
+        Some(Difference { tick, kind: DifferenceKind::Digest { recorded, simulated } }) => {
+            writeln!(
+                out,
+                "tick {tick} differs: {recorded:016x} is recorded, {simulated:016x} was simulated"
+            )
         }
-        None if verdict.is_interrupted => writeln!(out, "interrupted; all equal so far"),
+        Some(Difference { tick, kind: DifferenceKind::Checkpoint(part) }) => {
+            writeln!(
+                out,
+                "checkpoint at tick {tick} differs although the digests are equal: {part}"
+            )
+        }
+        None if report.is_interrupted => writeln!(out, "interrupted; all equal so far"),
         None if *n_compared == 0 => writeln!(out, "nothing to compare"),
         None => writeln!(out, "all equal"),
     }
 }
 
 fn branch(args: &Replay, from: f64) -> Result<ExitCode, Box<dyn Error>> {
-    let again = RecordedRun::open(&args.bag)?;
+    let recorded = RecordedRun::open(&args.bag)?;
     let options = Options {
         n_threads: args.n_threads(),
         duration: args.end,
         scene_file: args.bag.clone(),
         cache: args.cache.clone().map_or_else(Cache::of_user, Cache::new),
         is_quiet: args.json,
+        shutdown: Shutdown::listen()?,
         facts: Vec::new(),
     };
     let wanted = Branch { from_ns: nanoseconds(from), overrides: args.overrides() };
-    let finished = match branch::branch(&again, &wanted, &options) {
+    let finished = match branch::branch(&recorded, &wanted, &options) {
         Err(error) if error.is_of_command_line() => {
             writeln!(io::stderr().lock(), "{error}")?;
             return Ok(ExitCode::from(WRONG));
         }
         other => other?,
     };
-    finished.summary.print(args.json)?;
-    match finished.fault {
-        Some(fault) => Err(fault.into()),
+    summary::print(&finished.summary, args.json)?;
+    match finished.error {
+        Some(error) => Err(error.into()),
         None => Ok(ExitCode::SUCCESS),
     }
 }
@@ -163,31 +172,32 @@ fn play(args: &Replay) -> Result<ExitCode, Box<dyn Error>> {
         delay: Duration::from_secs_f64(args.delay),
         clock_rate: args.clock,
     };
-    let (teller, cues) = mpsc::channel();
+    let (sender, cues) = mpsc::channel();
     if args.cues {
-        let teller = teller.clone();
-        std::thread::Builder::new().name("cues".to_owned()).spawn(move || listen(&teller))?;
+        let sender = sender.clone();
+        std::thread::Builder::new().name("cues".to_owned()).spawn(move || read_cues(&sender))?;
     }
-    let perform =
-        |stage: &mut dyn play::PlayerOutput| play::play(&files, &options, stage, &cues, &shutdown);
-    let (played, fault) = on_stage(&options, teller, perform)?;
+    let perform = |player: &mut dyn play::PlayerOutput| {
+        play::play(&files, &options, player, &cues, &shutdown)
+    };
+    let (played, fault) = with_player_node(&options, sender, perform)?;
     let mut stderr = io::stderr().lock();
-    for topic in &played.refused {
+    for topic in &played.unplayable {
         writeln!(
             stderr,
-            "{topic}: not played: its messages are no CDR, or its name is not ROS 2's"
+            "{topic}: not played: its messages are not CDR, or its name is not valid in ROS 2"
         )?;
     }
     if 0 < played.n_damages {
         let n = played.n_damages;
-        writeln!(stderr, "{n} damages in the recording; `jamgrip bag check` tells them")?;
+        writeln!(stderr, "the recording has {n} damaged parts; `jamgrip bag check` lists them")?;
     }
     if let Some(fault) = fault {
-        writeln!(stderr, "some messages were not taken, the last: {fault}")?;
+        writeln!(stderr, "some messages were not published, the last: {fault}")?;
     }
     let mut stdout = io::stdout().lock();
     if args.json {
-        let (n, refused) = (played.n_published, &played.refused);
+        let (n, refused) = (played.n_published, &played.unplayable);
         writeln!(stdout, "{}", serde_json::json!({"published": n, "refused": refused}))?;
     } else {
         writeln!(stdout, "{} messages published", played.n_published)?;
@@ -196,61 +206,61 @@ fn play(args: &Replay) -> Result<ExitCode, Box<dyn Error>> {
     Ok(if is_interrupted { ExitCode::from(INTERRUPTED) } else { ExitCode::SUCCESS })
 }
 
-/// What was played, and what went wrong on the stage.
+/// What was played, and the last error of the publisher.
 type Performance = (Played, Option<String>);
 
 #[cfg(feature = "ros")]
-fn on_stage(
+fn with_player_node(
     options: &play::Options,
-    teller: mpsc::Sender<Asked>,
+    sender: mpsc::Sender<CommandRequest>,
     perform: impl FnOnce(&mut dyn play::PlayerOutput) -> io::Result<Played>,
 ) -> Result<Performance, Box<dyn Error>> {
     use jamgrip::{replay::player_node::RosPlayerNode, ros::discovery::DiscoveryRange, scene::Ros};
 
     let anywhere = Ros { enabled: true, ..Ros::OFF };
     let reach = DiscoveryRange::choose(&anywhere, |name| std::env::var(name).ok())?;
-    let mut stage = RosPlayerNode::join(&reach, options.clock_rate.is_some())?;
-    let _prompter = stage.prompted(teller)?;
-    let played = perform(&mut stage)?;
-    Ok((played, stage.faults.1))
+    let mut player = RosPlayerNode::join(&reach, options.clock_rate.is_some())?;
+    let _services = player.open_services(sender)?;
+    let played = perform(&mut player)?;
+    Ok((played, player.errors.1))
 }
 
 #[cfg(not(feature = "ros"))]
-fn on_stage(
+fn with_player_node(
     _: &play::Options,
-    _: mpsc::Sender<Asked>,
+    _: mpsc::Sender<CommandRequest>,
     _: impl FnOnce(&mut dyn play::PlayerOutput) -> io::Result<Played>,
 ) -> Result<Performance, Box<dyn Error>> {
-    Err("this jamgrip was built without ROS 2 (feature `ros`): there is nowhere to play to".into())
+    Err("playing needs a jamgrip that was built with feature `ros`".into())
 }
 
-/// Reads cues until standard input ends or nobody listens.
-fn listen(teller: &mpsc::Sender<Asked>) {
+/// Reads cues until standard input or the player ends.
+fn read_cues(sender: &mpsc::Sender<CommandRequest>) {
     for line in io::stdin().lock().lines().map_while(Result::ok) {
         match PlayerCommand::parse(&line) {
             Ok(cue) => {
-                if teller.send(cue.into()).is_err() {
+                if sender.send(cue.into()).is_err() {
                     return;
                 }
             }
-            // If standard error is gone there is nobody to tell.
-            Err(fault) => drop(writeln!(io::stderr().lock(), "{fault}")),
+            // Nothing can be done if standard error is closed.
+            Err(error) => drop(writeln!(io::stderr().lock(), "{error}")),
         }
     }
 }
 
-fn info(look: &Look) -> Result<ExitCode, Box<dyn Error>> {
-    let info = Info::read(&look.bag)?;
+fn info(args: &Inspect) -> Result<ExitCode, Box<dyn Error>> {
+    let info = Info::read(&args.bag)?;
     let mut stdout = io::stdout().lock();
-    if look.json { writeln!(stdout, "{}", info.to_json()) } else { write!(stdout, "{info}") }?;
+    if args.json { writeln!(stdout, "{}", info.to_json()) } else { write!(stdout, "{info}") }?;
     Ok(ExitCode::SUCCESS)
 }
 
-fn check(look: &Look) -> Result<ExitCode, Box<dyn Error>> {
-    let findings = check::check(&look.bag)?;
+fn check(args: &Inspect) -> Result<ExitCode, Box<dyn Error>> {
+    let findings = check::check(&args.bag)?;
     let mut stdout = io::stdout().lock();
     let n_errors = findings.iter().filter(|it| it.is_error).count();
-    if look.json {
+    if args.json {
         let line = |it: &check::Finding| {
             let path = it.path.display().to_string();
             serde_json::json!({"error": it.is_error, "path": path, "text": it.text})
@@ -274,8 +284,7 @@ fn plot(path: &Path, output: Option<&Path>) -> Result<ExitCode, Box<dyn Error>> 
     };
     let output = output.map_or_else(beside, Path::to_owned);
     let page = page::html(path)?;
-    let fault =
-        |error| format!("{}: {error}; choose another place with --output", output.display());
+    let fault = |error| format!("{}: {error}; choose another file with --output", output.display());
     std::fs::write(&output, page).map_err(fault)?;
     writeln!(io::stdout().lock(), "{}", output.display())?;
     Ok(ExitCode::SUCCESS)

@@ -1,4 +1,4 @@
-//! Command line to benchmarks.
+//! The subcommand `bench`.
 
 use std::{
     error::Error,
@@ -13,7 +13,7 @@ use jamgrip::{
 
 use crate::args::Bench;
 
-/// A case is not worth measuring, or could not run.
+/// A case failed its checks or could not run.
 const FAILED: u8 = 1;
 
 pub(crate) fn bench(args: &Bench) -> Result<ExitCode, Box<dyn Error>> {
@@ -37,7 +37,7 @@ pub(crate) fn bench(args: &Bench) -> Result<ExitCode, Box<dyn Error>> {
         let figures = match benchmarks::run(case, &options) {
             Ok(figures) => figures,
             Err(error) => {
-                // The others can be measured all the same.
+                // The other cases are measured all the same.
                 writeln!(io::stderr().lock(), "{error}")?;
                 has_failed = true;
                 continue;
@@ -50,7 +50,7 @@ pub(crate) fn bench(args: &Bench) -> Result<ExitCode, Box<dyn Error>> {
             stdout.flush()?;
         }
         if let Some(out) = &args.out {
-            // Row by row: an interrupted evening keeps what was measured.
+            // Row by row: an interrupted run keeps what was measured.
             history_csv::add(out, &[figures])?;
         }
     }

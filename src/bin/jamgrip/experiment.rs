@@ -1,4 +1,4 @@
-//! Command line to experiments.
+//! The subcommands `experiment`, `validate` and `report`.
 
 use std::{
     error::Error,
@@ -15,18 +15,18 @@ use jamgrip::{
         experiment::{self, RunRequest},
         folder::Policy,
         outcome::{Outcome, sized_name},
-        table::{self, Look},
+        table::{self, TableLayout},
         validation_doc,
     },
 };
 
-use crate::args::{Experiment, Manner, Validate};
+use crate::args::{CommonArgs, Experiment, Validate};
 
-/// Something could not run.
+/// A case could not run.
 const FAILED: u8 = 1;
-/// Everything ran, and a row is red.
+/// All cases ran, and a row fails.
 const RED: u8 = 3;
-/// Someone asked it to end: 128 and the number of SIGINT.
+/// The user interrupted it: 128 plus the number of SIGINT.
 const INTERRUPTED: u8 = 130;
 
 pub(crate) fn experiment(args: &Experiment) -> Result<ExitCode, Box<dyn Error>> {
@@ -34,7 +34,7 @@ pub(crate) fn experiment(args: &Experiment) -> Result<ExitCode, Box<dyn Error>> 
         return list();
     }
     let name = args.name.as_deref().unwrap_or_default();
-    let order = RunRequest {
+    let request = RunRequest {
         experiment: experiment::by_name(name)?,
         size: args.size(),
         overrides: args.set.clone(),
@@ -42,16 +42,16 @@ pub(crate) fn experiment(args: &Experiment) -> Result<ExitCode, Box<dyn Error>> 
     };
     let out = args.out(name);
     let policy = Policy { is_fresh: args.fresh, allows_mixed_builds: args.mixed_builds };
-    let tasks = [Task { order, out: Some(out.clone()) }];
-    let ending = run(&tasks, &args.manner, policy)?;
+    let tasks = [Task { request, out: Some(out.clone()) }];
+    let ending = run(&tasks, &args.common, policy)?;
     let Ending::Finished(outcomes) = ending else { return interrupted(&ending, true) };
     let mut stdout = io::stdout().lock();
     for outcome in &outcomes {
-        if args.manner.json {
+        if args.common.json {
             writeln!(stdout, "{}", outcome.to_line())?;
         } else {
-            write!(stdout, "{}", table::of_one(outcome, look()))?;
-            writeln!(stdout, "results in {}, to be read: report.html", out.display())?;
+            write!(stdout, "{}", table::of_one(outcome, layout()))?;
+            writeln!(stdout, "results in {}; see report.html", out.display())?;
         }
     }
     Ok(verdict(&outcomes))
@@ -64,24 +64,24 @@ pub(crate) fn validate(args: &Validate) -> Result<ExitCode, Box<dyn Error>> {
         experiments = chosen.collect::<Result<_, _>>()?;
     }
     let task = |experiment| {
-        let order =
+        let request =
             RunRequest { experiment, size: Size::Quick, overrides: Vec::new(), scene: None };
         let name = sized_name(experiment.name(), Size::Quick);
-        Task { order, out: args.out.as_ref().map(|out| out.join(name)) }
+        Task { request, out: args.out.as_ref().map(|out| out.join(name)) }
     };
     let tasks: Vec<Task<'_>> = experiments.into_iter().map(task).collect();
     let policy = Policy { is_fresh: args.fresh, allows_mixed_builds: false };
-    let ending = run(&tasks, &args.manner, policy)?;
+    let ending = run(&tasks, &args.common, policy)?;
     let Ending::Finished(outcomes) = ending else {
         return interrupted(&ending, args.out.is_some());
     };
     let mut stdout = io::stdout().lock();
-    if args.manner.json {
-        let rows = outcomes.iter().flat_map(Outcome::rows_for_machines);
+    if args.common.json {
+        let rows = outcomes.iter().flat_map(Outcome::rows_as_json);
         let lines: Vec<String> = rows.map(|row| row.to_string()).collect();
         writeln!(stdout, "[\n{}\n]", lines.join(",\n"))?;
     } else {
-        write!(stdout, "{}", table::of_all(&outcomes, look()))?;
+        write!(stdout, "{}", table::of_all(&outcomes, layout()))?;
     }
     Ok(verdict(&outcomes))
 }
@@ -99,11 +99,11 @@ fn list() -> Result<ExitCode, Box<dyn Error>> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn run(tasks: &[Task<'_>], manner: &Manner, policy: Policy) -> Result<Ending, Box<dyn Error>> {
+fn run(tasks: &[Task<'_>], common: &CommonArgs, policy: Policy) -> Result<Ending, Box<dyn Error>> {
     let shutdown = Shutdown::listen()?;
     let options = Options {
-        n_threads: manner.n_threads(),
-        is_quiet: manner.json,
+        n_threads: common.n_threads(),
+        is_quiet: common.json,
         policy,
         shutdown: &shutdown,
     };
@@ -112,7 +112,7 @@ fn run(tasks: &[Task<'_>], manner: &Manner, policy: Policy) -> Result<Ending, Bo
 
 fn interrupted(ending: &Ending, is_saved: bool) -> Result<ExitCode, Box<dyn Error>> {
     if let Ending::Interrupted { n_done, n_cases } = ending {
-        let rest = if is_saved { "; the same command goes on from here" } else { "" };
+        let rest = if is_saved { "; the same command resumes the run" } else { "" };
         writeln!(io::stderr().lock(), "interrupted: {n_done} of {n_cases} cases done{rest}")?;
     }
     Ok(ExitCode::from(INTERRUPTED))
@@ -122,11 +122,11 @@ fn verdict(outcomes: &[Outcome]) -> ExitCode {
     if !outcomes.iter().all(Outcome::is_complete) {
         return ExitCode::from(FAILED);
     }
-    let is_red = outcomes.iter().any(|outcome| 0 < outcome.n_red());
+    let is_red = outcomes.iter().any(|outcome| 0 < outcome.n_failed());
     if is_red { ExitCode::from(RED) } else { ExitCode::SUCCESS }
 }
 
-/// The terminal's width, where the shell tells it.
-fn look() -> Look {
-    Look::new(std::env::var("COLUMNS").ok().and_then(|columns| columns.parse().ok()))
+/// Width of the terminal, if the shell exports it.
+fn layout() -> TableLayout {
+    TableLayout::new(std::env::var("COLUMNS").ok().and_then(|columns| columns.parse().ok()))
 }

@@ -1,4 +1,4 @@
-//! Command line to run.
+//! The program `jamgrip`: parses the command line and runs the library.
 
 mod args;
 #[cfg(feature = "bag")]
@@ -7,7 +7,9 @@ mod args_bag;
 mod bag;
 mod bench;
 mod experiment;
+mod remedy;
 mod ros_args;
+mod summary;
 
 use std::{
     error::Error,
@@ -20,19 +22,19 @@ use clap::Parser;
 use jamgrip::{
     base::lanes,
     benchmarks::BenchError,
-    host::cache::Cache,
+    host::{cache::Cache, shutdown::Shutdown},
     node::launch::{Finished, Options, launch},
     runner::error::RunnerError,
     scene::{self, Scene, SceneError},
 };
 use ros_args::RosArgs;
 
-/// The middleware crates log what is no fault of anyone's; `RUST_LOG` shows it.
+/// The middleware crates log harmless warnings; `RUST_LOG` shows them.
 const LOG_FILTER: &str = "warn,rustdds=off,ros2_client=off";
 
-/// The run could not begin or go on.
+/// The run could not begin or continue.
 const FAILED: u8 = 1;
-/// The scene is wrong, as clap says of a wrong command line.
+/// The scene or the command line is invalid; clap uses the same code.
 const WRONG: u8 = 2;
 
 fn main() -> ExitCode {
@@ -67,8 +69,9 @@ fn main() -> ExitCode {
         Action::Report { from, to } => experiment::report(&from, &to),
     };
     outcome.unwrap_or_else(|error| {
-        // If standard error is gone there is nobody to tell.
-        drop(writeln!(io::stderr().lock(), "{error}"));
+        let remedy = remedy::of(&*error).map(|it| format!("\n{it}")).unwrap_or_default();
+        // Nothing can be done if standard error is closed.
+        drop(writeln!(io::stderr().lock(), "{error}{remedy}"));
         let is_of_command_line = error.is::<SceneError>()
             || error.is::<ros_args::RosArgsError>()
             || error.downcast_ref::<BenchError>().is_some_and(BenchError::is_of_command_line)
@@ -88,12 +91,13 @@ fn run(args: &args::Run, ros_args: &RosArgs) -> Result<ExitCode, Box<dyn Error>>
         scene_file: args.scene.scene.clone(),
         cache: args.cache.clone().map_or_else(Cache::of_user, Cache::new),
         is_quiet: args.json,
+        shutdown: Shutdown::listen()?,
         facts: Vec::new(),
     };
     let finished = start(&scene, args, &options)?;
-    finished.summary.print(args.json)?;
-    match finished.fault {
-        Some(fault) => Err(fault.into()),
+    summary::print(&finished.summary, args.json)?;
+    match finished.error {
+        Some(error) => Err(error.into()),
         None => Ok(ExitCode::SUCCESS),
     }
 }

@@ -1,29 +1,29 @@
-//! What ROS 2 tools put on a command line: `--ros-args … [--]`.
+//! Arguments of ROS 2 tools: `--ros-args … [--]`.
 //!
-//! Parameters are keys of the scene; files of parameters may hold them nested or with dots, under the
-//! node's name or under `/**`. What a launch system says of every node and the simulator has no
-//! use for, `use_sim_time: false`, is passed over.
+//! Parameters are keys of the scene. Parameter files may hold them nested or with dots, under the
+//! name of the node or under `/**`. `use_sim_time: false`, which launch systems set on every node,
+//! is ignored.
 
 use jamgrip::scene::{Ros, ros_parameters};
 
-/// What was said.
+/// The parsed arguments.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct RosArgs {
-    /// The node's name, without namespace.
+    /// Name of the node, without namespace.
     pub(crate) node: Option<String>,
-    /// The node's namespace.
+    /// Namespace of the node.
     pub(crate) namespace: Option<String>,
-    /// Names to be replaced, and by what.
+    /// Remapped names: from and to.
     pub(crate) remaps: Vec<(String, String)>,
     /// Parameters, as `key=value`.
     pub(crate) parameters: Vec<String>,
-    /// Files of parameters.
+    /// Parameter files.
     pub(crate) parameter_files: Vec<String>,
-    /// Level of the log, such as `debug`.
+    /// Log level, such as `debug`.
     pub(crate) log_level: Option<String>,
 }
 
-/// Why it makes no sense.
+/// Why the arguments are invalid.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub(crate) enum RosArgsError {
     /// An option without its value.
@@ -32,23 +32,23 @@ pub(crate) enum RosArgsError {
         /// The option.
         option: String,
     },
-    /// No rule of the form that the option has.
+    /// The value does not have the form of the option.
     #[error("--ros-args {option} {given}: write {form}")]
     Malformed {
         /// The option.
         option: String,
-        /// What was given.
+        /// The value.
         given: String,
-        /// How it is written.
+        /// The form.
         form: &'static str,
     },
-    /// An option that there is not.
-    #[error("--ros-args: {option} is not known: use -r, -p, --params-file or --log-level")]
+    /// The option is unknown.
+    #[error("--ros-args: unknown option {option}: use -r, -p, --params-file or --log-level")]
     Unknown {
-        /// What was given.
+        /// The option.
         option: String,
     },
-    /// A file of parameters that cannot be used.
+    /// A parameter file is unusable.
     #[error("--ros-args --params-file {file}: {reason}")]
     File {
         /// The file.
@@ -60,10 +60,10 @@ pub(crate) enum RosArgsError {
 
 const LEVELS: [&str; 5] = ["debug", "info", "warn", "error", "fatal"];
 
-/// Takes what belongs to ROS out of a command line; the rest is for the program.
+/// Splits a command line into the arguments of the program and those of ROS 2.
 ///
 /// # Errors
-/// If it makes no sense.
+/// If the ROS 2 arguments are invalid.
 pub(crate) fn split(
     line: impl Iterator<Item = String>,
 ) -> Result<(Vec<String>, RosArgs), RosArgsError> {
@@ -90,7 +90,7 @@ impl RosArgs {
         option: String,
         line: &mut impl Iterator<Item = String>,
     ) -> Result<(), RosArgsError> {
-        // Some options of logging have no value, and nothing here to switch.
+        // These logging options have no value and no effect here.
         const SWITCHES: [&str; 3] = ["stdout-logs", "rosout-logs", "external-lib-logs"];
         let is_switch = |it: &str| SWITCHES.iter().any(|name| it.ends_with(name));
         if is_switch(option.trim_start_matches("--enable-").trim_start_matches("--disable-")) {
@@ -107,7 +107,7 @@ impl RosArgs {
         match option.as_str() {
             "-r" | "--remap" => {
                 let (from, to) = given.split_once(":=").ok_or_else(|| malformed("from:=to"))?;
-                // A rule may name the node that it is for; there is one here.
+                // A rule may be prefixed with a node name; there is one node.
                 let from = from.rsplit_once(':').map_or(from, |(_, name)| name);
                 match from {
                     "__node" | "__name" => self.node = Some(to.to_owned()),
@@ -139,24 +139,24 @@ impl RosArgs {
         }
     }
 
-    /// All parameters as changes of a scene: files first, then what stands on the line.
+    /// All parameters as overrides of a scene: files first, then the command line.
     ///
     /// # Errors
-    /// If a file cannot be used.
+    /// If a file is unusable.
     pub(crate) fn overrides(&self) -> Result<Vec<String>, RosArgsError> {
         let full = self.full_name("/jamgrip");
         let mut all = Self::default();
         for file in &self.parameter_files {
-            let fault = |reason: String| RosArgsError::File { file: file.clone(), reason };
-            let text = std::fs::read_to_string(file).map_err(|error| fault(error.to_string()))?;
-            let found = ros_parameters::of_node(&text, file, &full).map_err(fault)?;
+            let error = |reason: String| RosArgsError::File { file: file.clone(), reason };
+            let text = std::fs::read_to_string(file).map_err(|it| error(it.to_string()))?;
+            let found = ros_parameters::of_node(&text, file, &full).map_err(error)?;
             found.iter().for_each(|(key, value)| all.add(key, value));
         }
         all.parameters.extend(self.parameters.iter().cloned());
         Ok(all.parameters)
     }
 
-    /// The full name of a node that is called `default` if nothing else is said.
+    /// The full name of the node, which is `default` if not renamed.
     pub(crate) fn full_name(&self, default: &str) -> String {
         let (namespace, name) = default.rsplit_once('/').unwrap_or(("", default));
         let namespace = self.namespace.as_deref().unwrap_or(namespace).trim_matches('/');
@@ -164,7 +164,7 @@ impl RosArgs {
         if namespace.is_empty() { format!("/{name}") } else { format!("/{namespace}/{name}") }
     }
 
-    /// Names in a scene's part for ROS.
+    /// Applies the names to the ROS 2 settings of a scene.
     pub(crate) fn rename(&self, ros: &mut Ros) {
         ros.node = self.full_name(&ros.node);
         ros.remaps.extend(self.remaps.iter().cloned());
@@ -181,7 +181,7 @@ mod tests {
 
     /// Oracle: the rules of ROS 2 for command lines.
     #[test]
-    fn ros_takes_its_part_of_the_line() {
+    fn ros_arguments_are_split_off() {
         let line = "jamgrip run s.yaml --ros-args -r __ns:=/left -r __node:=grip -r ~/wrench:=/ft \
                     -p seed:=7 -p use_sim_time:=false --log-level rcl:=DEBUG -- --json";
         let (rest, args) = of(line).unwrap();
@@ -196,16 +196,16 @@ mod tests {
 
     /// Oracle: house rule, an error names place, value and remedy.
     #[test]
-    fn nonsense_is_refused() {
+    fn invalid_arguments_are_rejected() {
         for line in ["-r", "-r a=b", "-p seed=7", "--log-level loud", "--what x", "-p"] {
             let error = of(&format!("jamgrip --ros-args {line}")).unwrap_err().to_string();
             assert!(error.contains(line.split(' ').next().unwrap()), "{line}: {error}");
         }
     }
 
-    /// Oracle: the keys and values written; the line comes after the files.
+    /// Oracle: the keys and values written; the command line comes after the files.
     #[test]
-    fn files_of_parameters_are_read() {
+    fn parameter_files_are_read() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("p.yaml");
         let text = "/**:\n  ros__parameters:\n    seed: 3\n    chamber: { lag: 20 ms }\n\

@@ -62,8 +62,6 @@ impl Deref for ScaledScene {
 
 #[cfg(test)]
 mod tests {
-    use std::sync::Arc;
-
     use crate::{
         base::{Real, parallel},
         cosim::compile::Compiled,
@@ -74,7 +72,7 @@ mod tests {
         let text = "name: heavy\nobject: { shape: { sphere: { radius: 10 mm } }, position: [0 m, 0 m, 10 mm] }";
         let folder = std::path::Path::new("");
         let scene = crate::scene::parse(text, "heavy.yaml", folder, &sets).unwrap();
-        Compiled::new(&scene, &Arc::new(parallel::pool(1).unwrap())).unwrap()
+        Compiled::new(&scene, &parallel::ThreadPool::new(1).unwrap()).unwrap()
     }
 
     /// Oracle: the formulas of the file's head. Substeps are whole parts of the tick: one of 44 is the

@@ -5,8 +5,6 @@
 
 mod density_scaling;
 
-use std::sync::Arc;
-
 pub use density_scaling::ScaledScene;
 
 use super::{
@@ -18,6 +16,7 @@ use crate::{
     base::{
         Pose, Real, Vec3,
         digest::Digest,
+        parallel::ThreadPool,
         real::{Twist, count, real},
     },
     physics::{
@@ -91,7 +90,7 @@ pub struct Compiled {
     /// Limits of the flange's motion.
     pub limits: Limits,
     /// The solver's threads.
-    pub pool: Arc<rayon::ThreadPool>,
+    pub pool: ThreadPool,
 }
 
 /// What a scene compiles to, without the threads that will run it.
@@ -145,10 +144,10 @@ impl Compiled {
     ///
     /// # Errors
     /// If the substep is too long or a shape is unusable.
-    pub fn new(scene: &Scene, pool: &Arc<rayon::ThreadPool>) -> Result<Self, CompileError> {
+    pub fn new(scene: &Scene, pool: &ThreadPool) -> Result<Self, CompileError> {
         let Gripper { model, plan, bulks } = gripper(scene)?;
         let limits = Limits::new(&scene.flange);
-        Ok(Self { scene: scene.clone(), model, plan, bulks, limits, pool: Arc::clone(pool) })
+        Ok(Self { scene: scene.clone(), model, plan, bulks, limits, pool: pool.clone() })
     }
 
     /// Key of the settled start state: everything that the filling depends on, nothing else.

@@ -1,4 +1,4 @@
-//! Two bodies that collide: Hertz's elastic impact, restitution of the viscoelastic law, and
+//! Collision of two bodies: Hertz's elastic impact, restitution of the viscoelastic law, and
 //! oblique impacts that slide throughout.
 //!
 //! ```text
@@ -18,53 +18,53 @@
 //! ω'         spin after the impact of a body that had none   [rad/s]
 //! ```
 //!
-//! Sources: Hertz (1881); Müller & Pöschel (2011) for the rational form with the end condition F ≥ 0
-//! (against an integration of the law it is right to 10⁻⁵ below v* = 0.5 and to 2·10⁻⁴ at 1.2);
+//! Sources: Hertz (1881); Müller & Pöschel (2011) for the rational form with the end condition F ≥
+//! 0 (against an integration of the law it is right to 10⁻⁵ below v* = 0.5 and to 2·10⁻⁴ at 1.2);
 //! rigid-body impact with Coulomb's friction for the last line.
 
 use crate::base::Real;
 
-/// A pair of bodies about to collide.
+/// Two bodies before a collision.
 #[derive(Clone, Copy, Debug)]
 pub struct Collision {
-    /// Effective Young's modulus E* [Pa].
+    /// Effective Young's modulus E* (Pa).
     pub modulus: Real,
-    /// Effective radius R* [m].
+    /// Effective radius R* (m).
     pub radius: Real,
-    /// Effective mass m* [kg].
+    /// Effective mass m* (kg).
     pub mass: Real,
-    /// Closing speed [m/s].
+    /// Closing speed (m/s).
     pub speed: Real,
 }
 
 impl Collision {
-    /// k of F = k ξ^(3/2) [N/m^(3/2)].
+    /// k of F = k ξ^(3/2) (N/m^(3/2)).
     pub fn stiffness(&self) -> Real {
         4.0 / 3.0 * self.modulus * self.radius.sqrt()
     }
 
-    /// Largest overlap without damping [m].
+    /// Largest overlap without damping (m).
     pub fn overlap_max(&self) -> Real {
         (1.25 * self.mass * self.speed * self.speed / self.stiffness()).powf(0.4)
     }
 
-    /// Largest force without damping [N].
+    /// Largest force without damping (N).
     pub fn force_max(&self) -> Real {
         self.stiffness() * self.overlap_max().powf(1.5)
     }
 
-    /// Duration without damping [s].
+    /// Duration without damping (s).
     pub fn duration(&self) -> Real {
         2.943_275 * self.overlap_max() / self.speed
     }
 
-    /// Coefficient of restitution for the dissipation time A [s].
+    /// Coefficient of restitution for the dissipation time A (s).
     pub fn restitution(&self, dissipation_time: Real) -> Real {
         let beta = 1.5 * dissipation_time * (self.stiffness() / self.mass).powf(0.4);
         restitution(beta.sqrt() * self.speed.powf(0.1))
     }
 
-    /// The dissipation time [s] that gives this restitution at this speed.
+    /// The dissipation time (s) that gives this restitution at this speed.
     pub fn dissipation_time_for(&self, restitution: Real) -> Real {
         let (mut less, mut more) = (0.0, 10.0 * self.duration());
         for _ in 0..100 {
@@ -88,7 +88,7 @@ pub fn restitution(scaled_speed: Real) -> Real {
         / polynomial(&[1.0, 1.072_32, 1.727_65, 1.378_42, 1.194_49, 0.467_273, 0.235_585])
 }
 
-/// Of an impact: tangential restitution, and spin times radius over the speed of incidence.
+/// Result of an impact: tangential restitution, and spin times radius over the speed of incidence.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rebound {
     /// e_t.
@@ -97,7 +97,7 @@ pub struct Rebound {
     pub spin: Real,
 }
 
-/// Rebound at `angle` [rad] from the normal if the impact slides throughout; else `None`.
+/// Rebound at `angle` (rad) from the normal if the impact slides throughout; else `None`.
 pub fn sliding_rebound(friction: Real, normal_restitution: Real, angle: Real) -> Option<Rebound> {
     let impulse = friction * (1.0 + normal_restitution);
     (angle.tan() >= 3.5 * impulse).then(|| Rebound {
@@ -110,7 +110,7 @@ pub fn sliding_rebound(friction: Real, normal_restitution: Real, angle: Real) ->
 mod tests {
     use super::*;
 
-    /// Equal grains of the sources: ν = 0.245, ρ = 2000 kg/m³.
+    /// Equal grains of the source: ν = 0.245, ρ = 2000 kg/m³.
     fn equal(modulus: Real, radius: Real, speed: Real) -> Collision {
         let mass = 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3) * 2000.0;
         let modulus = modulus / (2.0 * (1.0 - 0.245 * 0.245));
@@ -118,7 +118,7 @@ mod tests {
     }
 
     #[test]
-    fn the_rational_form_has_the_tabled_restitution() {
+    fn the_rational_form_gives_the_tabulated_restitution() {
         // Oracle: Runge–Kutta integration of the law. Tolerance: quoted error of the rational form,
         // 10⁻⁵ below v* = 0.5, and 2·10⁻⁴ at 1.2, with the last digit of the table.
         for (modulus, radius, a, speed, expected, tolerance) in [
@@ -136,8 +136,8 @@ mod tests {
 
     #[test]
     fn small_dissipation_follows_the_series() {
-        // Oracle: Ramírez et al. (1999), ε ≈ 1 − 1.153449 x² + 0.798267 x⁴ with x² = A κ^(2/5) v^(1/5).
-        // κ = (3/2)^(5/2) k/m*, so x² is β v^(1/5) = v*². Tolerance: the next term, x⁶.
+        // Oracle: Ramírez et al. (1999), ε ≈ 1 − 1.153449 x² + 0.798267 x⁴ with x² = A κ^(2/5)
+        // v^(1/5). κ = (3/2)^(5/2) k/m*, so x² is β v^(1/5) = v*². Tolerance: the next term, x⁶.
         for x in [0.05, 0.1, 0.2] {
             let x: Real = x;
             let series = 1.0 - 1.153_449 * x.powi(2) + 0.798_267 * x.powi(4);

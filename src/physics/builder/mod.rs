@@ -406,7 +406,8 @@ impl SystemBuilder {
             match &wall.shape {
                 WallShape::Plane { normal } => {
                     let length = normal.norm();
-                    if !((length - 1.0).abs() < UNIT_TOLERANCE) {
+                    let is_unit = (length - 1.0).abs() < UNIT_TOLERANCE;
+                    if !is_unit {
                         return Err(BuildError::Normal { wall: k, length });
                     }
                 }

@@ -3,7 +3,6 @@
 use super::surfaces;
 use crate::{
     base::{Pose, Real, Vec3, digest::Digest, parallel, real::Twist},
-    cosim::saved_state,
     physics::{
         System, SystemBuilder,
         boundary::{
@@ -323,12 +322,12 @@ fn lists_threads_and_resuming_do_not_change_a_bit_on_triangles() {
         let mut system = builder.build().unwrap();
         let twist = Twist { linear: Vec3::z() * 0.1, angular: Vec3::new(0.2, 0.0, 3.0) };
         system.model.walls[1].motion = WallMotion::Velocity(twist);
-        let pool = parallel::pool(n_threads).unwrap();
+        let pool = parallel::ThreadPool::new(n_threads).unwrap();
         parallel::lead(&pool, || {
             for k in 0..500 {
                 system.step();
                 if is_resumed && k == 250 {
-                    let state = saved_state::read(&saved_state::write(&system.state)).unwrap();
+                    let state = system.state.clone();
                     assert!(!state.springs.surfaces.ids.is_empty());
                     system.restart(state);
                 }

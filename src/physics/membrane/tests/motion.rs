@@ -33,7 +33,9 @@ fn damping_dissipates_energy_and_internal_forces_conserve_momentum() {
 fn the_bits_do_not_depend_on_the_number_of_threads() {
     let model = model_of(Mesh::half_icosphere(0.04, 16), rubber(1e-3, 1e-4));
     let state = shaken(&model, 1e-4, 0.1);
-    let on = |n| parallel::lead(&parallel::pool(n).unwrap(), || forces_on(&model, &state, -9e4));
+    let on = |n| {
+        parallel::lead(&parallel::ThreadPool::new(n).unwrap(), || forces_on(&model, &state, -9e4))
+    };
     let bits = |forces: Vec<Vec3>| -> Vec<[u64; 3]> {
         forces.iter().map(|f| [f.x.to_bits(), f.y.to_bits(), f.z.to_bits()]).collect()
     };

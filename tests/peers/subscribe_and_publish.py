@@ -1,7 +1,7 @@
-"""Hears clock, wrench and clouds, and says commands: what a ROS 2 user's process would do.
+"""Subscribes to clock, wrench and clouds, and publishes commands, as a user's process would do.
 
-Says `ready` once its readers are matched, then `heard N` for every tick of 1 ms, and one JSON line when
-the clock has reached the number of seconds given as argument.
+Prints `ready` once its readers are matched, then `received N` for every tick of 1 ms, and one JSON line
+when the clock has reached the number of seconds given as argument.
 """
 
 import json
@@ -28,14 +28,14 @@ wait_for(lambda: flange_cmd.get_matched_subscriptions(), "the flange's subscribe
 nodes = node.nodes()
 print("ready", flush=True)
 
-ticks, forces, clouds, sheets, statuses = [], [], 0, 0, []
-faults = []
-n_said = 0
+ticks, forces, clouds, membranes, statuses = [], [], 0, 0, []
+errors = []
+n_published = 0
 deadline = time.monotonic() + 120
 while (not ticks or ticks[-1] < until_s) and time.monotonic() < deadline:
     for it in clock.take(N=1000):
         ticks.append(it.clock.seconds())
-        print("heard", round(1000 * ticks[-1]), flush=True)
+        print("received", round(1000 * ticks[-1]), flush=True)
     for it in wrench.take(N=1000):
         forces.append((it.header.stamp.seconds(), it.wrench.force.z, it.header.frame_id))
     for it in grains.take(N=10):
@@ -43,16 +43,16 @@ while (not ticks or ticks[-1] < until_s) and time.monotonic() < deadline:
         if clouds == 1:
             read = columns(it)
             if read["id"] != list(range(it.width)):
-                faults.append("ids of grains are not 0, 1, 2, …")
+                errors.append("the IDs of the grains are not 0, 1, 2, …")
     for it in membrane.take(N=10):
-        sheets += 1
+        membranes += 1
     statuses += [it.status for it in status.take(N=10)]
-    if n_said < 100:
-        vacuum_cmd.write(t.Float64(-100.0 * n_said))
-        pose = t.Pose(t.Point(0.0, 0.0, 0.001 * n_said), t.Quaternion(0.0, 0.0, 0.0, 1.0))
-        stamp = t.Time(n_said, 5)
+    if n_published < 100:
+        vacuum_cmd.write(t.Float64(-100.0 * n_published))
+        pose = t.Pose(t.Point(0.0, 0.0, 0.001 * n_published), t.Quaternion(0.0, 0.0, 0.0, 1.0))
+        stamp = t.Time(n_published, 5)
         flange_cmd.write(t.PoseStamped(t.Header(stamp, "world"), pose))
-        n_said += 1
+        n_published += 1
     time.sleep(0.0002)
 
 steps = [round((b - a) * 1e9) for a, b in zip(ticks, ticks[1:])]
@@ -67,10 +67,10 @@ print(
             "are_forces_right": all(abs(z - round(s * 1000)) < 1e-9 for s, z, _ in forces),
             "wrench_frame": forces[0][2] if forces else "",
             "n_clouds": clouds,
-            "n_sheets": sheets,
+            "n_membranes": membranes,
             "status": statuses[-1] if statuses else None,
-            "n_said": n_said,
-            "faults": faults,
+            "n_published": n_published,
+            "errors": errors,
         }
     ),
     flush=True,

@@ -1,5 +1,5 @@
-//! Experiments: cases side by side, one that fails, a stop and what goes on from it, folders that
-//! hold something else, and what is told in files.
+//! The experiment runner: cases in parallel, failures, stopping and resuming, folders with other
+//! contents, and result files.
 
 use std::{
     fs,
@@ -17,7 +17,7 @@ use jamgrip::{
         folder::Policy,
         outcome::Outcome,
         report,
-        table::{self, Look},
+        table::{self, TableLayout},
         validation_doc,
     },
 };
@@ -42,20 +42,20 @@ fn run_changed(
 ) -> Result<Ending, RunnerError> {
     let shutdown = experiment.stop.as_ref().map_or_else(Shutdown::default, |it| it.0.clone());
     let overrides = overrides.iter().map(|it| (*it).to_owned()).collect();
-    let order = RunRequest { experiment, size: Size::Quick, overrides, scene: None };
-    let tasks = [Task { order, out: out.map(Path::to_owned) }];
+    let request = RunRequest { experiment, size: Size::Quick, overrides, scene: None };
+    let tasks = [Task { request, out: out.map(Path::to_owned) }];
     runner::run(&tasks, &Options { n_threads, is_quiet: true, policy, shutdown: &shutdown })
 }
 
 fn outcome(ending: Result<Ending, RunnerError>) -> Outcome {
     match ending.unwrap() {
         Ending::Finished(mut outcomes) => outcomes.remove(0),
-        Ending::Interrupted { .. } => panic!("nobody asked for an end"),
+        Ending::Interrupted { .. } => panic!("the run was not stopped"),
     }
 }
 
-/// All but the times on the clock.
-fn timeless(mut outcome: Outcome) -> Outcome {
+/// The outcome without times.
+fn without_times(mut outcome: Outcome) -> Outcome {
     outcome.wall_s = 0.0;
     outcome.cases.iter_mut().for_each(|case| case.wall_s.clear());
     outcome
@@ -67,23 +67,24 @@ fn with(also: &[&str]) -> Oscillator {
 
 /// Oracle: the run on one thread.
 #[test]
-fn cases_side_by_side_give_what_one_after_the_other_gives() {
+fn parallel_cases_give_the_same_results() {
     let one = outcome(run(&with(&[]), None, 1, Policy::default()));
-    assert!(one.rows.len() == 3 && one.n_red() == 0, "{:?}", one.rows);
+    assert!(one.rows.len() == 3 && one.n_failed() == 0, "{:?}", one.rows);
     assert!(one.cases.iter().all(|case| case.wall_s.contains_key("swinging")));
     for n_threads in [2, 7] {
         let many = outcome(run(&with(&[]), None, n_threads, Policy::default()));
-        assert_eq!(timeless(many), timeless(one.clone()));
+        assert_eq!(without_times(many), without_times(one.clone()));
     }
 }
 
-/// Oracle: each of them alone.
+/// Oracle: each experiment alone.
 #[test]
 fn experiments_share_one_queue_and_keep_their_order() {
     let experiments = [with(&["growing"]), with(&[])];
     let task = |experiment| {
-        let order = RunRequest { experiment, size: Size::Full, overrides: Vec::new(), scene: None };
-        Task { order, out: None }
+        let request =
+            RunRequest { experiment, size: Size::Full, overrides: Vec::new(), scene: None };
+        Task { request, out: None }
     };
     let tasks = [task(&experiments[0]), task(&experiments[1])];
     let shutdown = Shutdown::default();
@@ -92,13 +93,13 @@ fn experiments_share_one_queue_and_keep_their_order() {
     let Ending::Finished(found) = runner::run(&tasks, &options).unwrap() else { panic!("stopped") };
     for (found, experiment) in found.into_iter().zip(&experiments) {
         let alone = Outcome { size: Size::Full, ..outcome(run(experiment, None, 1, policy)) };
-        assert_eq!(timeless(found), timeless(alone));
+        assert_eq!(without_times(found), without_times(alone));
     }
 }
 
-/// Oracle: the file itself; a file that is not there is named.
+/// Oracle: the file itself; the error names a missing file.
 #[test]
-fn a_scene_file_takes_the_place_of_the_scene_that_comes_along() {
+fn a_scene_file_replaces_the_built_in_scene() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("mine.yaml");
     let experiment = with(&[]);
@@ -106,7 +107,7 @@ fn a_scene_file_takes_the_place_of_the_scene_that_comes_along() {
         let scene = Some(file.clone());
         let (size, overrides) = (Size::Quick, Vec::new());
         let tasks = [Task {
-            order: RunRequest { experiment: &experiment, size, overrides, scene },
+            request: RunRequest { experiment: &experiment, size, overrides, scene },
             out: None,
         }];
         let shutdown = Shutdown::default();
@@ -123,30 +124,35 @@ fn a_scene_file_takes_the_place_of_the_scene_that_comes_along() {
     assert!(table::command(&found).contains("--scene"));
 }
 
-/// Oracle: the run without the failing cases; their faults are those that they were made for.
+/// Oracle: the run without the failing cases, and the errors that they were made for.
 #[test]
-fn a_case_that_fails_stops_no_other_and_is_a_red_row() {
+fn a_failed_case_is_a_row_that_fails_and_does_not_affect_others() {
     let alone = outcome(run(&with(&[]), None, 2, Policy::default()));
     let found = outcome(run(&with(&["growing", "panicking"]), None, 2, Policy::default()));
     assert!(!found.is_complete());
-    assert_eq!(timeless(alone.clone()).cases, timeless(found.clone()).cases[..3]);
+    assert_eq!(without_times(alone.clone()).cases, without_times(found.clone()).cases[..3]);
     assert_eq!(found.rows[..3], alone.rows);
-    let fault = |i: usize| found.cases[i].fault.clone().unwrap();
-    assert!(fault(3).contains("height [m] of oscillator") && fault(3).contains("damp it"));
-    assert_eq!(fault(4), "the program failed: on purpose");
-    let red: Vec<&str> =
+    let error = |i: usize| found.cases[i].error.clone().unwrap();
+    assert!(error(3).contains("height [m] of oscillator") && error(3).contains("damp it"));
+    assert_eq!(error(4), "the program panicked: on purpose");
+    let failed: Vec<&str> =
         found.rows.iter().filter(|row| !row.pass).map(|row| row.id.as_str()).collect();
-    assert_eq!(red, ["oscillator.growing.ran_to_its_end", "oscillator.panicking.ran_to_its_end"]);
+    assert_eq!(
+        failed,
+        ["oscillator.growing.ran_to_its_end", "oscillator.panicking.ran_to_its_end"]
+    );
     assert!(
-        table::of_one(&found, Look::new(None)).contains("RED oscillator.growing.ran_to_its_end")
+        table::of_one(&found, TableLayout::new(None))
+            .contains("FAIL oscillator.growing.ran_to_its_end")
     );
 }
 
-/// Oracle: the run without a break, bit by bit: digests of all cases and every number found.
+/// Oracle: the run without a break, bit for bit: digests of all cases and all numbers.
 #[test]
-fn a_run_that_was_stopped_goes_on_with_the_same_bits() {
-    let whole = tempfile::tempdir().unwrap();
-    let whole = outcome(run(&with(&[]), Some(&whole.path().join("a")), 2, Policy::default()));
+fn a_stopped_run_resumes_with_the_same_bits() {
+    let uninterrupted = tempfile::tempdir().unwrap();
+    let uninterrupted =
+        outcome(run(&with(&[]), Some(&uninterrupted.path().join("a")), 2, Policy::default()));
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("results/oscillator_quick");
     let stopping = Oscillator { stop: Some((Shutdown::default(), 17)), ..with(&[]) };
@@ -155,15 +161,15 @@ fn a_run_that_was_stopped_goes_on_with_the_same_bits() {
     assert!(out.join("states/damping_0.1.state").exists());
     assert!(!out.join("result.json").exists());
     let resumed = outcome(run(&with(&[]), Some(&out), 1, Policy::default()));
-    assert_eq!(timeless(resumed.clone()), timeless(whole));
+    assert_eq!(without_times(resumed.clone()), without_times(uninterrupted));
     assert_eq!(fs::read_dir(out.join("states")).unwrap().count(), 0);
-    // Once more: everything is read, nothing runs, and the times are those of then.
+    // Once more: everything is read, nothing runs, and the times are those of the first run.
     assert_eq!(outcome(run(&with(&[]), Some(&out), 2, Policy::default())), resumed);
 }
 
 /// Oracle: the run without a break.
 #[test]
-fn damaged_states_and_cases_begin_anew() {
+fn damaged_states_and_cases_are_restarted() {
     let folder = tempfile::tempdir().unwrap();
     let stopping = Oscillator { stop: Some((Shutdown::default(), 9)), ..with(&[]) };
     run(&stopping, Some(folder.path()), 1, Policy::default()).unwrap();
@@ -172,23 +178,26 @@ fn damaged_states_and_cases_begin_anew() {
     let middle = bytes.len() / 2;
     bytes[middle] ^= 1;
     fs::write(&state, bytes).unwrap();
-    // The longest case is begun first and was kept.
+    // The longest case was started first and is stored.
     fs::write(folder.path().join("cases/damping_0.2.json"), "{").unwrap();
     let found = outcome(run(&with(&[]), Some(folder.path()), 2, Policy::default()));
-    let whole = outcome(run(&with(&[]), None, 2, Policy::default()));
-    assert_eq!(timeless(found), timeless(whole));
+    let uninterrupted = outcome(run(&with(&[]), None, 2, Policy::default()));
+    assert_eq!(without_times(found), without_times(uninterrupted));
 }
 
-/// Oracle: what differs is named, with a remedy; what was there stays until `--fresh`.
+/// Oracle: differences are named with a remedy; old files stay until `--fresh`.
 #[test]
-fn a_folder_of_something_else_is_refused() {
+fn a_folder_with_other_contents_is_rejected() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path();
     let first = outcome(run(&with(&[]), Some(out), 2, Policy::default()));
     let changed = |policy| run_changed(&with(&[]), Some(out), 2, policy, &["omega=4"]);
     let error = changed(Policy { allows_mixed_builds: true, ..Policy::default() }).unwrap_err();
     let text = error.to_string();
-    assert!(text.contains("the scene is unchanged there, changed by omega=4 here"), "{text}");
+    assert!(
+        text.contains("the scene is unchanged in the folder, but changed by omega=4 here"),
+        "{text}"
+    );
     assert!(text.contains("--fresh") && text.contains("--out"), "{text}");
     assert_eq!(outcome(run(&with(&[]), Some(out), 2, Policy::default())), first);
 
@@ -201,9 +210,9 @@ fn a_folder_of_something_else_is_refused() {
     outcome(run(&with(&[]), Some(out), 2, mixed));
 
     fs::write(out.join("mine.txt"), "mine").unwrap();
-    let anew = outcome(changed(Policy { is_fresh: true, ..Policy::default() }));
-    assert_eq!(anew.scene.overrides, ["omega=4"]);
-    assert!(out.join("mine.txt").exists(), "files of others stay");
+    let restarted = outcome(changed(Policy { is_fresh: true, ..Policy::default() }));
+    assert_eq!(restarted.scene.overrides, ["omega=4"]);
+    assert!(out.join("mine.txt").exists(), "other files stay");
 
     let foreign = tempfile::tempdir().unwrap();
     fs::write(foreign.path().join("mine.txt"), "mine").unwrap();
@@ -211,9 +220,9 @@ fn a_folder_of_something_else_is_refused() {
     assert!(matches!(error, RunnerError::Foreign { .. }), "{error}");
 }
 
-/// Oracle: the outcome in memory, and an HTML parser that knows nothing of ours.
+/// Oracle: the outcome in memory, and an independent HTML parser.
 #[test]
-fn files_tell_what_was_found() {
+fn files_contain_the_outcome() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path();
     let found = outcome(run(&with(&["growing"]), Some(out), 2, Policy::default()));
@@ -227,37 +236,46 @@ fn files_tell_what_was_found() {
     assert_eq!(height.to_bits(), found.quantities[1].value.to_bits(), "not a digit is lost");
 
     let page = out.join("report.html");
-    let told = peers::run("read_page.py", &[page.to_str().unwrap()]);
+    let page_text = peers::run("read_page.py", &[page.to_str().unwrap()]);
     for row in &found.rows {
-        assert!(told.contains(&format!("id {}\n", row.id)), "{} in {told}", row.id);
+        assert!(page_text.contains(&format!("id {}\n", row.id)), "{} in {page_text}", row.id);
     }
     for plot in &found.plots {
-        assert!(told.contains(&plot.title) && told.contains(&plot.source_says), "{told}");
+        assert!(
+            page_text.contains(&plot.title) && page_text.contains(&plot.source_says),
+            "{page_text}"
+        );
     }
-    assert!(told.contains("pictures 1\n") && told.contains(&found.about), "{told}");
-    assert!(told.contains("Left validity: damping_0.2: overlap over diameter"), "{told}");
-    assert!(told.contains("jamgrip experiment oscillator --quick"), "{told}");
+    assert!(page_text.contains("pictures 1\n") && page_text.contains(&found.about), "{page_text}");
+    assert!(
+        page_text.contains("Outside the model's validity: damping_0.2: overlap over diameter"),
+        "{page_text}"
+    );
+    assert!(page_text.contains("jamgrip experiment oscillator --quick"), "{page_text}");
 }
 
 /// Oracle: the rows themselves.
 #[test]
-fn documents_and_tables_name_every_row() {
+fn documents_and_tables_contain_every_row() {
     let found = outcome(run(&with(&["growing"]), None, 2, Policy::default()));
-    let told = validation_doc::tell(std::slice::from_ref(&found));
-    let document = &told[0].1;
-    assert_eq!((told.len(), told[1].0.as_str()), (2, "figures/oscillator_quick_1.svg"));
-    let screen = table::of_all(std::slice::from_ref(&found), Look::new(Some(110)));
+    let files = validation_doc::files(std::slice::from_ref(&found));
+    let document = &files[0].1;
+    assert_eq!((files.len(), files[1].0.as_str()), (2, "figures/oscillator_quick_1.svg"));
+    let screen = table::of_all(std::slice::from_ref(&found), TableLayout::new(Some(110)));
     let first_column: String = screen.lines().filter_map(|it| it.split('┆').next()).collect();
     let first_column = first_column.replace(['│', ' '], "");
     for row in &found.rows {
         assert!(document.contains(&format!("`{}`", row.id)), "{document}");
         assert!(first_column.contains(&row.id), "{screen}");
     }
-    assert!(document.contains("height at the end \\| of the run"), "cells do not break");
+    assert!(document.contains("height at the end \\| of the run"), "cells are escaped");
     let in_table = |line: &&str| line.starts_with(['│', '┌', '├', '└']);
     assert!(screen.lines().filter(in_table).all(|line| line.chars().count() <= 110));
-    assert!(screen.contains("3 of 4 rows pass") && screen.contains("left validity"), "{screen}");
-    let rows: Vec<_> = found.rows_for_machines().collect();
+    assert!(
+        screen.contains("3 of 4 rows pass") && screen.contains("outside the model's validity"),
+        "{screen}"
+    );
+    let rows: Vec<_> = found.rows_as_json().collect();
     assert_eq!(rows.len(), 4);
     for key in ["id", "quantity", "unit", "oracle", "tolerance", "measured", "pass", "reason"] {
         assert!(rows.iter().all(|row| !row[key].is_null()), "{key}");
@@ -265,25 +283,25 @@ fn documents_and_tables_name_every_row() {
     assert_eq!(rows[3]["pass"], false);
 }
 
-/// Oracle: the kept results, told anew. After a change of either:
+/// Oracle: the stored results, rendered again. After a change of either:
 /// `JAMGRIP_UPDATE=1 cargo test --release --test it validation`, then read the diff.
 #[test]
-fn the_validation_document_is_made_of_the_kept_results() {
-    let kept = validation_doc::read(Path::new("tests/golden/validation")).unwrap();
-    let told = validation_doc::tell(&kept);
+fn the_validation_document_matches_the_stored_results() {
+    let stored = validation_doc::read(Path::new("tests/golden/validation")).unwrap();
+    let files = validation_doc::files(&stored);
     let is_ours = |name: &String| name == "validation.md" || name.starts_with("figures/");
-    assert!(told.iter().all(|(name, _)| is_ours(name)), "only these may be replaced");
+    assert!(files.iter().all(|(name, _)| is_ours(name)), "only these may be replaced");
     if std::env::var_os("JAMGRIP_UPDATE").is_some() {
         drop(fs::remove_dir_all("docs/figures"));
-        validation_doc::write(&kept, Path::new("docs")).unwrap();
+        validation_doc::write(&stored, Path::new("docs")).unwrap();
     }
-    for (name, text) in &told {
-        let there = fs::read_to_string(Path::new("docs").join(name)).unwrap_or_default();
-        assert!(there == *text, "docs/{name} is not what the kept results say");
+    for (name, text) in &files {
+        let present = fs::read_to_string(Path::new("docs").join(name)).unwrap_or_default();
+        assert!(present == *text, "docs/{name} is out of date");
     }
     let n_figures = fs::read_dir("docs/figures").map_or(0, Iterator::count);
-    assert_eq!(n_figures + 1, told.len(), "no figure is left over");
-    for outcome in &kept {
+    assert_eq!(n_figures + 1, files.len(), "no figure is left over");
+    for outcome in &stored {
         assert_eq!(report::page(outcome).matches("<figure>").count(), outcome.plots.len());
     }
 }
@@ -292,9 +310,9 @@ fn jamgrip(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_jamgrip")).args(arguments).output().unwrap()
 }
 
-/// Oracle: the list itself, and exit codes as `--help` tells them.
+/// Oracle: the list itself, and exit codes as documented in `--help`.
 #[test]
-fn experiments_are_named_and_unknown_ones_refused() {
+fn experiments_are_listed_and_unknown_ones_rejected() {
     let listed = jamgrip(&["experiment", "--list"]);
     assert!(listed.status.success());
     let listed = String::from_utf8(listed.stdout).unwrap();
@@ -304,15 +322,15 @@ fn experiments_are_named_and_unknown_ones_refused() {
     for arguments in [&["experiment", "triaxal"][..], &["validate", "triaxal"]] {
         let output = jamgrip(arguments);
         assert_eq!(output.status.code(), Some(2));
-        let complaint = String::from_utf8(output.stderr).unwrap();
-        assert!(complaint.contains("no experiment `triaxal`"), "{complaint}");
+        let errors = String::from_utf8(output.stderr).unwrap();
+        assert!(errors.contains("no experiment `triaxal`"), "{errors}");
         assert!(output.stdout.is_empty());
     }
     let missing = jamgrip(&["report", "/nowhere", "/nowhere"]);
     assert_eq!(missing.status.code(), Some(1));
 }
 
-/// Oracle: the rules for names that become names of files, and for the sizes that can be read.
+/// Oracle: the rules for names of files, and for the sizes.
 #[test]
 fn every_experiment_can_be_read_in_both_sizes() {
     for it in jamgrip::experiments::EXPERIMENTS {

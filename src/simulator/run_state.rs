@@ -1,6 +1,6 @@
-//! Whether time goes on: states of the simulation, steps, resets, and what is advertised.
+//! The run state: playing, paused or stopped; steps, resets, and the advertised features.
 
-use super::{Simulator, Unreadable, World, failed, goals::GoalId, ok};
+use super::{DecodeError, Simulator, World, failed, goals::GoalId, ok};
 use crate::{
     command::change::{Change, Scope},
     cosim::refused::ChangeError,
@@ -17,7 +17,7 @@ use crate::{
     },
 };
 
-/// What is advertised: everything here has passed the black-box test.
+/// The advertised features. The conformance test covers all of them.
 const FEATURES: [u8; 32] = [
     F::SPAWNING,
     F::DELETING,
@@ -53,30 +53,30 @@ const FEATURES: [u8; 32] = [
     F::STEP_SIMULATION_MULTIPLE,
 ];
 
-/// Whether time goes on.
-pub(super) struct Running {
+/// Whether the simulation may advance.
+pub(super) struct RunState {
     state: u8,
-    /// True in the first stop, which a first command ends.
+    /// True during the initial stop, which a first command ends.
     is_first: bool,
     stepping: Option<Stepping>,
 }
 
-/// Steps that someone waits for.
+/// A requested series of steps.
 pub(super) struct Stepping {
-    left: u64,
-    done: u64,
-    whose: Whose,
+    n_left: u64,
+    n_done: u64,
+    requester: Requester,
 }
 
-/// Who waits for steps.
-enum Whose {
+/// Who requested steps.
+enum Requester {
     /// A client of the service.
     Client(RequestId),
     /// A goal of the action.
     Goal(GoalId),
 }
 
-impl Running {
+impl RunState {
     pub(super) fn new(is_stopped: bool) -> Self {
         let state = if is_stopped {
             SimulationState::STATE_STOPPED
@@ -117,21 +117,21 @@ impl Running {
             .contains(&self.state)
     }
 
-    /// The state before.
+    /// Enters the loading state and returns the previous one.
     pub(super) fn begin_loading(&mut self) -> u8 {
         self.is_first = false;
         std::mem::replace(&mut self.state, SimulationState::STATE_LOADING_WORLD)
     }
 
-    /// A world is there. Who has been told to quit meanwhile quits.
+    /// Stops in the loaded world, unless a request to quit came in the meantime.
     pub(super) fn end_loading(&mut self) {
         if !self.is_quitting() {
             self.state = SimulationState::STATE_STOPPED;
         }
     }
 
-    /// The world that was there before is there still.
-    pub(super) fn give_up_loading(&mut self, before: u8) {
+    /// Returns to the state before loading, unless a request to quit came in the meantime.
+    pub(super) fn abort_loading(&mut self, before: u8) {
         if !self.is_quitting() {
             self.state = before;
         }
@@ -142,10 +142,10 @@ impl Running {
         self.state = SimulationState::STATE_NO_WORLD;
     }
 
-    /// True if steps may begin.
-    fn is_ready_to_step(&self) -> Result<(), String> {
+    /// Checks that steps may begin.
+    fn check_ready_to_step(&self) -> Result<(), String> {
         if self.stepping.is_some() {
-            return Err("steps are being made: wait for them or cancel them".to_owned());
+            return Err("another step request is running: wait for it or cancel it".to_owned());
         }
         if self.state != SimulationState::STATE_PAUSED {
             return Err("the simulation is not paused: pause it first".to_owned());
@@ -156,8 +156,8 @@ impl Running {
 
 impl Simulator {
     pub(super) fn features(&self) -> GetSimulatorFeaturesResponse {
-        let is_there = |it: &u8| !self.is_monotonic || *it != F::SIMULATION_RESET_TIME;
-        let features = FEATURES.into_iter().filter(is_there).map(u16::from).collect();
+        let is_supported = |it: &u8| !self.is_monotonic || *it != F::SIMULATION_RESET_TIME;
+        let features = FEATURES.into_iter().filter(is_supported).map(u16::from).collect();
         let custom_info = format!(
             "jamgrip {}; ticks of {} ns",
             env!("CARGO_PKG_VERSION"),
@@ -168,7 +168,7 @@ impl Simulator {
     }
 
     pub(super) fn simulation_state(&self) -> GetSimulationStateResponse {
-        let state = SimulationState { state: self.running.state };
+        let state = SimulationState { state: self.run_state.state };
         GetSimulationStateResponse { state, result: ok() }
     }
 
@@ -177,27 +177,27 @@ impl Simulator {
         request: &SetSimulationStateRequest,
         world: &mut World<'_>,
     ) -> SetSimulationStateResponse {
-        let result = self.go_to(request.state.state, world);
+        let result = self.enter_state(request.state.state, world);
         SetSimulationStateResponse { result }
     }
 
-    fn go_to(&mut self, target: u8, world: &mut World<'_>) -> SimResult {
+    fn enter_state(&mut self, target: u8, world: &mut World<'_>) -> SimResult {
         use SetSimulationStateResponse as R;
         use SimulationState as S;
-        let now = self.running.state;
-        if target == now && !(target == S::STATE_STOPPED && self.running.stepping.is_some()) {
-            return failed(R::ALREADY_IN_TARGET_STATE, "the simulation is in this state already");
+        let now = self.run_state.state;
+        if target == now && !(target == S::STATE_STOPPED && self.run_state.stepping.is_some()) {
+            return failed(R::ALREADY_IN_TARGET_STATE, "the simulation is already in this state");
         }
         let is_world_state =
             [S::STATE_PLAYING, S::STATE_PAUSED, S::STATE_STOPPED].contains(&target);
         if is_world_state && !self.has_world() {
-            let why = "no world is loaded: load one first";
-            return failed(R::STATE_TRANSITION_ERROR, why);
+            let reason = "no world is loaded: load one first";
+            return failed(R::STATE_TRANSITION_ERROR, reason);
         }
         match target {
-            S::STATE_PLAYING | S::STATE_PAUSED if self.running.stepping.is_some() => {
-                let why = "steps are being made: wait for them, cancel them, or stop";
-                return failed(R::STATE_TRANSITION_ERROR, why);
+            S::STATE_PLAYING | S::STATE_PAUSED if self.run_state.stepping.is_some() => {
+                let reason = "a step request is running: wait for it, cancel it, or stop";
+                return failed(R::STATE_TRANSITION_ERROR, reason);
             }
             S::STATE_PLAYING | S::STATE_PAUSED => {}
             S::STATE_STOPPED | S::STATE_QUITTING => {
@@ -208,16 +208,16 @@ impl Simulator {
                 {
                     return failed(R::STATE_TRANSITION_ERROR, error);
                 }
-                self.register.forget_spawned(&self.scene);
+                self.entity_table.remove_spawned(&self.scene);
             }
             S::STATE_NO_WORLD | S::STATE_LOADING_WORLD => {
-                let why = "worlds are loaded and unloaded by services of their own";
-                return failed(R::INCORRECT_TRANSITION, why);
+                let reason = "worlds are loaded and unloaded by their own services";
+                return failed(R::INCORRECT_TRANSITION, reason);
             }
             _ => return failed(R::INCORRECT_TRANSITION, format!("there is no state {target}")),
         }
-        self.running.state = target;
-        self.running.is_first = false;
+        self.run_state.state = target;
+        self.run_state.is_first = false;
         ok()
     }
 
@@ -232,9 +232,9 @@ impl Simulator {
         let scope = match request.scope {
             R::SCOPE_DEFAULT | R::SCOPE_ALL => Scope::ALL,
             R::SCOPE_TIME if self.is_monotonic => {
-                let why = "outputs.ros.monotonic_clock is true: time never goes back";
+                let reason = "outputs.ros.monotonic_clock is true: time cannot be reset";
                 return ResetSimulationResponse {
-                    result: failed(SimResult::RESULT_FEATURE_UNSUPPORTED, why),
+                    result: failed(SimResult::RESULT_FEATURE_UNSUPPORTED, reason),
                 };
             }
             scope if scope & !known == 0 => Scope {
@@ -243,23 +243,24 @@ impl Simulator {
                 spawned: has(R::SCOPE_SPAWNED),
             },
             scope => {
-                let why = format!("scope {scope} has bits beyond time 1, state 2 and spawned 4");
+                let reason =
+                    format!("scope {scope} has bits other than time 1, state 2, spawned 4");
                 return ResetSimulationResponse {
-                    result: failed(SimResult::RESULT_FEATURE_UNSUPPORTED, why),
+                    result: failed(SimResult::RESULT_FEATURE_UNSUPPORTED, reason),
                 };
             }
         };
-        if self.running.stepping.is_some() {
-            let why = "steps are being made: wait for them, cancel them, or stop";
+        if self.run_state.stepping.is_some() {
+            let reason = "a step request is running: wait for it, cancel it, or stop";
             return ResetSimulationResponse {
-                result: failed(SimResult::RESULT_INCORRECT_STATE, why),
+                result: failed(SimResult::RESULT_INCORRECT_STATE, reason),
             };
         }
         let scope = Scope { time: scope.time && !self.is_monotonic, ..scope };
         let result = match self.change(&Change::Reset(scope), world) {
             Ok(()) => {
                 if scope.spawned {
-                    self.register.forget_spawned(&self.scene);
+                    self.entity_table.remove_spawned(&self.scene);
                 }
                 ok()
             }
@@ -272,15 +273,15 @@ impl Simulator {
     pub(super) fn step_simulation(
         &mut self,
         body: &Cdr,
-        asker: &RequestId,
-    ) -> Result<Option<Cdr>, Unreadable> {
+        id: &RequestId,
+    ) -> Result<Option<Cdr>, DecodeError> {
         let StepSimulationRequest { steps } = body.read()?;
-        let result = match self.running.is_ready_to_step() {
-            Err(why) => failed(SimResult::RESULT_OPERATION_FAILED, why),
+        let result = match self.run_state.check_ready_to_step() {
+            Err(reason) => failed(SimResult::RESULT_OPERATION_FAILED, reason),
             Ok(()) if steps == 0 => ok(),
             Ok(()) => {
-                let whose = Whose::Client(asker.clone());
-                self.running.stepping = Some(Stepping { left: steps, done: 0, whose });
+                let requester = Requester::Client(id.clone());
+                self.run_state.stepping = Some(Stepping { n_left: steps, n_done: 0, requester });
                 return Ok(None);
             }
         };
@@ -289,46 +290,47 @@ impl Simulator {
 
     /// Begins the steps of a goal.
     pub(super) fn begin_steps(&mut self, steps: u64, goal: GoalId) -> Result<(), String> {
-        self.running.is_ready_to_step()?;
+        self.run_state.check_ready_to_step()?;
         if 0 < steps {
-            self.running.stepping =
-                Some(Stepping { left: steps, done: 0, whose: Whose::Goal(goal) });
+            let requester = Requester::Goal(goal);
+            self.run_state.stepping = Some(Stepping { n_left: steps, n_done: 0, requester });
         }
         Ok(())
     }
 
-    /// Ends the steps of a goal; how many were made and how many not.
+    /// Ends the steps of a goal. Returns the numbers of completed and remaining steps.
     pub(super) fn cancel_steps(&mut self, goal: GoalId) -> Option<(u64, u64)> {
-        let is_its = |it: &Stepping| matches!(it.whose, Whose::Goal(id) if id == goal);
-        let stepping = self.running.stepping.take_if(|it| is_its(it))?;
-        Some((stepping.done, stepping.left))
+        let is_goal = |it: &Stepping| matches!(it.requester, Requester::Goal(id) if id == goal);
+        let stepping = self.run_state.stepping.take_if(|it| is_goal(it))?;
+        Some((stepping.n_done, stepping.n_left))
     }
 
-    /// A tick has ended: counts it, and tells those who wait.
-    pub(super) fn steps_ticked(&mut self) {
-        let Some(mut stepping) = self.running.stepping.take() else { return };
-        stepping.left -= 1;
-        stepping.done += 1;
-        let is_done = stepping.left == 0;
-        match &stepping.whose {
-            Whose::Client(asker) if is_done => {
-                self.send_answer(asker.clone(), &StepSimulationResponse { result: ok() });
+    /// Counts a tick as a step, and reports it to the requester.
+    pub(super) fn count_step(&mut self) {
+        let Some(mut stepping) = self.run_state.stepping.take() else { return };
+        stepping.n_left -= 1;
+        stepping.n_done += 1;
+        let is_done = stepping.n_left == 0;
+        match &stepping.requester {
+            Requester::Client(id) if is_done => {
+                self.send_response(id.clone(), &StepSimulationResponse { result: ok() });
             }
-            Whose::Client(_) => {}
-            Whose::Goal(goal) => self.goal_stepped(*goal, stepping.done, stepping.left),
+            Requester::Client(_) => {}
+            Requester::Goal(goal) => self.report_goal_step(*goal, stepping.n_done, stepping.n_left),
         }
         if !is_done {
-            self.running.stepping = Some(stepping);
+            self.run_state.stepping = Some(stepping);
         }
     }
 
-    pub(super) fn end_steps(&mut self, why: &str) {
-        let Some(stepping) = self.running.stepping.take() else { return };
-        let why = format!("{why} after {} steps, {} were left", stepping.done, stepping.left);
-        let result = failed(SimResult::RESULT_OPERATION_FAILED, why);
-        match stepping.whose {
-            Whose::Client(asker) => self.send_answer(asker, &StepSimulationResponse { result }),
-            Whose::Goal(goal) => self.abort_goal(goal, result),
+    pub(super) fn end_steps(&mut self, reason: &str) {
+        let Some(stepping) = self.run_state.stepping.take() else { return };
+        let (n_done, n_left) = (stepping.n_done, stepping.n_left);
+        let reason = format!("{reason} after {n_done} steps with {n_left} remaining");
+        let result = failed(SimResult::RESULT_OPERATION_FAILED, reason);
+        match stepping.requester {
+            Requester::Client(id) => self.send_response(id, &StepSimulationResponse { result }),
+            Requester::Goal(goal) => self.abort_goal(goal, result),
         }
     }
 }
