@@ -137,7 +137,7 @@ pub struct WallMemory {
 /// An invalid parameter of a motion.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("{what} is {value:e}; it must be {limit}")]
-pub struct BadMotion {
+pub struct MotionError {
     /// The parameter, with its unit.
     pub what: &'static str,
     /// Its value.
@@ -172,7 +172,7 @@ impl WallMotion {
     ///
     /// # Errors
     /// The first parameter that is not finite, not positive where it must be, or not a unit vector.
-    pub fn check(&self) -> Result<(), BadMotion> {
+    pub fn check(&self) -> Result<(), MotionError> {
         match self {
             Self::Fixed | Self::External => Ok(()),
             Self::Velocity(twist) => twist
@@ -201,7 +201,7 @@ impl Servo {
         (self.gain * deviation).clamp(-self.speed_max, self.speed_max)
     }
 
-    fn check(&self) -> Result<(), BadMotion> {
+    fn check(&self) -> Result<(), MotionError> {
         unit(&self.axis)?;
         finite("target of the servo (N) or (Pa)", self.target)?;
         positive("full scale of the servo (N) or (Pa)", self.full_scale)?;
@@ -223,7 +223,7 @@ impl Hinge {
         Twist { linear: chord / dt, angular: self.axis * (rotation / dt) }
     }
 
-    fn check(&self) -> Result<(), BadMotion> {
+    fn check(&self) -> Result<(), MotionError> {
         unit(&self.axis)?;
         self.point.iter().try_for_each(|value| finite("point of the hinge (m)", *value))?;
         match self.turn {
@@ -255,25 +255,29 @@ fn along(axis: &Vec3, speed: Real) -> Twist {
     Twist { linear: axis.map(|component| component * speed + 0.0), angular: Vec3::zeros() }
 }
 
-fn oscillation(amplitude: Real, frequency: Real, phase: Real) -> Result<(), BadMotion> {
+fn oscillation(amplitude: Real, frequency: Real, phase: Real) -> Result<(), MotionError> {
     finite("amplitude (m) or (rad)", amplitude)?;
     positive("frequency (Hz)", frequency)?;
     finite("phase (rad)", phase)
 }
 
-fn finite(what: &'static str, value: Real) -> Result<(), BadMotion> {
-    if value.is_finite() { Ok(()) } else { Err(BadMotion { what, value, limit: "finite" }) }
+fn finite(what: &'static str, value: Real) -> Result<(), MotionError> {
+    if value.is_finite() { Ok(()) } else { Err(MotionError { what, value, limit: "finite" }) }
 }
 
-fn positive(what: &'static str, value: Real) -> Result<(), BadMotion> {
+fn positive(what: &'static str, value: Real) -> Result<(), MotionError> {
     let is_good = value.is_finite() && value > 0.0;
-    if is_good { Ok(()) } else { Err(BadMotion { what, value, limit: "positive and finite" }) }
+    if is_good { Ok(()) } else { Err(MotionError { what, value, limit: "positive and finite" }) }
 }
 
-fn unit(axis: &Vec3) -> Result<(), BadMotion> {
+fn unit(axis: &Vec3) -> Result<(), MotionError> {
     let value = axis.norm();
     let is_unit = (value - 1.0).abs() < 1e-9;
-    if is_unit { Ok(()) } else { Err(BadMotion { what: "length of the axis", value, limit: "1" }) }
+    if is_unit {
+        Ok(())
+    } else {
+        Err(MotionError { what: "length of the axis", value, limit: "1" })
+    }
 }
 
 #[cfg(test)]

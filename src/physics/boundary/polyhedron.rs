@@ -21,7 +21,7 @@ use parry::query::PointQueryWithLocation;
 use parry::shape::{TriMesh, TriMeshFlags, TrianglePointLocation};
 use parry::transformation::try_convex_hull;
 
-use super::shape::{Aabb, Bulk, ShapeError, Signed};
+use super::shape::{Aabb, Bulk, ShapeError, SignedDistance};
 use crate::base::{Mat3, Quat, Real, Vec3};
 
 /// A closed surface of triangles with outward normals, in the frame of its center of mass.
@@ -77,8 +77,8 @@ impl Polyhedron {
         Ok(Self { tree, normals, bounding_radius: size, volume, center_of_mass, second_moment })
     }
 
-    /// Signed distance of `p` (m) from the surface.
-    pub fn distance(&self, p: &Vec3) -> Signed {
+    /// SignedDistance distance of `p` (m) from the surface.
+    pub fn distance(&self, p: &Vec3) -> SignedDistance {
         let (projection, (face, location)) =
             self.tree.project_local_point_and_get_location((*p).into(), false);
         let delta = p - Vec3::from(projection.point);
@@ -86,7 +86,7 @@ impl Polyhedron {
         if let TrianglePointLocation::OnFace(..) = location
             && face_normal != Vec3::zeros()
         {
-            return Signed { distance: delta.dot(&face_normal), normal: face_normal };
+            return SignedDistance { distance: delta.dot(&face_normal), normal: face_normal };
         }
         let length = delta.norm();
         let sign = if projection.is_inside { -1.0 } else { 1.0 };
@@ -95,7 +95,7 @@ impl Polyhedron {
         } else {
             self.mean_normal(face as usize, location)
         };
-        Signed { distance: sign * length, normal }
+        SignedDistance { distance: sign * length, normal }
     }
 
     /// Mean normal of the faces adjacent to an edge or a vertex.

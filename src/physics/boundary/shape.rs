@@ -44,14 +44,14 @@ pub enum Surface {
 
 /// A signed distance and its gradient.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Signed {
+pub struct SignedDistance {
     /// Distance from the surface (m), negative inside.
     pub distance: Real,
     /// Gradient of the distance: a unit vector, outward.
     pub normal: Vec3,
 }
 
-impl Signed {
+impl SignedDistance {
     /// The point of the surface closest to `p`, if this is the distance of `p`.
     #[inline]
     pub fn surface_point(&self, p: &Vec3) -> Vec3 {
@@ -160,9 +160,9 @@ impl Surface {
         Ok(Self::Polyhedron(Box::new(Polyhedron::new(vertices, triangles)?)))
     }
 
-    /// Signed distance of `p` (m) from the surface.
+    /// SignedDistance distance of `p` (m) from the surface.
     #[inline]
-    pub fn distance(&self, p: &Vec3) -> Signed {
+    pub fn distance(&self, p: &Vec3) -> SignedDistance {
         match self {
             Self::Sphere { radius } => ball(p, *radius),
             Self::Cuboid { half } => cuboid(p, half),
@@ -242,15 +242,15 @@ fn capsule_bulk(radius: Real, half_length: Real) -> (Real, Vec3) {
 }
 
 #[inline]
-fn ball(p: &Vec3, radius: Real) -> Signed {
+fn ball(p: &Vec3, radius: Real) -> SignedDistance {
     let length = p.norm();
     // At the center every direction is outward.
     let normal = if length > 0.0 { p / length } else { Vec3::x() };
-    Signed { distance: length - radius, normal }
+    SignedDistance { distance: length - radius, normal }
 }
 
 #[inline]
-fn cuboid(p: &Vec3, half: &Vec3) -> Signed {
+fn cuboid(p: &Vec3, half: &Vec3) -> SignedDistance {
     let beyond = p.abs() - half;
     let outside = beyond.sup(&Vec3::zeros());
     let n_outside = (0..3).filter(|&k| beyond[k] > 0.0).count();
@@ -262,11 +262,11 @@ fn cuboid(p: &Vec3, half: &Vec3) -> Signed {
         let face = beyond.imax();
         (beyond[face], Vec3::ith(face, 1.0))
     };
-    Signed { distance, normal: along.zip_map(p, |a, p| a * 1.0_f64.copysign(p)) }
+    SignedDistance { distance, normal: along.zip_map(p, |a, p| a * 1.0_f64.copysign(p)) }
 }
 
 #[inline]
-fn cylinder(p: &Vec3, radius: Real, half_height: Real) -> Signed {
+fn cylinder(p: &Vec3, radius: Real, half_height: Real) -> SignedDistance {
     let from_axis = (p.x * p.x + p.y * p.y).sqrt();
     let radial =
         if from_axis > 0.0 { Vec3::new(p.x / from_axis, p.y / from_axis, 0.0) } else { Vec3::x() };
@@ -275,10 +275,10 @@ fn cylinder(p: &Vec3, radius: Real, half_height: Real) -> Signed {
     if beyond_side > 0.0 && beyond_end > 0.0 {
         let distance = (beyond_side * beyond_side + beyond_end * beyond_end).sqrt();
         let normal = radial * (beyond_side / distance) + axial * (beyond_end / distance);
-        Signed { distance, normal }
+        SignedDistance { distance, normal }
     } else if beyond_side > beyond_end {
-        Signed { distance: beyond_side, normal: radial }
+        SignedDistance { distance: beyond_side, normal: radial }
     } else {
-        Signed { distance: beyond_end, normal: axial }
+        SignedDistance { distance: beyond_end, normal: axial }
     }
 }

@@ -4,7 +4,7 @@ use rapier3d_f64::parry;
 
 use parry::shape::{Ball, Capsule, Cuboid, Cylinder, Shape};
 
-use super::shape::{ShapeError, Signed, Surface};
+use super::shape::{ShapeError, SignedDistance, Surface};
 use crate::base::random::{Random, Stream};
 use crate::base::{Real, Vec3};
 use crate::physics::membrane::mesh::Mesh;
@@ -41,7 +41,7 @@ fn cube(size: Real, center: Vec3) -> (Vec<Vec3>, Vec<[u32; 3]>) {
 fn check_gradient(surface: &Surface, p: &Vec3) {
     let h = 1e-8;
     let here = surface.distance(p);
-    let near: [Signed; 6] = std::array::from_fn(|k| {
+    let near: [SignedDistance; 6] = std::array::from_fn(|k| {
         let step = if k % 2 == 0 { h } else { -h };
         surface.distance(&(p + Vec3::ith(k / 2, step)))
     });

@@ -220,8 +220,8 @@ mod tests {
         touches.iter().map(of_one).sum()
     }
 
-    /// Oracle: continuity. The largest jump of the force on a path across the valley is proportional to the length of a
-    /// step, for a grain of radius 0.2 with an overlap of 5 %.
+    /// Oracle: continuity. The largest jump of the force on a path across the valley is proportional to the
+    /// length of a step, for a grain of radius 0.2 with an overlap of 5 %.
     #[test]
     fn the_force_is_continuous_in_a_shallow_valley() {
         for slope in [0.0, 1e-6, 0.01, 0.05, 0.1, 0.3] {

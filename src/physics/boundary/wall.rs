@@ -67,15 +67,17 @@ pub enum WallShape {
 impl WallShape {
     /// The surface at the pose of `motion`.
     #[inline]
-    pub fn placed(&self, motion: &BodyMotion) -> Placed {
+    pub fn placed(&self, motion: &BodyMotion) -> PlacedSurface {
         match self {
-            Self::Plane { normal } => Placed::Plane { normal: motion.pose.rotation * normal },
-            Self::Tube { radius } => {
-                Placed::Tube { radius: *radius, axis: motion.pose.rotation * Vec3::z() }
+            Self::Plane { normal } => {
+                PlacedSurface::Plane { normal: motion.pose.rotation * normal }
             }
-            Self::Bowl { radius } => Placed::Bowl { radius: *radius },
-            Self::Ball { radius } => Placed::Ball { radius: *radius },
-            Self::Triangles(_) | Self::Frame => Placed::Frame,
+            Self::Tube { radius } => {
+                PlacedSurface::Tube { radius: *radius, axis: motion.pose.rotation * Vec3::z() }
+            }
+            Self::Bowl { radius } => PlacedSurface::Bowl { radius: *radius },
+            Self::Ball { radius } => PlacedSurface::Ball { radius: *radius },
+            Self::Triangles(_) | Self::Frame => PlacedSurface::Frame,
         }
     }
 
@@ -89,7 +91,7 @@ impl WallShape {
 /// The surface of a wall with directions in world axes, see `WallShape`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[expect(missing_docs, reason = "as in `WallShape`")]
-pub enum Placed {
+pub enum PlacedSurface {
     Plane { normal: Vec3 },
     Tube { radius: Real, axis: Vec3 },
     Bowl { radius: Real },
@@ -97,7 +99,7 @@ pub enum Placed {
     Frame,
 }
 
-impl Placed {
+impl PlacedSurface {
     /// See `WallShape::distance`.
     #[inline(always)]
     pub fn distance(&self, arm: &Vec3) -> Option<(Real, Vec3)> {

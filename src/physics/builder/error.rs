@@ -2,7 +2,7 @@
 
 use crate::{
     base::Real,
-    physics::{boundary::motion::BadMotion, membrane::mesh::MeshError},
+    physics::{boundary::motion::MotionError, membrane::mesh::MeshError},
 };
 
 /// Why parts do not form a system: place, value, limit and remedy.
@@ -111,7 +111,7 @@ pub enum BuildError {
         /// The wall.
         wall: usize,
         /// The invalid parameter.
-        error: BadMotion,
+        error: MotionError,
     },
     /// An invalid mesh.
     #[error("membrane {membrane}: {error}")]

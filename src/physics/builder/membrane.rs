@@ -62,8 +62,8 @@ impl Membrane {
         Self { model, positions, held: Vec::new(), has_free_rims: false }
     }
 
-    /// Lets a wall hold `vertices` at their initial positions in its frame. If a vertex is given several times, the last
-    /// wall holds it.
+    /// Lets a wall hold `vertices` at their initial positions in its frame. If a vertex is given several times,
+    /// the last wall holds it.
     #[must_use]
     pub fn hold(mut self, vertices: Vertices, wall: WallId) -> Self {
         self.held.push((vertices, wall));

@@ -11,7 +11,7 @@ use crate::{
     },
     physics::{
         Model,
-        law::{ContactLaw, ContactState, History, Memory, UnderLaw},
+        law::{ContactLaw, ContactState, History, Memory, WithLaw},
         scratch::{ContactFlags, GrainRow, PairForce, Scratch},
         state::{Grains, Springs},
     },
@@ -49,7 +49,7 @@ struct AllPairs<'a> {
     scratch: &'a mut Scratch,
 }
 
-impl UnderLaw for AllPairs<'_> {
+impl WithLaw for AllPairs<'_> {
     type Output = ();
 
     fn run<C: ContactLaw>(self, law: &C) {

@@ -22,7 +22,7 @@ use crate::{
     physics::{
         Controls, Model, Scratch, State,
         boundary::body::BodyMotion,
-        law::{ContactLaw, History, Memory, UnderLaw},
+        law::{ContactLaw, History, Memory, WithLaw},
         model::TouchedSurface,
         scratch::{SurfaceContact, SurfaceLists},
         state::{Grains, SurfaceHistories, SurfaceHistory},
@@ -45,7 +45,7 @@ pub fn forces(model: &Model, controls: &Controls, state: &mut State, scratch: &m
     while let Some(&[s, _]) = lists.ids.get(begin) {
         let n = lists.ids[begin..].iter().take_while(|ids| ids[0] == s).count();
         if let Some((surface, law)) = model.surface(s as usize) {
-            law.with(OfSurface {
+            law.with(SurfacePass {
                 surface,
                 motion: motion(model, controls, state, s as usize),
                 grains: &state.grains,
@@ -99,7 +99,7 @@ pub(in crate::physics) fn motion<'a>(
 }
 
 /// The listed grains of one surface.
-struct OfSurface<'a> {
+struct SurfacePass<'a> {
     surface: TouchedSurface<'a>,
     motion: &'a BodyMotion,
     grains: &'a Grains,
@@ -113,7 +113,7 @@ struct OfSurface<'a> {
     contacts: &'a mut [Vec<SurfaceContact>],
 }
 
-impl UnderLaw for OfSurface<'_> {
+impl WithLaw for SurfacePass<'_> {
     type Output = ();
 
     fn run<C: ContactLaw>(self, law: &C) {

@@ -18,8 +18,8 @@ use crate::{
     base::{Real, Vec3, lanes::Vector},
     physics::{
         Model,
-        boundary::{body::BodyMotion, wall::Placed},
-        law::{ContactLaw, ContactState, History, Memory, ScalarForce, UnderLaw},
+        boundary::{body::BodyMotion, wall::PlacedSurface},
+        law::{ContactLaw, ContactState, History, Memory, ScalarForce, WithLaw},
         scratch::{ContactFlags, WallForce},
         state::{Grains, ListedSprings},
     },
@@ -39,7 +39,7 @@ pub fn forces(
     while let Some(&[w, _]) = listed.ids.get(begin) {
         let n = listed.ids[begin..].iter().take_while(|ids| ids[0] == w).count();
         let (wall, motion) = (&model.walls[w as usize], &motions[w as usize]);
-        let contacts = OfWall {
+        let contacts = WallPass {
             shape: &wall.shape.placed(motion),
             motion,
             grains,
@@ -54,8 +54,8 @@ pub fn forces(
 }
 
 /// The listed contacts of one wall.
-struct OfWall<'a> {
-    shape: &'a Placed,
+struct WallPass<'a> {
+    shape: &'a PlacedSurface,
     motion: &'a BodyMotion,
     grains: &'a Grains,
     dt: Real,
@@ -65,7 +65,7 @@ struct OfWall<'a> {
     forces: &'a mut [WallForce],
 }
 
-impl UnderLaw for OfWall<'_> {
+impl WithLaw for WallPass<'_> {
     type Output = ();
 
     fn run<C: ContactLaw>(self, law: &C) {
@@ -88,7 +88,7 @@ impl UnderLaw for OfWall<'_> {
 
 /// A wall and the law of its contacts with grains.
 struct Wall<'a, C> {
-    shape: &'a Placed,
+    shape: &'a PlacedSurface,
     surface: RigidSurface<'a, C>,
 }
 

@@ -14,7 +14,7 @@ mod parts; // normal, tangential and cohesive forces
 pub(in crate::physics) mod tests;
 
 pub use hertz_mindlin::{Hertz, HertzMindlin, Mindlin};
-pub use pair_law::{Cohesion, PairLaw, Surface, UnderLaw};
+pub use pair_law::{Cohesion, PairLaw, Surface, WithLaw};
 pub use parts::{
     CohesiveForce, CohesivePart, NoCohesion, NormalForce, NormalPart, Parts, TangentialForce,
     TangentialPart,

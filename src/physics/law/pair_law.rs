@@ -34,7 +34,7 @@ pub enum Cohesion {
 }
 
 /// A computation that is generic over the contact law, such as a pass over contacts.
-pub trait UnderLaw {
+pub trait WithLaw {
     /// Its result.
     type Output;
     /// Runs with `law`.
@@ -66,7 +66,7 @@ impl PairLaw {
 
     /// Runs `work` with the selected law: one `match` for all contacts of a pass.
     #[inline]
-    pub fn with<W: UnderLaw>(&self, work: W) -> W::Output {
+    pub fn with<W: WithLaw>(&self, work: W) -> W::Output {
         match self.cohesion {
             Cohesion::None => work.run(&self.hertz_mindlin()),
             #[cfg(test)]
@@ -105,7 +105,7 @@ impl PairLaw {
 
 struct Range;
 
-impl UnderLaw for Range {
+impl WithLaw for Range {
     type Output = Real;
     fn run<C: ContactLaw>(self, law: &C) -> Real {
         law.range()
@@ -117,7 +117,7 @@ struct Stiffness {
     force: Real,
 }
 
-impl UnderLaw for Stiffness {
+impl WithLaw for Stiffness {
     type Output = Real;
     fn run<C: ContactLaw>(self, law: &C) -> Real {
         law.stiffness(self.radius, self.force)

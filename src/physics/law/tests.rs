@@ -3,7 +3,7 @@
 
 use super::{
     Cohesion, CohesiveForce, CohesivePart, ContactLaw, ContactState, Force, History, PairLaw,
-    Surface, UnderLaw,
+    Surface, WithLaw,
 };
 use crate::{
     base::{
@@ -56,7 +56,7 @@ struct SingleContact<'a> {
     memory: &'a mut Vec<Real>,
 }
 
-impl UnderLaw for SingleContact<'_> {
+impl WithLaw for SingleContact<'_> {
     type Output = Force<Real>;
 
     fn run<C: ContactLaw>(self, law: &C) -> Force<Real> {

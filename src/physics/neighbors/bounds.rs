@@ -5,7 +5,7 @@ use crate::{
     physics::{
         boundary::{
             body::BodyMotion,
-            wall::{Placed, WallModel, WallShape},
+            wall::{PlacedSurface, WallModel, WallShape},
         },
         state::Grains,
     },
@@ -49,11 +49,12 @@ impl Bounds {
         (self.low - point).abs().sup(&(self.high - point).abs()).norm()
     }
 
-    /// Distance (m) by which a wall can move before it may be within `beyond` (m) of contact with a grain, at least 0.
+    /// Distance (m) by which a wall can move before it may be within `beyond` (m) of contact with a grain, at
+    /// least 0.
     pub(super) fn gap_to_wall(
         &self,
         wall: &WallModel,
-        placed: &Placed,
+        placed: &PlacedSurface,
         motion: &BodyMotion,
         beyond: Real,
     ) -> Real {
