@@ -77,7 +77,7 @@ impl Polyhedron {
         Ok(Self { tree, normals, bounding_radius: size, volume, center_of_mass, second_moment })
     }
 
-    /// SignedDistance distance of `p` (m) from the surface.
+    /// Signed distance of `p` (m) from the surface.
     pub fn distance(&self, p: &Vec3) -> SignedDistance {
         let (projection, (face, location)) =
             self.tree.project_local_point_and_get_location((*p).into(), false);

@@ -160,7 +160,7 @@ impl Surface {
         Ok(Self::Polyhedron(Box::new(Polyhedron::new(vertices, triangles)?)))
     }
 
-    /// SignedDistance distance of `p` (m) from the surface.
+    /// Signed distance of `p` (m) from the surface.
     #[inline]
     pub fn distance(&self, p: &Vec3) -> SignedDistance {
         match self {

@@ -144,7 +144,8 @@ impl Contact<'_> {
     }
 }
 
-/// SignedDistance distance (m) of the point at `arm` (m) from the origin of `body`, and the outward unit normal, world axes.
+/// Signed distance (m) of the point at `arm` (m) from the origin of `body`, and the outward unit normal, world
+/// axes.
 #[inline]
 pub fn signed_distance(body: &BodyModel, motion: &BodyMotion, arm: &Vec3) -> (Real, Vec3) {
     match &body.surface {

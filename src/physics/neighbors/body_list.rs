@@ -81,7 +81,7 @@ fn is_complete(
     lists.is_built && lists.near.len() == controls.bodies.len() && is_near.all(|it| it)
 }
 
-/// SignedDistance distance of `point` (m), or a lower bound of it if the bound is at least `enough` (m).
+/// Signed distance of `point` (m), or a lower bound of it if the bound is at least `enough` (m).
 fn distance_at_least(body: &BodyModel, motion: &BodyMotion, point: &Vec3, enough: Real) -> Real {
     let arm = point - motion.pose.translation.vector;
     let beyond = arm.norm() - body.bounding_radius;
