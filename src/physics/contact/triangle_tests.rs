@@ -322,13 +322,13 @@ fn neither_lists_nor_threads_nor_a_break_change_a_bit_on_triangles() {
         let mut builder = filled_cone();
         builder.skin(skin_share * RADIUS);
         let mut system = builder.build().unwrap();
-        let spin = Twist { linear: Vec3::z() * 0.1, angular: Vec3::new(0.2, 0.0, 3.0) };
+        let spin = Twist { linear: Vec3::new(0.3, 0.0, 0.1), angular: Vec3::new(0.2, 0.0, 3.0) };
         system.model.walls[1].motion = WallMotion::Velocity(spin);
         let pool = parallel::pool(n_threads).unwrap();
         parallel::lead(&pool, || {
-            for k in 0..500 {
+            for k in 0..600 {
                 system.step();
-                if breaks && k == 250 {
+                if breaks && k == 400 {
                     let state = saved_state::read(&saved_state::write(&system.state)).unwrap();
                     assert!(!state.springs.places.ids.is_empty());
                     system.restart(state);
@@ -357,12 +357,12 @@ fn lists_miss_no_contact_with_a_large_surface() {
     }
     let surface = Triangles::new(vertices, triangles).unwrap();
     assert_eq!(surface.mesh().triangles.len(), 5000);
-    let twist = Twist { linear: Vec3::z() * 0.5, angular: Vec3::new(3.0, 0.0, 2.0) };
+    let twist = Twist { linear: Vec3::z() * 2.0, angular: Vec3::new(3.0, 0.0, 2.0) };
     let mut builder = builder(Vec3::zeros());
     for k in 0..10_000 {
         let steps = [k % 40, k / 40 % 40, k / 1600].map(Real::from);
         let place = Vec3::new(steps[0] - 19.5, steps[1] - 19.5, steps[2]) * (2.1 * RADIUS);
-        builder.grain(place + Vec3::z() * 4.5e-3, RADIUS);
+        builder.grain(place + Vec3::z() * 4.8e-3, RADIUS);
     }
     builder.wall(Wall::triangles(surface.clone()).moving(WallMotion::Velocity(twist)));
     let mut system = builder.build().unwrap();
@@ -382,7 +382,7 @@ fn lists_miss_no_contact_with_a_large_surface() {
             found[ids[1] as usize] += 1;
         }
         assert_eq!(found, expected);
-        assert!(found.iter().sum::<usize>() > 100);
+        assert!(found.iter().sum::<usize>() > 20, "few contacts");
     }
     let lists = &system.scratch.neighbours.places;
     assert!(lists.ids.len() < 3200 && lists.triangles.len() < 10 * lists.ids.len());
