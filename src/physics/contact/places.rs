@@ -9,7 +9,7 @@
 //! A body is a wall that something else moves, so its contacts are made here too. Polyhedra are touched as
 //! triangles, where a grain can rest in a corner on two faces; all other shapes by their signed distance, in
 //! one place. The reaction goes into the wrench of the wall or of the body. The effective mass is that of the
-//! grain, as at a wall: a body is much heavier than a grain.
+//! grain, as at a wall: the mass of a body is much larger.
 //!
 //! Planes, tubes, bowls and balls stay in `contact::walls`: a grain touches them in one place, so their springs
 //! can be listed once for each wall and grain.
