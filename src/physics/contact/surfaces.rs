@@ -7,8 +7,8 @@
 //!
 //! Bodies are handled like walls that something else moves. Polyhedra are treated as triangles, so a grain in a
 //! corner touches two faces; all other shapes have one contact, from their signed distance. The reaction is added
-//! to the wrench of the wall or the body. The effective mass is that of the grain, as for walls: bodies are assumed
-//! to be much heavier than grains.
+//! to the wrench of the wall or the body. The effective mass is that of the grain, as for walls: the mass of a
+//! body is assumed to be much larger.
 //!
 //! Planes, tubes, bowls and balls belong to `contact::walls`: a grain has at most one contact with each, so their
 //! springs can be listed by wall and grain.

@@ -320,13 +320,13 @@ fn lists_threads_and_resuming_do_not_change_a_bit_on_triangles() {
         let mut builder = filled_cone();
         builder.skin(skin_share * RADIUS);
         let mut system = builder.build().unwrap();
-        let twist = Twist { linear: Vec3::z() * 0.1, angular: Vec3::new(0.2, 0.0, 3.0) };
+        let twist = Twist { linear: Vec3::new(0.3, 0.0, 0.1), angular: Vec3::new(0.2, 0.0, 3.0) };
         system.model.walls[1].motion = WallMotion::Velocity(twist);
         let pool = parallel::ThreadPool::new(n_threads).unwrap();
         parallel::lead(&pool, || {
-            for k in 0..500 {
+            for k in 0..600 {
                 system.step();
-                if is_resumed && k == 250 {
+                if is_resumed && k == 400 {
                     let state = system.state.clone();
                     assert!(!state.springs.surfaces.ids.is_empty());
                     system.restart(state);
@@ -355,12 +355,12 @@ fn lists_contain_all_contacts_with_a_large_surface() {
     }
     let surface = Triangles::new(vertices, triangles).unwrap();
     assert_eq!(surface.mesh().triangles.len(), 5000);
-    let twist = Twist { linear: Vec3::z() * 0.5, angular: Vec3::new(3.0, 0.0, 2.0) };
+    let twist = Twist { linear: Vec3::z() * 2.0, angular: Vec3::new(3.0, 0.0, 2.0) };
     let mut builder = builder(Vec3::zeros());
     for k in 0..10_000 {
         let steps = [k % 40, k / 40 % 40, k / 1600].map(Real::from);
         let position = Vec3::new(steps[0] - 19.5, steps[1] - 19.5, steps[2]) * (2.1 * RADIUS);
-        builder.grain(position + Vec3::z() * 4.5e-3, RADIUS);
+        builder.grain(position + Vec3::z() * 4.8e-3, RADIUS);
     }
     builder.wall(Wall::triangles(surface.clone()).moving(WallMotion::Velocity(twist)));
     let mut system = builder.build().unwrap();
@@ -380,7 +380,7 @@ fn lists_contain_all_contacts_with_a_large_surface() {
             found[ids[1] as usize] += 1;
         }
         assert_eq!(found, expected);
-        assert!(found.iter().sum::<usize>() > 100);
+        assert!(found.iter().sum::<usize>() > 20, "few contacts");
     }
     let lists = &system.scratch.neighbors.surfaces;
     assert!(lists.ids.len() < 3200 && lists.triangles.len() < 10 * lists.ids.len());
