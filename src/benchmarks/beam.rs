@@ -17,7 +17,7 @@ use crate::{
         membrane::{
             CARRIER_ID, FREE, MembraneMaterial, MembraneModel,
             bar::Bar,
-            mesh::{Mesh, MeshFault},
+            mesh::{Mesh, MeshError},
             pressure,
         },
         model::ChamberModel,
@@ -84,7 +84,7 @@ pub enum BeamError {
     Build(#[from] BuildError),
     /// The membrane cannot be meshed.
     #[error(transparent)]
-    Mesh(#[from] MeshFault),
+    Mesh(#[from] MeshError),
 }
 
 /// The beam from its saved state, under vacuum.
@@ -139,7 +139,7 @@ pub(super) fn grow() -> Result<State, BeamError> {
     Ok(system.state)
 }
 
-fn membrane() -> Result<MembraneModel, MeshFault> {
+fn membrane() -> Result<MembraneModel, MeshError> {
     Ok(MembraneModel::new(Mesh::bar(&BAR)?, MEMBRANE))
 }
 

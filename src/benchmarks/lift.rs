@@ -178,7 +178,7 @@ fn result(
         start_digest: format!("{start_digest:016x}"),
         n_lap_steps: n_steps,
         n_laps: repetitions.len(),
-        n_builds_per_lap: coupled.system.scratch.neighbours.n_builds,
+        n_builds_per_lap: coupled.system.scratch.neighbors.n_builds,
         peak_rss_bytes: process::peak(),
         stages: ["commands", "ticks", "snapshots"]
             .into_iter()

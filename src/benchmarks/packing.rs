@@ -15,7 +15,7 @@ use crate::{
         System, SystemBuilder,
         builder::Wall,
         law::Surface,
-        neighbours::update_pair_masses,
+        neighbors::update_pair_masses,
         packing::{
             Grown, Growth, Recipe, Room, first_scale, numbering::along_curve, scatter,
             scatter::NoRoom, sphere_volume,
@@ -166,7 +166,7 @@ impl Boxed {
             drag(&mut system, DRAG[0]);
         }
         system.state.grains.masses = masses_of(&system.state.grains);
-        update_pair_masses(&system.state, &mut system.scratch.neighbours);
+        update_pair_masses(&system.state, &mut system.scratch.neighbors);
         come_to_rest(&mut system, N_REST[0]);
         Ok(system.state)
     }

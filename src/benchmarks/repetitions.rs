@@ -172,7 +172,7 @@ fn repetition(
         after(&mut system);
     }
     let before = summary(&system);
-    let n_builds = system.scratch.neighbours.n_builds;
+    let n_builds = system.scratch.neighbors.n_builds;
     let processor = process::processor_s();
     let mut watch = Stopwatch::start();
     if let Some(times) = times {
@@ -194,7 +194,7 @@ fn repetition(
         wall_s,
         processor_s,
         n_contacts: 0.5 * (real(before.n_grain_contacts) + real(after.n_grain_contacts)),
-        n_builds: system.scratch.neighbours.n_builds - n_builds,
+        n_builds: system.scratch.neighbors.n_builds - n_builds,
         digest: digest(&system),
         summary: after,
     };

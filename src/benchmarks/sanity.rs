@@ -219,7 +219,7 @@ mod tests {
         let mut crowded = packed.clone();
         crowded.state.grains.radii.iter_mut().for_each(|it| *it *= 1.2);
         crowded.model.radius_max *= 1.2;
-        crowded.scratch.neighbours.is_built = false;
+        crowded.scratch.neighbors.is_built = false;
         crowded.step();
         assert_eq!(violation(&crowded), Some("largest overlap over radius"));
 

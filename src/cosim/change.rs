@@ -128,6 +128,7 @@ impl Coupled {
         let System { model, controls, state, scratch } = &mut self.system;
         self.n_objects = model.bodies.len() - 1;
         *controls = super::controls(model, state, &self.world);
+        state.springs.surfaces.forget_bodies(state.walls.len());
         *scratch = Scratch::new(model);
     }
 
@@ -239,6 +240,10 @@ fn move_gripper(state: &mut State, pose: &Pose) {
             patch.spring = turn * patch.spring;
             patch.normal = turn * patch.normal;
         }
+    }
+    for history in &mut springs.surfaces.histories {
+        history.spring = turn * history.spring;
+        history.normal = turn * history.normal;
     }
     springs.bodies.fill(Vec3::zeros());
     state.walls[FLANGE] = BodyMotion { pose: *pose, twist: Twist::zero() };

@@ -247,7 +247,7 @@ impl RapierWorld {
 /// Initial pose of an object, with its center of mass as origin.
 pub fn center_pose(object: &Object, bulk: &Bulk) -> Pose {
     let mut pose = object.pose;
-    pose.translation.vector += object.pose.rotation * bulk.centre_of_mass;
+    pose.translation.vector += object.pose.rotation * bulk.center_of_mass;
     pose
 }
 

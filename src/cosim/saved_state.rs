@@ -9,7 +9,10 @@ use crate::{
         State,
         boundary::{body::BodyMotion, motion::WallMemory},
         membrane::MembraneState,
-        state::{Grains, ListedSprings, N_PATCHES, Patch, Patches, Springs},
+        state::{
+            Grains, ListedSprings, N_PATCHES, Patch, Patches, Springs, SurfaceHistories,
+            SurfaceHistory,
+        },
     },
 };
 
@@ -64,6 +67,15 @@ struct Memories {
     walls: Vec<Real>,
 }
 
+/// History of contacts of grains with walls of triangles and with bodies. It follows the memories of walls.
+#[derive(Default, Serialize, Deserialize)]
+struct Surfaces {
+    ids: Vec<[u32; 2]>,
+    /// Springs and normals.
+    histories: Vec<[Real; 6]>,
+    memories: Vec<Vec<Real>>,
+}
+
 const DIGEST_BYTES: usize = 8;
 
 /// Serializes the complete `state`.
@@ -95,34 +107,71 @@ pub fn write(state: &State) -> Vec<u8> {
     };
     let is_cohesive = !memories.pairs.is_empty() || !memories.walls.is_empty();
     let has_wall_memory = !state.wall_memory.is_empty();
-    // Only cohesive laws and walls whose motion depends on time or load have history variables. Without
-    // them, the bytes equal those of earlier versions.
-    if is_cohesive || has_wall_memory {
+    let has_surfaces = !state.springs.surfaces.ids.is_empty();
+    // Only cohesive laws, walls whose motion depends on time or load, walls of triangles and bodies that
+    // grains touch have history variables. Without them, the bytes equal those of earlier versions.
+    if is_cohesive || has_wall_memory || has_surfaces {
         let memories = if is_cohesive { memories } else { Memories::default() };
         bytes = postcard::to_extend(&memories, bytes)
             .expect("a list of numbers can always be serialized");
     }
-    if has_wall_memory {
+    if has_wall_memory || has_surfaces {
         let walls: Vec<[Real; 2]> =
             state.wall_memory.iter().map(|it| [it.time, it.force]).collect();
         bytes =
             postcard::to_extend(&walls, bytes).expect("a list of numbers can always be serialized");
     }
+    if has_surfaces {
+        let surfaces = Surfaces::of(&state.springs.surfaces);
+        bytes = postcard::to_extend(&surfaces, bytes)
+            .expect("a list of numbers can always be serialized");
+    }
     with_digest(bytes)
 }
 
-/// Reads the history variables of contacts and then of walls, if there are any.
-fn read_memories(rest: &[u8]) -> Result<(Memories, Vec<WallMemory>), postcard::Error> {
-    if rest.is_empty() {
-        return Ok((Memories::default(), Vec::new()));
-    }
-    let (memories, rest) = postcard::take_from_bytes(rest)?;
-    if rest.is_empty() {
-        return Ok((memories, Vec::new()));
-    }
-    let walls: Vec<[Real; 2]> = postcard::from_bytes(rest)?;
+/// The data after a state: history variables of contacts, of walls, and of contacts with surfaces.
+type Rest = (Memories, Vec<WallMemory>, Surfaces);
+
+/// Reads the history variables. Data missing at the end is empty.
+fn read_rest(rest: &[u8]) -> Result<Rest, postcard::Error> {
+    let (memories, rest) = take_or_default(rest)?;
+    let (walls, rest): (Vec<[Real; 2]>, _) = take_or_default(rest)?;
+    let (surfaces, _) = take_or_default(rest)?;
     let walls = walls.into_iter().map(|[time, force]| WallMemory { time, force }).collect();
-    Ok((memories, walls))
+    Ok((memories, walls, surfaces))
+}
+
+fn take_or_default<'a, T: Default + Deserialize<'a>>(
+    rest: &'a [u8],
+) -> Result<(T, &'a [u8]), postcard::Error> {
+    if rest.is_empty() { Ok((T::default(), rest)) } else { postcard::take_from_bytes(rest) }
+}
+
+impl Surfaces {
+    fn of(springs: &SurfaceHistories) -> Self {
+        let row = |it: &SurfaceHistory| {
+            let (spring, normal) = (it.spring, it.normal);
+            [spring.x, spring.y, spring.z, normal.x, normal.y, normal.z]
+        };
+        Self {
+            ids: springs.ids.clone(),
+            histories: springs.histories.iter().map(row).collect(),
+            memories: springs.histories.iter().map(|it| it.memory.clone()).collect(),
+        }
+    }
+
+    fn springs(self) -> Result<SurfaceHistories, SavedStateError> {
+        check_counts(&[
+            ("springs on surfaces", self.histories.len(), self.ids.len()),
+            ("memories on surfaces", self.memories.len(), self.ids.len()),
+        ])?;
+        let history = |(row, memory): (&[Real; 6], Vec<Real>)| {
+            let &[sx, sy, sz, nx, ny, nz] = row;
+            SurfaceHistory { spring: Vec3::new(sx, sy, sz), normal: Vec3::new(nx, ny, nz), memory }
+        };
+        let histories = self.histories.iter().zip(self.memories).map(history).collect();
+        Ok(SurfaceHistories { ids: self.ids, histories })
+    }
 }
 
 /// True if both states are equal to the bit. As in the digest, only loaded springs count: which
@@ -210,7 +259,7 @@ pub fn read(bytes: &[u8]) -> Result<State, SavedStateError> {
     let (numbers, rest): (Numbers, _) =
         postcard::take_from_bytes(verify_digest(bytes)?).map_err(|_| corrupt.clone())?;
     numbers.check()?;
-    let (memories, wall_memory) = read_memories(rest).map_err(|_| corrupt)?;
+    let (memories, wall_memory, surfaces) = read_rest(rest).map_err(|_| corrupt)?;
     let walls = listed_walls(&numbers, memories.wall_ids, memories.walls);
     if !wall_memory.is_empty() {
         check_counts(&[("walls' motions", wall_memory.len(), numbers.walls.len())])?;
@@ -237,6 +286,7 @@ pub fn read(bytes: &[u8]) -> Result<State, SavedStateError> {
                 memories: Vec::new(),
             },
             walls,
+            surfaces: surfaces.springs()?,
             bodies: vectors(&numbers.body_springs),
         },
         pair_ids: numbers.pair_ids,

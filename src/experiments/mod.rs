@@ -186,7 +186,7 @@ pub enum StartError {
     Compile(#[from] crate::cosim::compile::CompileError),
     /// The membrane cannot be meshed.
     #[error("membrane: {0}")]
-    Mesh(#[from] crate::physics::membrane::mesh::MeshFault),
+    Mesh(#[from] crate::physics::membrane::mesh::MeshError),
     /// The parts of the system do not fit each other.
     #[error("system: {0}")]
     Build(#[from] crate::physics::builder::BuildError),

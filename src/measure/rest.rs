@@ -63,6 +63,14 @@ pub fn elastic_energy(model: &Model, state: &State, scratch: &Scratch) -> Real {
             energy += stored(law, radii[i], contact.overlap, spring.norm_squared());
         }
     }
+    for (contact, ids) in scratch.surface_contacts_with_ids() {
+        let [s, i] = ids.map(|id| id as usize);
+        let law = model.surface(s).map(|(_, law)| law);
+        if let Some(law) = law.filter(|_| contact.force.overlap > 0.0) {
+            let stretch = contact.history.spring.norm_squared();
+            energy += contact.share * stored(law, radii[i], contact.force.overlap, stretch);
+        }
+    }
     energy
 }
 

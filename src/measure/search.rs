@@ -2,7 +2,7 @@
 
 use crate::{
     base::{Real, Vec3},
-    physics::neighbours::cell_grid::CellGrid,
+    physics::neighbors::cell_grid::CellGrid,
 };
 
 /// Points sorted into cells.

@@ -89,7 +89,7 @@ pub(super) fn corners(scene: &Scene, object: &Object) -> Vec<Vec3> {
     let Ok((_, bulk)) = body(scene, object) else { return Vec::new() };
     let corners = volume::hull_corners(points).unwrap_or_default();
     let corners = if corners.len() <= CORNERS_MAX { corners } else { Vec::new() };
-    corners.into_iter().map(|it| it - bulk.centre_of_mass).collect()
+    corners.into_iter().map(|it| it - bulk.center_of_mass).collect()
 }
 
 /// Initial pose of an object's center of mass.

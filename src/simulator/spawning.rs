@@ -166,7 +166,7 @@ impl Simulator {
         let (_, bulk) = body(&self.scene, object)
             .map_err(|error| failed(SpawnResult::UNSUPPORTED_ASSETS, error))?;
         object.pose = pose;
-        object.pose.translation.vector -= pose.rotation * bulk.centre_of_mass;
+        object.pose.translation.vector -= pose.rotation * bulk.center_of_mass;
         Ok(())
     }
 

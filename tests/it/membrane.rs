@@ -56,7 +56,7 @@ fn contacts_at(rig: &mut Rig, position: Vec3) -> Vec<PatchForce> {
     rig.state.grains.positions[0] = position;
     rig.state.grains.velocities[0] = Vec3::zeros();
     // Only the integrator tracks motion for the neighbor lists.
-    rig.scratch.neighbours.is_built = false;
+    rig.scratch.neighbors.is_built = false;
     rig.step();
     let patches = &rig.scratch.patch_forces[0];
     patches.contacts[..patches.n].to_vec()

@@ -98,7 +98,7 @@ fn a_periodic_box_has_the_same_bits_for_any_number_of_threads_and_any_origin_of_
             for _ in 0..4000 {
                 growth.step(&mut system);
             }
-            (digest(&system), system.scratch.neighbours.n_builds)
+            (digest(&system), system.scratch.neighbors.n_builds)
         })
     };
     let (expected, n_builds) = run(1, 1.0);

@@ -202,7 +202,7 @@ fn run(mut rig: Rig, n_threads: usize) -> HeapRun {
         }
     });
     health::check(&rig.state, &rig.scratch, 0).unwrap();
-    HeapRun { digests, n_builds: rig.scratch.neighbours.n_builds, n_loaded_max }
+    HeapRun { digests, n_builds: rig.scratch.neighbors.n_builds, n_loaded_max }
 }
 
 #[test]

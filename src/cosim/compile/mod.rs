@@ -24,7 +24,7 @@ use crate::{
         boundary::{
             body::BodyMotion,
             motion::WallMotion,
-            shape::{Bulk, ShapeFault, Surface},
+            shape::{Bulk, ShapeError, Surface},
             wall::WallShape,
         },
         builder::{BuildError, Membrane, Vertices, Wall},
@@ -63,14 +63,14 @@ pub enum CompileError {
     },
     /// The membrane cannot be meshed.
     #[error("membrane: {0}")]
-    Membrane(#[from] crate::physics::membrane::mesh::MeshFault),
+    Membrane(#[from] crate::physics::membrane::mesh::MeshError),
     /// An object's shape cannot be used.
     #[error("object `{name}`: {error}")]
     Object {
         /// Its name.
         name: String,
         /// The error.
-        error: ShapeFault,
+        error: ShapeError,
     },
     /// The parts of the gripper are inconsistent.
     #[error("gripper: {0}")]
@@ -244,6 +244,7 @@ fn scaled_body(scene: &ScaledScene, object: &Object) -> Result<(BodyModel, Bulk)
         law: PairLaw::between(&scene.membrane.material, &object.material, on_object),
         contact_radius: contact_radius(&object.shape, bulk.volume),
         bounding_radius: surface.bounding_radius(),
+        of_grains: None,
         surface: BodySurface::Shape(Box::new(surface)),
     };
     Ok((model, bulk))
@@ -268,7 +269,7 @@ pub fn critical_step_with(scene: &Scene, model: &Model, body: &BodyModel) -> Rea
     critical_step(scene, &model.membrane, &Laws::new(scene), std::slice::from_ref(body))
 }
 
-fn surface(shape: &Shape) -> Result<Surface, ShapeFault> {
+fn surface(shape: &Shape) -> Result<Surface, ShapeError> {
     Ok(match shape {
         Shape::Sphere { radius } => Surface::Sphere { radius: *radius },
         Shape::Box { size } => Surface::cuboid(size),
@@ -299,6 +300,7 @@ fn table(scene: &ScaledScene) -> BodyModel {
         law: PairLaw::against_rigid(&scene.membrane.material, on_table),
         contact_radius: TABLE_CONTACT_RADIUS,
         bounding_radius: Real::INFINITY,
+        of_grains: None,
     }
 }
 

@@ -66,7 +66,7 @@ pub(super) struct GripperRun {
 #[derive(Serialize, Deserialize)]
 struct Saved {
     run_state: RunState,
-    filling: fill::Place,
+    filling: fill::FillPosition,
     has_settled: bool,
     has_inserted: bool,
     record: Record,
@@ -115,9 +115,9 @@ impl GripperRun {
     }
 
     fn fill(&mut self) -> Result<&'static str, Diverged> {
-        let before = self.filling.place();
+        let before = self.filling.position();
         self.filling.advance(SLICE)?;
-        let after = self.filling.place();
+        let after = self.filling.position();
         let name = before.stage.name();
         // A slice that ends a stage of the filling is counted for that stage as a whole.
         let n = if before.stage == after.stage { after.k - before.k } else { SLICE };
@@ -254,7 +254,7 @@ impl Run for GripperRun {
     fn save(&self) -> Vec<u8> {
         let saved = Saved {
             run_state: self.run_state,
-            filling: self.filling.place(),
+            filling: self.filling.position(),
             has_settled: self.settled.is_some(),
             has_inserted: self.inserted.is_some(),
             record: self.record.clone(),

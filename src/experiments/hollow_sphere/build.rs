@@ -124,6 +124,7 @@ fn assembled(
         law: laws.object,
         contact_radius: scene.object.radius,
         bounding_radius: scene.object.radius,
+        of_grains: None,
     };
     builder.body(object, BodyMotion { pose: Pose::identity(), twist: Twist::zero() });
     Ok(builder.build()?)

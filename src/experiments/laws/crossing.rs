@@ -174,7 +174,7 @@ impl Path {
         grains.positions[0] = position;
         grains.velocities[0] = Vec3::zeros();
         // Only the integrator updates the lists for motion.
-        self.test.system.scratch.neighbours.is_built = false;
+        self.test.system.scratch.neighbors.is_built = false;
         self.test.step();
         let patches = &self.test.system.scratch.patch_forces[0];
         patches.contacts[..patches.n].iter().map(|it| it.force).sum()
@@ -194,7 +194,7 @@ impl Path {
             grains.positions[0] = here;
             grains.velocities[0] = (next - here) / dt;
             grains.angular_velocities[0] = Vec3::zeros();
-            self.test.system.scratch.neighbours.is_built = false;
+            self.test.system.scratch.neighbors.is_built = false;
             self.test.step();
             let patches = &self.test.system.scratch.patch_forces[0];
             let force: Vec3 = patches.contacts[..patches.n].iter().map(|it| it.force).sum();

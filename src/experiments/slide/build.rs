@@ -12,7 +12,7 @@ use crate::{
         builder::{BuildError, Membrane, Vertices, Wall},
         membrane::{
             MembraneContact, MembraneModel, critical_step,
-            mesh::{Mesh, MeshFault},
+            mesh::{Mesh, MeshError},
         },
         state::Grains,
     },
@@ -35,7 +35,7 @@ impl Patch {
     ///
     /// # Errors
     /// If there are none.
-    pub(super) fn new(scene: &SlideScene, case: &Case) -> Result<Self, MeshFault> {
+    pub(super) fn new(scene: &SlideScene, case: &Case) -> Result<Self, MeshError> {
         let edge = case.edge;
         if case.is_framed {
             let half = Vec3::repeat(scene.frame.size / 2.0);
@@ -51,7 +51,7 @@ impl Patch {
     ///
     /// # Errors
     /// If there are none.
-    fn between(edge: Real, low: &Vec3, high: &Vec3) -> Result<Self, MeshFault> {
+    fn between(edge: Real, low: &Vec3, high: &Vec3) -> Result<Self, MeshError> {
         let n = count(((high - low).norm() + low.norm()) / edge) + 2;
         let is_inside = |cell: (i32, i32)| {
             let at = lattice_point(cell, edge);

@@ -124,7 +124,7 @@ impl SlideRun {
             }
         }
         (springs.spheres.ids, springs.spheres.springs) = (ids, kept);
-        self.system.scratch.neighbours.is_built = false;
+        self.system.scratch.neighbors.is_built = false;
     }
 
     /// Records the forces of the last substep, which acted on the ball at `position`.

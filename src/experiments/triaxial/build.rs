@@ -23,7 +23,7 @@ use crate::{
         membrane::{
             FREE, MembraneContact, MembraneModel,
             critical_step::critical_step_at,
-            mesh::{Mesh, MeshFault},
+            mesh::{Mesh, MeshError},
         },
         packing::{Room, first_scale, scatter, sphere_volume},
         state::Grains,
@@ -172,7 +172,7 @@ fn net(scene: &TriaxialScene, choice: Choice) -> MeshSize {
 }
 
 /// The membrane in its straight shape.
-fn membrane(scene: &TriaxialScene, choice: Choice) -> Result<MembraneModel, MeshFault> {
+fn membrane(scene: &TriaxialScene, choice: Choice) -> Result<MembraneModel, MeshError> {
     let size = &scene.cases[choice.size];
     let net = net(scene, choice);
     let mesh = Mesh::tube(size.radius, size.height, net.n_around, net.n_rows)?;

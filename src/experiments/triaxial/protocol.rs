@@ -234,7 +234,7 @@ impl TriaxialTest {
         self.recipe.release(&mut self.system.model);
         self.progress.substep = self.system.model.substep;
         // The lists were built for a held membrane; now all of it can move.
-        self.system.scratch.neighbours.is_built = false;
+        self.system.scratch.neighbors.is_built = false;
         self.enter(Phase::Confining);
     }
 

@@ -1,9 +1,9 @@
-//! Sorted list of pairs of grains that may be in contact, with the history of pairs listed before.
+//! Sorted list of the pairs of grains that may be in contact, with the history of pairs that were listed before.
 
 use super::cell_grid::{CellGrid, id};
 use crate::{
     base::{Real, Vec3, parallel},
-    physics::{Model, State, scratch::Neighbours},
+    physics::{Model, State, scratch::Neighbors},
 };
 
 /// Number of grains in one parallel task.
@@ -15,14 +15,14 @@ pub(super) fn wrap(positions: &[Vec3], period: &Vec3) -> Vec<Vec3> {
     positions.iter().map(into_box).collect()
 }
 
-/// Lists all pairs closer than contact plus the range of their law plus skin; what pairs listed before
-/// remember is kept. The grains are at `positions`, which are those of `grid`.
+/// Lists all pairs within contact plus the range of their law plus the skin. The history of pairs that were listed
+/// before is kept. `positions` (m) are those of the grains in `grid`.
 pub(super) fn build(
     model: &Model,
     grid: &CellGrid,
     positions: &[Vec3],
     state: &mut State,
-    lists: &mut Neighbours,
+    lists: &mut Neighbors,
 ) {
     let radii = &state.grains.radii;
     let beyond = model.grain_law.range() + lists.skin;
@@ -35,16 +35,16 @@ pub(super) fn build(
     });
     let ids = chunks.concat();
     let springs = &mut state.springs;
-    springs.pairs = carried_springs(&state.pair_ids, &springs.pairs, &ids);
-    springs.pair_memories = carried_memories(&state.pair_ids, &springs.pair_memories, &ids);
+    springs.pairs = kept_springs(&state.pair_ids, &springs.pairs, &ids);
+    springs.pair_memories = kept_memories(&state.pair_ids, &springs.pair_memories, &ids);
     index_by_grain(&ids, radii.len(), lists);
     state.pair_ids = ids;
 }
 
-/// Input of the search for partners.
+/// Search for the partners of grains.
 struct Search<'a> {
     model: &'a Model,
-    /// Distance beyond contact (m).
+    /// Distance beyond contact up to which pairs are listed (m).
     beyond: Real,
     grid: &'a CellGrid,
     positions: &'a [Vec3],
@@ -52,7 +52,7 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Partners of grain `i` with higher ids, ascending.
+    /// Adds the pairs of grain `i` with partners of higher ids, ascending.
     fn partners(&self, i: usize, found: &mut Vec<[u32; 2]>) {
         let begin = found.len();
         let position = self.positions[i];
@@ -63,7 +63,7 @@ impl Search<'_> {
         found[begin..].sort_unstable();
     }
 
-    /// Those near `position`, where grain `i` or an image of it is.
+    /// Adds partners near `position`, which is that of grain `i` or of one of its images.
     fn around(&self, i: usize, position: &Vec3, found: &mut Vec<[u32; 2]>) {
         let (model, radius) = (self.model, self.radii[i]);
         let reach = Vec3::repeat(radius + model.radius_max + self.beyond);
@@ -79,8 +79,8 @@ impl Search<'_> {
         });
     }
 
-    /// Those near the images of grain `i` that reach into the box. No partner is near two of them,
-    /// since the box is wide enough.
+    /// Adds partners near the images of grain `i` that reach into the box. No partner is near two of them, because
+    /// the box is wide enough.
     fn around_images(&self, i: usize, position: &Vec3, period: &Vec3, found: &mut Vec<[u32; 2]>) {
         let reach = self.radii[i] + self.model.radius_max + self.beyond;
         let shifts = [0, 1, 2].map(|k| {
@@ -98,8 +98,8 @@ impl Search<'_> {
     }
 }
 
-/// Where the contacts `ids` stood among `old_ids`: both lists are sorted, so one walk over both finds them.
-fn carried(old_ids: &[[u32; 2]], ids: &[[u32; 2]]) -> impl Iterator<Item = Option<usize>> {
+/// Indices of the contacts `ids` in `old_ids`. Both lists are sorted, so one pass over both finds them.
+fn old_indices(old_ids: &[[u32; 2]], ids: &[[u32; 2]]) -> impl Iterator<Item = Option<usize>> {
     let mut k = 0;
     ids.iter().map(move |pair| {
         while k < old_ids.len() && old_ids[k] < *pair {
@@ -109,17 +109,17 @@ fn carried(old_ids: &[[u32; 2]], ids: &[[u32; 2]]) -> impl Iterator<Item = Optio
     })
 }
 
-/// Springs of the contacts `ids`, zero for those that are new.
-pub(super) fn carried_springs(old_ids: &[[u32; 2]], old: &[Vec3], ids: &[[u32; 2]]) -> Vec<Vec3> {
-    carried(old_ids, ids).map(|k| k.map_or_else(Vec3::zeros, |k| old[k])).collect()
+/// Springs of the contacts `ids`, zero for new ones.
+pub(super) fn kept_springs(old_ids: &[[u32; 2]], old: &[Vec3], ids: &[[u32; 2]]) -> Vec<Vec3> {
+    old_indices(old_ids, ids).map(|k| k.map_or_else(Vec3::zeros, |k| old[k])).collect()
 }
 
-/// What else the contacts `ids` remember, zero for those that are new.
-pub(super) fn carried_memories(old_ids: &[[u32; 2]], old: &[Real], ids: &[[u32; 2]]) -> Vec<Real> {
+/// Other history of the contacts `ids`, zero for new ones.
+pub(super) fn kept_memories(old_ids: &[[u32; 2]], old: &[Real], ids: &[[u32; 2]]) -> Vec<Real> {
     let width = old.len() / old_ids.len().max(1);
     let mut memories = vec![0.0; width * ids.len()];
     if width > 0 {
-        for (memory, k) in memories.chunks_exact_mut(width).zip(carried(old_ids, ids)) {
+        for (memory, k) in memories.chunks_exact_mut(width).zip(old_indices(old_ids, ids)) {
             if let Some(k) = k {
                 memory.copy_from_slice(&old[k * width..(k + 1) * width]);
             }
@@ -128,13 +128,13 @@ pub(super) fn carried_memories(old_ids: &[[u32; 2]], old: &[Real], ids: &[[u32; 
     memories
 }
 
-/// For each grain: its pairs as first, which are contiguous, and as second.
-fn index_by_grain(ids: &[[u32; 2]], n_grains: usize, lists: &mut Neighbours) {
+/// Indexes the pairs of each grain: as first grain, which are contiguous, and as second grain.
+fn index_by_grain(ids: &[[u32; 2]], n_grains: usize, lists: &mut Neighbors) {
     lists.first_starts = starts(ids.iter().map(|pair| pair[0]), n_grains);
     (lists.second_starts, lists.second_pairs) = index_by_second(ids, n_grains);
 }
 
-/// Where the entries of each grain begin in a list that is sorted by grain, and where the last ones end.
+/// Start of the entries of each grain in a list sorted by grain, and the end of the last ones.
 fn starts(grains: impl Iterator<Item = u32>, n_grains: usize) -> Vec<u32> {
     let mut starts = vec![0_u32; n_grains + 1];
     for grain in grains {
@@ -146,8 +146,8 @@ fn starts(grains: impl Iterator<Item = u32>, n_grains: usize) -> Vec<u32> {
     starts
 }
 
-/// The contacts `ids` by their second number: where those of each grain begin, and their indices, ascending
-/// for each grain.
+/// Sorts the contacts `ids` by their second id. Returns the start of the contacts of each grain, and their indices,
+/// ascending for each grain.
 pub(super) fn index_by_second(ids: &[[u32; 2]], n_grains: usize) -> (Vec<u32>, Vec<u32>) {
     let starts = starts(ids.iter().map(|pair| pair[1]), n_grains);
     let mut next = starts.clone();

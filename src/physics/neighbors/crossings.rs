@@ -1,10 +1,10 @@
-//! Has the center of a grain crossed the membrane?
+//! Detects grains whose center has crossed the membrane.
 //!
-//! Checked at every build of the lists, for grains whose center is closer to the membrane than the skin.
-//! Between two builds grain and membrane together move by less than the skin, so no grain can cross and leave
-//! that distance undetected. The sign of the distance to the nearest point is given by the normal of the face,
-//! the mean normal at an edge, or the angle-weighted mean at a vertex (Bærentzen & Aanæs 2005), which is exact
-//! for every closed surface. Grains beside a rim do not count.
+//! The check runs at every build of the lists, for grains whose center is closer to the membrane than the skin.
+//! Between two builds grain and membrane together move by less than the skin, so no grain can cross the membrane
+//! and leave that distance undetected. The sign of the distance to the closest point follows from the normal of
+//! the face, the mean normal at an edge, or the angle-weighted mean normal at a vertex (Bærentzen & Aanæs 2005),
+//! which is exact for every closed surface. Grains next to a rim are not checked.
 
 use std::collections::BTreeMap;
 
@@ -79,7 +79,7 @@ fn near_triangle(
     });
 }
 
-/// A normal that tells on which side of the feature the nearest grains lie; `None` on a rim.
+/// A normal whose sign decides on which side of the feature a grain is; `None` on a rim.
 fn outward(model: &Model, positions: &[Vec3], triangle: usize, feature: Feature) -> Option<Vec3> {
     let mesh = &model.membrane.mesh;
     let unit = |t: u32| area_normal(positions, &mesh.triangles[t as usize]).normalize();

@@ -1,4 +1,4 @@
-//! A grid of cells over the grains, filled by counting sort.
+//! A grid of cells that contain the grains, filled by counting sort.
 
 use crate::base::{Real, Vec3};
 
@@ -7,17 +7,17 @@ pub(crate) struct CellGrid {
     low: Vec3,
     cell: Real,
     n_cells: [usize; 3],
-    /// Where the grains of a cell begin in `grains`.
+    /// Grains of cell `c` are at `starts[c] .. starts[c + 1]` in `grains`.
     starts: Vec<u32>,
-    /// Grain ids, cell by cell, ascending within a cell.
+    /// Ids of grains, cell by cell; ascending in each cell.
     grains: Vec<u32>,
 }
 
-/// More cells than this along an edge would only cost memory.
+/// Largest number of cells along each axis; more would only cost memory.
 const N_CELLS_MAX: Real = 128.0;
 
 impl CellGrid {
-    /// Sorts `positions` into cells of at least `cell` (m).
+    /// Sorts `positions` (m) into cells of at least the width `cell` (m).
     pub(crate) fn new(positions: &[Vec3], cell: Real) -> Self {
         let mut low = Vec3::repeat(Real::INFINITY);
         let mut high = Vec3::repeat(Real::NEG_INFINITY);
@@ -64,9 +64,9 @@ impl CellGrid {
         (cell[2] * self.n_cells[1] + cell[1]) * self.n_cells[0] + cell[0]
     }
 
-    /// Calls `visit` with every grain in a cell that the box from `low` to `high` touches.
+    /// Calls `visit` with every grain in the cells that the box from `low` to `high` (m) overlaps.
     pub(crate) fn visit(&self, low: &Vec3, high: &Vec3, mut visit: impl FnMut(u32)) {
-        // A box beside the grid would clamp to its outer cells: cheap, and never wrong.
+        // A box outside the grid is clamped to the outer cells. This only costs time.
         let (from, to) = (self.cell_of(low), self.cell_of(high));
         for z in from[2]..=to[2] {
             for y in from[1]..=to[1] {
@@ -84,14 +84,14 @@ impl CellGrid {
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
-    reason = "the cast saturates, which is what is wanted"
+    reason = "the cast saturates, as intended"
 )]
 fn index(value: Real) -> usize {
     value as usize
 }
 
-/// An index as the 32-bit id that lists hold.
-#[expect(clippy::cast_possible_truncation, reason = "the scene allows far fewer grains than 2^32")]
+/// An index as the 32-bit id that lists store.
+#[expect(clippy::cast_possible_truncation, reason = "scenes have far fewer than 2^32 grains")]
 pub(crate) fn id(index: usize) -> u32 {
     index as u32
 }
@@ -115,7 +115,7 @@ mod tests {
             grid.visit(&low, &high, |grain| visited[grain as usize] = true);
             for (grain, position) in positions.iter().enumerate() {
                 let inside = (0..3).all(|k| low[k] <= position[k] && position[k] <= high[k]);
-                assert!(!inside || visited[grain], "grain {grain} was missed");
+                assert!(!inside || visited[grain], "grain {grain} was not visited");
             }
         }
     }

@@ -1,32 +1,47 @@
-//! Grains that a wall may touch.
+//! Lists of the grains that a wall may touch.
 
 use super::{
+    Bounds,
     cell_grid::id,
-    verlet_list::{carried_memories, carried_springs, index_by_second},
+    verlet_list::{index_by_second, kept_memories, kept_springs},
 };
 use crate::{
     base::Real,
     physics::{
         Model, State,
-        scratch::{Neighbours, WallForce},
+        boundary::wall::WallShape,
+        scratch::{Neighbors, WallForce},
         state::ListedSprings,
     },
 };
 
-/// Lists, wall by wall, the grains closer than contact plus the range of the wall's law plus skin; what
-/// contacts listed before remember is kept.
+/// Lists, wall by wall, the grains within contact plus the range of the wall's law plus the skin. The history of
+/// contacts that were listed before is kept. Walls far from all grains are skipped.
 pub(super) fn build(
     model: &Model,
     state: &mut State,
-    lists: &mut Neighbours,
+    bounds: &Bounds,
+    lists: &mut Neighbors,
     wall_forces: &mut Vec<WallForce>,
 ) {
     let mut ids = Vec::new();
     lists.wall_extents.clear();
+    lists.wall_gaps.clear();
     for (w, (wall, motion)) in model.walls.iter().zip(&state.walls).enumerate() {
         let shape = wall.shape.placed(motion);
         let beyond = wall.law.range() + lists.skin;
+        let gap = bounds.gap_to_wall(wall, &shape, motion, beyond);
+        lists.wall_gaps.push(gap);
         let mut extent: Real = 0.0;
+        if let WallShape::Triangles(triangles) = &wall.shape {
+            lists.wall_extents.push(triangles.bounding_radius());
+            continue;
+        }
+        if gap > 0.0 {
+            let furthest = bounds.furthest_from(&motion.pose.translation.vector);
+            lists.wall_extents.push(furthest + lists.skin);
+            continue;
+        }
         for (i, position) in state.grains.positions.iter().enumerate() {
             let arm = position - motion.pose.translation.vector;
             extent = extent.max(arm.norm() + lists.skin);
@@ -39,20 +54,22 @@ pub(super) fn build(
     }
     (lists.wall_starts, lists.wall_contacts) = index_by_second(&ids, state.grains.len());
     let before = &state.springs.walls;
-    let springs = carried_springs(&before.ids, &before.springs, &ids);
-    let memories = carried_memories(&before.ids, &before.memories, &ids);
+    let springs = kept_springs(&before.ids, &before.springs, &ids);
+    let memories = kept_memories(&before.ids, &before.memories, &ids);
     wall_forces.clear();
     wall_forces.resize(ids.len(), WallForce::default());
     state.springs.walls = ListedSprings { ids, springs, memories };
     lists.walls_at_build.clone_from(&state.walls);
 }
 
-/// How far any wall has come towards the grains since the last build, relative to the carrier (m).
-pub(super) fn displacement(model: &Model, state: &State, lists: &Neighbours) -> Real {
+/// Largest distance by which a wall has approached the grains since the last build, relative to the carrier (m).
+pub(super) fn displacement(model: &Model, state: &State, lists: &Neighbors) -> Real {
     let carried = state.carrier_position() - lists.carrier_position;
     let walls = model.walls.iter().zip(&lists.walls_at_build).zip(&state.walls);
     walls
-        .zip(&lists.wall_extents)
-        .map(|(((wall, from), to), extent)| wall.shape.displacement(from, to, &carried, *extent))
+        .zip(lists.wall_extents.iter().zip(&lists.wall_gaps))
+        .map(|(((wall, from), to), (extent, gap))| {
+            wall.shape.displacement(from, to, &carried, *extent) - gap
+        })
         .fold(0.0, Real::max)
 }

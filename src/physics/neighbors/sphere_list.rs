@@ -1,26 +1,26 @@
-//! Vertex spheres of the membrane that a grain may touch, sorted, with the springs of those that go
-//! on.
+//! Sorted list of the vertex spheres of the membrane that a grain may touch, with the springs of contacts that were
+//! listed before.
 
 use super::{
     cell_grid::{CellGrid, id},
-    verlet_list::carried_springs,
+    verlet_list::kept_springs,
 };
 use crate::{
     base::{Real, Vec3, parallel},
-    physics::{Model, State, scratch::Neighbours, state::ListedSprings},
+    physics::{Model, State, scratch::Neighbors, state::ListedSprings},
 };
 
 /// Number of vertices in one parallel task.
 const CHUNK: usize = 128;
 
-/// Lists all spheres of `radius` (m) closer to a grain than contact plus skin; springs of those
-/// listed before are kept.
+/// Lists all spheres of `radius` (m) within contact plus skin of a grain. Springs of contacts that were listed
+/// before are kept.
 pub(super) fn build(
     model: &Model,
     radius: Real,
     grid: &CellGrid,
     state: &mut State,
-    lists: &mut Neighbours,
+    lists: &mut Neighbors,
 ) {
     let n_vertices = state.membrane.positions.len();
     let beyond = radius + lists.skin;
@@ -41,12 +41,12 @@ pub(super) fn build(
     }
     lists.sphere_starts = starts;
     let before = &state.springs.spheres;
-    let springs = carried_springs(&before.ids, &before.springs, &ids);
+    let springs = kept_springs(&before.ids, &before.springs, &ids);
     state.springs.spheres = ListedSprings { ids, springs, memories: Vec::new() };
 }
 
-/// No sphere for any grain.
-pub(super) fn clear(state: &mut State, lists: &mut Neighbours) {
+/// Empties the list.
+pub(super) fn clear(state: &mut State, lists: &mut Neighbors) {
     state.springs.spheres = ListedSprings::default();
     lists.sphere_starts = vec![0; state.grains.len() + 1];
 }

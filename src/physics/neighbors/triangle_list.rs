@@ -1,16 +1,16 @@
-//! Triangles of the membrane that a grain may touch.
+//! Lists of the triangles of the membrane that a grain may touch.
 
 use super::cell_grid::{CellGrid, id};
 use crate::{
     base::{Real, Vec3, parallel},
-    physics::{Model, State, membrane::contact_geometry::closest_on_triangle, scratch::Neighbours},
+    physics::{Model, State, membrane::contact_geometry::closest_on_triangle, scratch::Neighbors},
 };
 
 /// Number of triangles in one parallel task.
 const CHUNK: usize = 128;
 
-/// Lists, for each grain, the triangles closer than contact plus skin, ascending.
-pub(super) fn build(model: &Model, grid: &CellGrid, state: &State, lists: &mut Neighbours) {
+/// Lists, for each grain, the triangles within contact plus skin, ascending.
+pub(super) fn build(model: &Model, grid: &CellGrid, state: &State, lists: &mut Neighbors) {
     let triangles = &model.membrane.mesh.triangles;
     let skin = lists.skin;
     let mut chunks = vec![Vec::new(); triangles.len().div_ceil(CHUNK)];
@@ -30,7 +30,7 @@ pub(super) fn build(model: &Model, grid: &CellGrid, state: &State, lists: &mut N
     let mut next = starts.clone();
     lists.triangles = vec![0; starts[n_grains] as usize];
     lists.candidate_grains = lists.triangles.clone();
-    // The chunks are in order of triangles, so every grain's triangles come out ascending.
+    // The chunks are in the order of triangles, so the triangles of each grain are ascending.
     for [grain, triangle] in chunks.iter().flatten() {
         let slot = &mut next[*grain as usize];
         lists.triangles[*slot as usize] = *triangle;
@@ -43,8 +43,8 @@ pub(super) fn build(model: &Model, grid: &CellGrid, state: &State, lists: &mut N
     lists.triangle_starts = starts;
 }
 
-/// No triangle for any grain.
-pub(super) fn clear(state: &State, lists: &mut Neighbours) {
+/// Empties the lists.
+pub(super) fn clear(state: &State, lists: &mut Neighbors) {
     lists.triangles.clear();
     lists.candidate_grains.clear();
     lists.membrane_grains.clear();

@@ -1,4 +1,4 @@
-//! Samples of the membrane that a body may touch.
+//! Lists of the samples of the membrane that a body may touch.
 
 use super::cell_grid::id;
 use crate::{
@@ -12,8 +12,8 @@ use crate::{
     },
 };
 
-/// Rebuilds the lists if they may have become incomplete. `travel` is an upper bound of the distance that any
-/// vertex has moved in total, relative to the carrier (m).
+/// Rebuilds the lists if they may be incomplete. `travel` is an upper bound of the total distance that any vertex
+/// has moved relative to the carrier (m).
 pub(super) fn refresh(
     model: &Model,
     controls: &Controls,
@@ -61,6 +61,7 @@ pub(super) fn refresh(
     lists.is_built = true;
 }
 
+/// False if a sample that is not listed may touch a body.
 fn is_complete(
     model: &Model,
     controls: &Controls,
@@ -69,7 +70,7 @@ fn is_complete(
     lists: &BodyLists,
 ) -> bool {
     let carried = state.carrier_position() - lists.carrier_position;
-    // What the vertices do in the coming substep is not known yet; a tenth is left for that.
+    // The motion of the vertices in the next substep is not known yet; a tenth of the skin is reserved for it.
     let rest = 0.9 * model.skin - (travel - lists.travel_at_build);
     let bodies = lists.bodies_at_build.iter().zip(&controls.bodies).zip(&lists.extents);
     let mut is_near = bodies.map(|((from, to), &extent)| {
@@ -80,7 +81,7 @@ fn is_complete(
     lists.is_built && lists.near.len() == controls.bodies.len() && is_near.all(|it| it)
 }
 
-/// Signed distance of a point (m), or a lower bound of it that is at least `enough` (m).
+/// Signed distance of `point` (m), or a lower bound of it if the bound is at least `enough` (m).
 fn distance_at_least(body: &BodyModel, motion: &BodyMotion, point: &Vec3, enough: Real) -> Real {
     let arm = point - motion.pose.translation.vector;
     let beyond = arm.norm() - body.bounding_radius;
