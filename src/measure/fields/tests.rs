@@ -19,7 +19,8 @@ fn scattered(n: usize) -> (Vec<Vec3>, Vec<Real>, Grid) {
     (positions, radii, grid)
 }
 
-/// Oracle: the total of the distributed quantity. Tolerance 1e-12: sums of thousands of parts, each exact to 1e-15.
+/// Oracle: the total of the distributed quantity. Tolerance 1e-12: sums of thousands of parts, each
+/// exact to 1e-15.
 #[test]
 fn the_cells_add_up_to_the_totals() {
     let (positions, radii, grid) = scattered(300);
