@@ -8,10 +8,10 @@
 //!
 //! fn main() -> Result<(), jamgrip::Error> {
 //!     let scene = Scene::builder()
-//!         .set("grains.count", 35)
-//!         .set("grains.radius_min", "7.6 mm")
-//!         .set("grains.radius_max", "8.4 mm")
-//!         .set("membrane.frequency", 6)
+//!         .set("grains.count", 280)
+//!         .set("grains.radius_min", "3.8 mm")
+//!         .set("grains.radius_max", "4.2 mm")
+//!         .set("membrane.frequency", 8)
 //!         .build()?;
 //!     let pool = ThreadPool::new(2)?;
 //!     let mut session = Session::new(&scene, &pool)?;
