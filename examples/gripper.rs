@@ -13,18 +13,20 @@ use jamgrip::{
 
 /// Grains twice as large as the default ones in a membrane with a mesh twice as coarse, above a
 /// light cylinder.
-const OVERRIDES: [(&str, &str); 8] = [
+const OVERRIDES: [(&str, &str); 10] = [
     ("grains.count", "280"),
     ("grains.radius_min", "3.8 mm"),
     ("grains.radius_max", "4.2 mm"),
     ("membrane.frequency", "8"),
     ("object.shape.cylinder.radius", "12 mm"),
+    ("object.shape.cylinder.height", "50 mm"),
+    ("object.position", "[0 mm, 0 mm, 25 mm]"),
     ("object.density", "1200 kg/m^3"),
     ("flange.position", "[0 mm, 0 mm, 101 mm]"),
     ("flange.speed_max", "500 mm/s"),
 ];
 /// Flange height at the start, when pushed onto the object, and when lifted (m).
-const HEIGHTS: [f64; 3] = [0.101, 0.072, 0.122];
+const HEIGHTS: [f64; 3] = [0.101, 0.070, 0.120];
 /// Ticks between two lines of output.
 const PRINT_EVERY: u64 = 50;
 

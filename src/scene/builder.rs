@@ -118,9 +118,9 @@ mod tests {
     /// Oracle: the values set.
     #[test]
     fn keys_are_set_and_checked() {
-        let scene = Scene::builder().set("membrane.radius", "39 mm").set("seed", 7).build();
+        let scene = Scene::builder().set("membrane.radius", "39.5 mm").set("seed", 7).build();
         let scene = scene.unwrap();
-        assert!((scene.membrane.radius - 0.039).abs() < 1e-15);
+        assert!((scene.membrane.radius - 0.0395).abs() < 1e-15);
         assert_eq!(scene.seed, 7);
         let text = "name: ball\nobject: { shape: { sphere: { radius: 15 mm } }, \
                     position: [0 mm, 0 mm, 15 mm] }\n";
