@@ -14,7 +14,7 @@
 //! | `mod.rs` | the `Experiment` and its `Plan`, which tie these together |
 //!
 //! A file may use those above it. To add an experiment, write
-//! `launch_configs/experiments/NAME.yaml`, these files, and a line in `EXPERIMENTS`. Findings are
+//! a scene in `launch_configs/experiments`, these files, and a line in `EXPERIMENTS`. Findings are
 //! computed from records alone, without clock or files; tests, reports and benchmarks run the same
 //! cases.
 
