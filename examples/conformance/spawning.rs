@@ -77,7 +77,7 @@ pub(crate) fn spawned_and_deleted(client: &mut Client) -> Result<(), String> {
     must_be("deleting it again", &delete(client, &name)?, SimResult::RESULT_NOT_FOUND)
 }
 
-pub(crate) fn refused(client: &mut Client) -> Result<(), String> {
+pub(crate) fn rejected(client: &mut Client) -> Result<(), String> {
     let before = all(client)?;
     let first = spawn(client, &ball("conformance_ball", 0.75))?;
     must_be_ok("spawn_entity", &first.result)?;

@@ -27,7 +27,7 @@ impl Path {
         self.speed = 0.0;
     }
 
-    /// Moves towards `goal` for `dt` (s), at most at `speed_max` (m/s). True on arrival.
+    /// Moves toward `goal` for `dt` (s), at most at `speed_max` (m/s). True on arrival.
     pub(super) fn advance(&mut self, goal: &Vec3, speed_max: Real, dt: Real) -> bool {
         let delta = goal - self.position;
         let distance = delta.norm();

@@ -347,7 +347,7 @@ mod tests {
         Vec3::new(0.0, 0.0, 0.15)
     }
 
-    /// Oracles: the lift height asked for, the original position of the object, and the speed limit times
+    /// Oracles: the requested lift height, the original position of the object, and the speed limit times
     /// the command period.
     #[test]
     fn lifts_holds_and_puts_back() {

@@ -282,7 +282,7 @@ impl Connections<'_> {
         }
         let ros = &self.scene.outputs.ros;
         let prefix = ros.interfaces_prefix.as_deref();
-        let (mut offers, asked) = services::endpoints(&ros.node, prefix);
+        let (mut offers, endpoints) = services::endpoints(&ros.node, prefix);
         let mut channels = services::action_topics(&ros.node, prefix);
         offers.iter_mut().for_each(|it| it.name = full_name(ros, &it.name));
         channels.iter_mut().for_each(|it| it.name = full_name(ros, &it.name));
@@ -294,7 +294,7 @@ impl Connections<'_> {
             Some(2) => Version::Two,
             _ => Version::of_distribution(&std::env::var("ROS_DISTRO").unwrap_or_default()),
         };
-        let simulator = Simulator::new(self.scene, asked, is_stopped)
+        let simulator = Simulator::new(self.scene, endpoints, is_stopped)
             .with_n_topics(channels.len())
             .with_scene_file(self.scene_file)
             .with_version(version);

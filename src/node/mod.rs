@@ -143,7 +143,7 @@ enum NextStep {
     Wait { is_waiting: bool },
 }
 
-/// Runs `plant` until there is a reason to end. The outputs are still open afterwards.
+/// Runs `plant` until there is a reason to end. The outputs are still open afterward.
 pub fn run<P: Plant>(plant: &mut P, context: &mut RunContext) -> Report<P::Error> {
     let mut seen = Arc::new(Packet::new(plant.snapshot(Parts::ALL), None));
     let mut pacer =

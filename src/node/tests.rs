@@ -111,7 +111,7 @@ pub(super) fn snapshot(tick: u64) -> Snapshot {
     }
 }
 
-/// Sends one command after `after` calls of `has_heard`.
+/// Sends one command after `after` calls of `has_received`.
 struct Late {
     after: Mutex<u32>,
     command: Option<Command>,

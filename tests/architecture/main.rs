@@ -7,7 +7,7 @@ mod documents; // what the Markdown files say is there
 mod files; // how source files look
 mod paths; // which paths a source file names
 mod planted; // texts that break the rules
-mod rules; // who may use what
+mod rules; // what each module may use
 mod violations; // what a source file names although it may not
 mod words; // words that do not come back
 
@@ -81,7 +81,7 @@ fn the_tables_are_up_to_date() {
     assert_none(&faults);
 }
 
-/// A table of the architecture that leaves a module out misleads whoever reads it.
+/// A table of the architecture that omits a module misleads the reader.
 #[test]
 fn architecture_names_every_module() {
     let text = read(Path::new("ARCHITECTURE.md"));

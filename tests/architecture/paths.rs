@@ -26,7 +26,7 @@ impl Mention {
     }
 }
 
-/// All that the rules ask about a file.
+/// Everything that the rules check in a file.
 #[derive(Debug, Default)]
 pub(crate) struct Paths {
     /// The paths, in the order of the text.
@@ -43,7 +43,7 @@ pub(crate) fn read(module: &[String], text: &str) -> Result<Paths, String> {
     let mut reader = Reader::default();
     let mut here = vec!["crate".to_owned()];
     here.extend_from_slice(module);
-    // First the names that imports give to things, then what is made of them.
+    // First the names that imports introduce, then the paths that use them.
     reader.read(&here, tokens.clone());
     reader.paths = Paths::default();
     reader.read(&here, tokens);

@@ -1,4 +1,4 @@
-//! Who may use what: the tables. Paths are those of files and folders from the repository's root, so
+//! What each module may use: the tables. Paths are those of files and folders from the repository's root, so
 //! that moving a file means replacing its path here; an entry that applies to nothing is a failure.
 
 /// Other people's crates, and the files or folders that may name them. The longest path decides.
@@ -124,7 +124,7 @@ pub(crate) const UNSAFE: &[&str] = &["src/base/parallel.rs", "src/base/lanes/"];
 /// Written by a program, not by people.
 pub(crate) const GENERATED: &[&str] = &["src/wire/messages/generated.rs"];
 
-/// Files whose numbers are read by everyone: each says its unit.
+/// Files whose numbers must have units.
 pub(crate) const DATA_FILES: &[&str] = &[
     "src/scene/mod.rs",
     "src/snapshot/mod.rs",

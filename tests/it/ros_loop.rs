@@ -245,14 +245,14 @@ fn an_independent_dds_subscribes_and_publishes() {
             .stdout(Stdio::piped())
             .spawn()
             .unwrap();
-        let mut said = BufReader::new(peer.stdout.take().unwrap());
+        let mut peer_output = BufReader::new(peer.stdout.take().unwrap());
         let mut line = String::new();
-        said.read_line(&mut line).unwrap();
+        peer_output.read_line(&mut line).unwrap();
         assert_eq!(line, "ready\n", "the peer is matched");
 
         let (send, lines) = mpsc::channel();
         let listener = std::thread::spawn(move || {
-            said.lines().map_while(Result::ok).try_for_each(|line| send.send(line))
+            peer_output.lines().map_while(Result::ok).try_for_each(|line| send.send(line))
         });
         let n_ticks = 1000 * seconds.parse::<u64>().unwrap();
         let mut system = Synthetic::new("cylinder");

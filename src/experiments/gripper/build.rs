@@ -32,7 +32,7 @@ pub(super) struct PreparedGrip {
 }
 
 impl PreparedGrip {
-    /// Prepares a grip. The first grip of a case with several pressures goes on until the object is
+    /// Prepares a grip. The first grip of a case with several pressures continues until the object is
     /// free: it shows the complete record.
     pub(super) fn new(
         scene: &GripperScene,

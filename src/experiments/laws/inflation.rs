@@ -79,8 +79,13 @@ impl Law for Inflation {
 
 /// The scene's membrane without bending, well damped.
 fn stretch_only(scene: &LawsScene) -> MembraneMaterial {
-    let sheet = scene.membrane.sheet;
-    MembraneMaterial { bending_stiffness: 0.0, bending_damping: 0.0, spring_damping: 0.5, ..sheet }
+    let material = scene.membrane.material;
+    MembraneMaterial {
+        bending_stiffness: 0.0,
+        bending_damping: 0.0,
+        spring_damping: 0.5,
+        ..material
+    }
 }
 
 /// Lets the free vertices come to rest under `pressure` (Pa) and the `pull` on each vertex (N).

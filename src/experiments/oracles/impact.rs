@@ -14,7 +14,7 @@
 //! E*, R*, m* effective modulus, radius, mass                 [Pa], [m], [kg]
 //! A          dissipation time                                [s]
 //! θ          angle of incidence from the normal              [rad]
-//! e, e_t     restitution of the normal, of the tangential velocity of the centre
+//! e, e_t     restitution of the normal, of the tangential velocity of the center
 //! ω'         spin after the impact of a body that had none   [rad/s]
 //! ```
 //!

@@ -122,7 +122,7 @@ pub(super) fn system(
 ) -> Result<System, BuildError> {
     let radius = scene.ball.radius;
     let law = case.law(scene);
-    let mut membrane = MembraneModel::new(patch.mesh, scene.membrane.sheet());
+    let mut membrane = MembraneModel::new(patch.mesh, scene.membrane.material());
     let mut contact_radius = radius;
     if case.has_spheres {
         let sphere = scene.membrane.sphere_radius;

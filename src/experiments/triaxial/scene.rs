@@ -190,7 +190,7 @@ scene_keys! {
 
 impl Membrane {
     /// Springs and hinges, with this damping of the hinges (N s).
-    pub(super) fn sheet(&self, bending_damping: Real) -> MembraneMaterial {
+    pub(super) fn material(&self, bending_damping: Real) -> MembraneMaterial {
         MembraneMaterial {
             thickness: self.thickness,
             youngs_modulus: self.material.youngs_modulus,
