@@ -208,17 +208,17 @@ impl CommandProcessor {
         }
         let p = self.flange.pose.translation.vector;
         let (roll, pitch, yaw) = self.flange.pose.rotation.euler_angles();
-        let mut wanted = [Real::NAN, p.x, p.y, p.z, roll, pitch, yaw];
+        let mut goals = [Real::NAN, p.x, p.y, p.z, roll, pitch, yaw];
         let mut moves_flange = false;
         for (name, position) in names.iter().zip(positions) {
             finite("joint position, squared,", position * position)?;
             let i = JOINTS.iter().position(|it| it == name).ok_or_else(|| {
                 CommandError::UnknownJoint { joint: name.clone(), known: JOINTS.join(", ") }
             })?;
-            wanted[i] = *position;
+            goals[i] = *position;
             moves_flange |= 0 < i;
         }
-        let [vacuum, x, y, z, roll, pitch, yaw] = wanted;
+        let [vacuum, x, y, z, roll, pitch, yaw] = goals;
         let mut limit = None;
         if moves_flange {
             let rotation = Quat::from_euler_angles(roll, pitch, yaw);

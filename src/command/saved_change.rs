@@ -13,9 +13,9 @@ use crate::{
     scene::{self, Controller, Material, Object, Scene, Shape},
 };
 
-/// The bytes are not a change that this version knows.
+/// The bytes are not a change supported by this version.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{n_bytes} bytes are not a change that this version knows")]
+#[error("{n_bytes} bytes are not a change supported by this version")]
 pub struct UnknownChange {
     n_bytes: usize,
 }

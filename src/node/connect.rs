@@ -27,7 +27,7 @@ pub(super) struct Sizes {
     pub(super) n_vertices: usize,
 }
 
-/// Opens the connections of a scene. One that cannot be opened is logged and left out, unless the
+/// Opens the connections of a scene. One that cannot be opened is logged and skipped, unless the
 /// run depends on it.
 pub(super) struct Connections<'a> {
     /// The scene.
@@ -62,7 +62,7 @@ pub(super) enum ConnectError {
     Disabled,
     /// Built without it.
     #[cfg(not(feature = "ros"))]
-    #[error("ROS 2 needs a jamgrip that was built with feature `ros`")]
+    #[error("ROS 2 needs a build with feature `ros`")]
     NoFeature,
     /// The environment selects no usable discovery range.
     #[cfg(feature = "ros")]
@@ -182,7 +182,7 @@ impl Connections<'_> {
         crate::bag::RunDescription { scene_text, scene_files: self.scene_files(), facts, format }
     }
 
-    /// The mesh files of the scene. One that can no longer be read is logged and left out.
+    /// The mesh files of the scene. One that can no longer be read is logged and skipped.
     #[cfg(feature = "bag")]
     fn scene_files(&self) -> Vec<(String, Vec<u8>)> {
         let mut files = Vec::new();

@@ -157,7 +157,7 @@ impl<T: Section> Limits<T> for Map {
     }
 }
 
-/// Keys beside the others, without a map of their own; the field's name is no key.
+/// Keys beside the others, without a separate map; the field's name is not a key.
 pub(crate) struct Inline;
 
 impl<T: Section> Limits<T> for Inline {
@@ -166,7 +166,7 @@ impl<T: Section> Limits<T> for Inline {
     }
 }
 
-/// Values of one kind under keys of their own; the field's name is no key.
+/// Values of one kind under keys of their own; the field's name is not a key.
 pub(crate) struct Each<L, const N: usize>(pub(crate) [&'static str; N], pub(crate) L);
 
 impl<T, L: Limits<T> + Clone, const N: usize> Limits<[T; N]> for Each<L, N> {

@@ -1,4 +1,4 @@
-//! The simulator as ROS 2 users know it: the services and the action of `simulation_interfaces`,
+//! The simulator as seen from ROS 2: the services and the action of `simulation_interfaces`,
 //! and those of vacuum grippers.
 //!
 //! Requests are handled between two ticks, from the snapshot of the last tick. Changes go to the

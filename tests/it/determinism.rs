@@ -136,7 +136,7 @@ fn print_script_with_lanes(limit: &str) {
 }
 
 #[test]
-fn a_run_goes_on_from_its_start_state_as_if_it_had_just_settled() {
+fn a_run_continues_from_a_saved_start_state_with_the_same_bits() {
     let mut settled = Session::settle(coarse::compiled(1, &[]), &mut |_| {}).unwrap();
     let bytes = settled.start_state();
     // Oracle: settling on two threads gave the same bytes.

@@ -1,4 +1,4 @@
-//! The main job, commanded from other processes over ROS 2 topics alone.
+//! The pick-and-lift task, commanded from other processes over ROS 2 topics alone.
 
 use std::{
     io::Write,
@@ -190,7 +190,7 @@ impl Running {
 impl Drop for Running {
     fn drop(&mut self) {
         if let Some(mut process) = self.0.take() {
-            // It may have ended by itself.
+            // It may have ended already.
             let _killed = process.kill();
             let _reaped = process.wait();
         }

@@ -476,7 +476,7 @@ fn a_branch_names_the_changes_that_it_cannot_repeat() {
     }
 }
 
-/// Oracle: the recording: made by 0.1.0, since which results have changed, as the changelog says.
+/// Oracle: the recording: made by 0.1.0, an older version; the changelog lists the changes of results since then.
 #[test]
 fn verifying_a_recording_of_the_first_release_names_the_causes() {
     let (report, code) =

@@ -132,7 +132,7 @@ fn commands_wait_in_order_for_the_next_tick() {
         let mut pose = PoseStamped::default();
         pose.header.frame_id = "world".to_owned();
         pose.header.stamp.sec = 3;
-        pose.pose.position.z = f64::NAN; // invalid values arrive, too: they are rejected later
+        pose.pose.position.z = f64::NAN; // invalid values also arrive: they are rejected later
         pose.pose.orientation.w = 1.0;
         flange.publish(Body::new(pose.to_cdr())).unwrap();
         wait_until("a first command", || source.has_received());
@@ -226,7 +226,7 @@ fn a_flood_of_commands_delays_no_others() {
     });
 }
 
-/// Oracle: another DDS implementation that only knows the ROS 2 names and types. It receives every
+/// Oracle: another DDS implementation that only uses the ROS 2 names and types. It receives every
 /// tick and the right forces, and its commands arrive as sent. The clock's writer keeps one
 /// message, so a tick is sent only after the peer has received the one before.
 #[test]

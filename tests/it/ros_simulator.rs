@@ -202,7 +202,7 @@ proptest! {
     }
 }
 
-/// Oracle: counting, by a client on another DDS implementation that only knows the ROS 2 names and
+/// Oracle: counting, by a client on another DDS implementation that only uses the ROS 2 names and
 /// types, and uses Cyclone's service mapping.
 #[test]
 fn an_independent_dds_calls_services_and_an_action() {

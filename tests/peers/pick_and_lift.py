@@ -1,4 +1,4 @@
-"""Commands a whole pick-and-lift over ROS 2 topics, from an independent DDS implementation.
+"""Commands a complete pick-and-lift over ROS 2 topics, from an independent DDS implementation.
 
 A small controller of its own, not the project's: it approaches until it touches the object, pushes,
 evacuates, lifts, holds, puts back and releases. Meanwhile it reads force, poses, vacuum, membrane

@@ -143,8 +143,8 @@ fn branch(args: &Replay, from: f64) -> Result<ExitCode, Box<dyn Error>> {
         shutdown: Shutdown::listen()?,
         facts: Vec::new(),
     };
-    let wanted = Branch { from_ns: nanoseconds(from), overrides: args.overrides() };
-    let finished = match branch::branch(&recorded, &wanted, &options) {
+    let requested = Branch { from_ns: nanoseconds(from), overrides: args.overrides() };
+    let finished = match branch::branch(&recorded, &requested, &options) {
         Err(error) if error.is_of_command_line() => {
             writeln!(io::stderr().lock(), "{error}")?;
             return Ok(ExitCode::from(INVALID_USAGE));
@@ -231,7 +231,7 @@ fn with_player_node(
     _: mpsc::Sender<CommandRequest>,
     _: impl FnOnce(&mut dyn play::PlayerOutput) -> io::Result<Played>,
 ) -> Result<Performance, Box<dyn Error>> {
-    Err("playing needs a jamgrip that was built with feature `ros`".into())
+    Err("playing needs a build with feature `ros`".into())
 }
 
 /// Reads cues until standard input or the player ends.

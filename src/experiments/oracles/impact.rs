@@ -19,7 +19,7 @@
 //! ```
 //!
 //! Sources: Hertz (1881); Müller & Pöschel (2011) for the rational form with the end condition F ≥
-//! 0 (against an integration of the law it is right to 10⁻⁵ below v* = 0.5 and to 2·10⁻⁴ at 1.2);
+//! 0 (its error against an integration of the law is 10⁻⁵ below v* = 0.5 and 2·10⁻⁴ at 1.2);
 //! rigid-body impact with Coulomb's friction for the last line.
 
 use crate::base::Real;

@@ -12,7 +12,7 @@ use crate::{
     },
 };
 
-/// A length that is surely given in the right unit.
+/// A length of a plausible magnitude, so that a wrong unit is detected.
 const SOME_LENGTH: Quantity = Quantity { dimension: &LENGTH, range: Range::AboveUpTo(0.0, 0.1) };
 const SOME_TIME: Quantity = Quantity::above_zero(&TIME);
 const SOME_PRESSURE: Quantity = Quantity::above_zero(&PRESSURE);

@@ -50,7 +50,7 @@ fn worst(
 ) -> Option<Real> {
     let values: Option<Vec<Real>> =
         names.iter().map(|name| named(records, name).map(&of)).collect();
-    // NaN must not hide behind a number.
+    // NaN must not be hidden by a number.
     values.map(|it| it.into_iter().fold(0.0, |a, b| if b > a || b.is_nan() { b } else { a }))
 }
 

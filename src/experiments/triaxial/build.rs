@@ -120,7 +120,7 @@ impl Recipe {
         let mut random = Random::new(self.scene.seeds[self.choice.initial], Stream::Position);
         let margin = grains.radius_max;
         let positions = scatter(&small, None, &mut random, |it| room.place(margin, it))
-            .expect("the first solid fraction is limited to what always finds a place");
+            .expect("the first solid fraction is limited so that every grain finds a position");
         let density = grains.material.density;
         let masses = self.final_radii.iter().map(|&r| sphere_volume(r) * density).collect();
         Grains::at_rest(positions, small, masses)
