@@ -197,7 +197,7 @@ mod tests {
 
     /// Oracle: the identity, for numbers that no decimal has.
     #[test]
-    fn changes_come_back_bit_by_bit() {
+    fn changes_come_back_bit_for_bit() {
         let third = Vec3::new(1.0 / 3.0, -0.1, 2e-300);
         let pose = Pose::from_parts(third.into(), Quat::from_euler_angles(0.1, 0.2, 0.3));
         let twist = Twist { linear: third, angular: -third };

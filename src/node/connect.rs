@@ -147,7 +147,7 @@ impl Connections<'_> {
 
     #[cfg(not(feature = "bag"))]
     fn open_bag(&self, _outputs: &mut OutputSinks) -> Result<(), RunError> {
-        let reason = "recordings need a jamgrip that was built with feature `bag`".to_owned();
+        let reason = "recordings need a build with feature `bag`".to_owned();
         if self.scene.outputs.bag.on_error == OnError::Stop {
             return Err(RunError::Recording(reason));
         }
@@ -237,7 +237,7 @@ impl Connections<'_> {
     fn open_stream(&self, _outputs: &mut OutputSinks, sizes: Sizes) {
         let Sizes { n_grains, n_vertices } = sizes;
         self.progress.say(&format!(
-            "streams need a jamgrip that was built with feature `shm`; {n_grains} grains and \
+            "streams need a build with feature `shm`; {n_grains} grains and \
              {n_vertices} vertices are not streamed"
         ));
     }
@@ -270,7 +270,7 @@ impl Connections<'_> {
         let sink = RosSink::new(&node, self.encoder)?;
         let sink = sink.reporting_to(&published);
         let source = RosSource::new(&node, self.encoder)?;
-        // Old states are of no use to a controller, but half a second bridges a short stall.
+        // Controllers do not need old states, but half a second covers a short stall.
         let delivery = Delivery::Latest { depth: 500 };
         outputs.fanout.add(Box::new(sink), delivery)?;
         external.sources.push(Box::new(source));

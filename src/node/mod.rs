@@ -314,7 +314,7 @@ impl RunContext {
     }
 
     /// Waits a moment while no tick may run. While the run waits for its first command, the start
-    /// is published again and again.
+    /// is published repeatedly.
     fn wait_paused<P: Plant>(
         &mut self,
         plant: &P,

@@ -186,7 +186,7 @@ impl<T, L: Limits<T> + Clone, const N: usize> Limits<[T; N]> for MapOf<L, N> {
     }
 }
 
-/// Parts of the gripper's scene, which `schema` knows.
+/// Parts of the gripper's scene, which `schema` describes.
 macro_rules! sections_of_schema {
     ($($type:ty: $walk:ident),*) => { $(
         impl Section for $type {

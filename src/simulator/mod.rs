@@ -153,7 +153,7 @@ impl Simulator {
         }
     }
 
-    /// The scene, with the present values of the parameters.
+    /// The scene, with the current values of the parameters.
     pub fn scene(&self) -> &Arc<Scene> {
         &self.scene
     }

@@ -11,6 +11,8 @@ use regex::{Regex, RegexBuilder};
 use crate::{assert_none, files_in, read, rules::GENERATED};
 
 const LIST: &str = "tests/golden/words_not_used.txt";
+/// Quotes phrases that were replaced, so it is not searched.
+const REVIEW: &str = "docs/language_review.md";
 
 /// A line of the list: `pattern => replacement`, and `=> path path` where the word is allowed.
 struct Entry {
@@ -168,7 +170,7 @@ fn texts() -> Vec<(String, Text)> {
     let mut texts = Vec::new();
     for path in files {
         let file = path.to_str().unwrap().trim_start_matches("./").to_owned();
-        if GENERATED.contains(&file.as_str()) {
+        if GENERATED.contains(&file.as_str()) || file == REVIEW {
             continue;
         }
         let mut text = read(&path);

@@ -271,7 +271,7 @@ impl Path {
     }
 }
 
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "some thousand steps")]
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few thousand steps")]
 fn n_steps(steps: Real) -> usize {
     steps.round().max(1.0) as usize
 }

@@ -47,7 +47,7 @@ fn a_resumed_case_continues_with_the_same_bits() {
     let mut second = plan.start("inflation").unwrap();
     second.resume(&saved).unwrap();
     while !second.advance().unwrap().is_done {}
-    // Oracle: the uninterrupted run, bit by bit.
+    // Oracle: the uninterrupted run, bit for bit.
     assert_eq!(second.record(), uninterrupted);
     assert!(
         plan.start("impact").unwrap().resume(&saved).is_err(),

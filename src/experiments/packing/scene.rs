@@ -142,7 +142,7 @@ impl Keys for PackingScene {
         }
         if it.pressure_high < it.pressure_low {
             let reason = "is below compression.pressure_low".to_owned();
-            unfit.push(("compression.pressure_high", reason, "grains are let go from there"));
+            unfit.push(("compression.pressure_high", reason, "decompression starts there"));
         }
         unfit
     }

@@ -339,7 +339,7 @@ fn framed(scene: &SlideScene, records: &[CaseRecord<'_>], rows: &mut Vec<Row>) {
             unit: "1",
             oracle: "Coulomb: slopes of facets cancel over whole periods",
             reason: "2 %: the path through the dent of the membrane is not quite symmetric, and \
-                    facets that tilt by some degrees make it longer",
+                    facets that tilt by a few degrees make it longer",
         },
         Expected::within(1.0, 0.02),
         mean / friction,
