@@ -91,11 +91,11 @@ pub(crate) fn rejected(client: &mut Client) -> Result<(), String> {
     must_be("neither file nor text", &load(client, Resource::default())?.result, R::NO_RESOURCE)?;
     let strange = load(client, text("<conformance/>"))?.result;
     let is_rejected = [R::UNSUPPORTED_FORMAT, R::RESOURCE_PARSE_ERROR].contains(&strange.result);
-    ensure(is_rejected, || format!("a text in no format: result {}", strange.result))?;
+    ensure(is_rejected, || format!("a text of unknown format: result {}", strange.result))?;
     for (what, resource) in [
         ("a missing file", uri("file:///no/such/world.yaml")),
         ("an unknown address", uri("conformance://no/such/world")),
-        ("half a text", text("name: [")),
+        ("a truncated text", text("name: [")),
     ] {
         must_fail(what, &load(client, resource)?.result)?;
     }

@@ -112,7 +112,7 @@ fn a_scene_is_settled_while_requests_are_served() {
 }
 
 /// Oracle: counting, and the requested pose. A spawned object is published like those of the scene,
-/// and recorded on channels of its own from then on.
+/// and recorded on separate channels from then on.
 #[test]
 fn spawned_objects_have_topics() {
     inside("ros_worlds::spawned_objects_have_topics", || {
