@@ -106,7 +106,7 @@ impl TouchedSurface<'_> {
 /// Pump and line, for one length of substep.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChamberModel {
-    /// Fraction of the distance to the set-point that remains after one substep, e^(−dt/τ).
+    /// Fraction of the distance to the setpoint that remains after one substep, e^(−dt/τ).
     pub lag_factor: Real,
     /// Largest change of the pressure in one substep (Pa).
     pub change_max: Real,
