@@ -78,8 +78,9 @@ fn paths(text: &str) -> Vec<&str> {
         .collect()
 }
 
-/// True for a placeholder in a path, such as `NAME`.
+/// True for a placeholder in a path, such as `NAME` or `NAME.yaml`.
 fn is_placeholder(part: &str) -> bool {
+    let part = part.strip_suffix(".yaml").unwrap_or(part);
     !part.is_empty() && part.chars().all(|it| it.is_ascii_uppercase() || it == '_')
 }
 

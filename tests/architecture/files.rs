@@ -12,7 +12,7 @@ use crate::{
 const LINES_MAX: usize = 500;
 /// File names that do not describe the contents.
 const EMPTY_NAMES: &[&str] = &["utils", "util", "helpers", "common", "misc", "manager", "types"];
-/// One of these words marks a number without a dimension.
+/// One of these words marks a number without a dimension, or whose unit depends on the contact law.
 const DIMENSIONLESS: &[&str] = &[
     "number",
     "fraction",
@@ -24,8 +24,10 @@ const DIMENSIONLESS: &[&str] = &[
     "factor",
     "damping",
     "overlap",
-    "radius the bag",
-    "over enclosed",
+    "relative to",
+    "divided by",
+    "over the enclosed",
+    "history",
     "inverse",
     "weights",
     "coordination",

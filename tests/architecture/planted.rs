@@ -94,7 +94,7 @@ fn a_core_that_touches_the_outside_is_found() {
     ] {
         is_found("src/physics/health.rs", text, expected);
     }
-    is_found("src/controller/mod.rs", "use crate::session::Session;", "in another process");
+    is_found("src/controller/mod.rs", "use crate::session::Session;", "an external one can know");
     is_clean("src/base/parallel.rs", "fn f() { std::thread::yield_now(); }");
     is_clean("src/node/mod.rs", "use std::{fs, thread, time::Instant};");
 }

@@ -118,7 +118,7 @@ fn commands_wait_in_order_for_the_next_tick() {
         let here = RosNode::join(&discovery_range()).unwrap();
         let there = RosNode::join_as("operator", &discovery_range()).unwrap();
         let mut source = RosSource::new(&here, &encoder()).unwrap();
-        let seen = Synthetic::new("cylinder").snapshot;
+        let snapshot = Synthetic::new("cylinder").snapshot;
         let flange = there.publisher(&topic("/jamgrip/flange/pose_cmd")).unwrap();
         let object = there.publisher(&topic("/jamgrip/object/cylinder/pose_cmd")).unwrap();
         let release = there.publisher(&topic("/jamgrip/object_cmd")).unwrap();
@@ -136,7 +136,7 @@ fn commands_wait_in_order_for_the_next_tick() {
         pose.pose.orientation.w = 1.0;
         flange.publish(Body::new(pose.to_cdr())).unwrap();
         wait_until("a first command", || source.has_received());
-        let Some(Command::FlangePose(received)) = source.drain(&seen).pop() else {
+        let Some(Command::FlangePose(received)) = source.drain(&snapshot).pop() else {
             panic!("no flange pose")
         };
         assert_eq!((received.frame_id.as_str(), received.stamp_ns), ("world", 3_000_000_000));
@@ -165,8 +165,8 @@ fn commands_wait_in_order_for_the_next_tick() {
             Command::ObjectPose { object: object.clone(), pose },
             Command::ObjectRelease { object },
         ];
-        assert_eq!(source.drain(&seen), expected);
-        assert_eq!((source.counters().n_dropped, source.drain(&seen).len()), (0, 0));
+        assert_eq!(source.drain(&snapshot), expected);
+        assert_eq!((source.counters().n_dropped, source.drain(&snapshot).len()), (0, 0));
     });
 }
 
@@ -178,7 +178,7 @@ fn a_flood_of_commands_delays_no_others() {
         let here = RosNode::join(&discovery_range()).unwrap();
         let there = RosNode::join_as("flooder", &discovery_range()).unwrap();
         let mut source = RosSource::new(&here, &encoder()).unwrap();
-        let seen = Synthetic::new("cylinder").snapshot;
+        let snapshot = Synthetic::new("cylinder").snapshot;
         let vacuum = there.publisher(&topic("/jamgrip/vacuum_cmd")).unwrap();
         let flange = there.publisher(&topic("/jamgrip/flange/pose_cmd")).unwrap();
         wait_until("readers", || {
@@ -204,7 +204,7 @@ fn a_flood_of_commands_delays_no_others() {
         });
         wait_until("some of the flood", || 2_000 < source.counters().n_received);
         is_enough.store(true, Ordering::Relaxed);
-        let mut drained = source.drain(&seen);
+        let mut drained = source.drain(&snapshot);
         assert!(
             matches!(drained[0], Command::FlangePose(_)),
             "the single command: {:?}",
@@ -215,7 +215,7 @@ fn a_flood_of_commands_delays_no_others() {
             assert!(drained.len() <= 2 * inbox::DEPTH, "{} at once", drained.len());
             n_drained += drained.len() as u64;
             let is_last = drained.last() == Some(&Command::Vacuum { gauge_pa: -70e3 });
-            drained = source.drain(&seen);
+            drained = source.drain(&snapshot);
             is_last
         });
         let _vacuum = flood.join().unwrap();

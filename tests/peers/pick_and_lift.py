@@ -47,7 +47,7 @@ if LOCKSTEP:
     wait_for(joint_cmd.get_matched_subscriptions, "the joints' subscriber", 300.0)
 
 
-class Seen:
+class Inputs:
     """The newest message of every topic, and counters."""
 
     now = None
@@ -63,7 +63,7 @@ class Seen:
     hold_forces = []
     holding = False
 
-    def look(self):
+    def read(self):
         for it in clock.take(N=1000):
             self.now = it.clock.seconds()
         for it in wrench.take(N=1000):
@@ -104,10 +104,10 @@ class Seen:
         return math.sqrt(self.force.x**2 + self.force.y**2 + self.force.z**2)
 
 
-seen = Seen()
+inputs = Inputs()
 received_at = time.monotonic()
 called_at = -1e9
-while not seen.is_complete():
+while not inputs.is_complete():
     assert time.monotonic() - received_at < 300.0, "the run did not begin"
     # The run waits for a first command; poses are known after its first tick.
     if 2.0 < time.monotonic() - called_at:
@@ -116,11 +116,11 @@ while not seen.is_complete():
         else:
             vacuum_cmd.write(t.Float64(0.0))
         called_at = time.monotonic()
-    seen.look()
+    inputs.read()
     time.sleep(0.001)
 
-position = [seen.object.x, seen.object.y, seen.flange.position.z]
-upright = seen.flange.orientation
+position = [inputs.object.x, inputs.object.y, inputs.flange.position.z]
+upright = inputs.flange.orientation
 pressure = 0.0
 trace = []
 
@@ -128,21 +128,21 @@ trace = []
 def wait_for_news():
     """Waits for the next tick; in lockstep, for all messages of the last tick that a command allowed."""
     global received_at
-    before = seen.now
-    while seen.now == before or (LOCKSTEP and not seen.has_all_of(before + PERIOD_S)):
+    before = inputs.now
+    while inputs.now == before or (LOCKSTEP and not inputs.has_all_of(before + PERIOD_S)):
         assert time.monotonic() - received_at < SILENCE_S, "no clock message"
         time.sleep(0.0005)
-        seen.look()
+        inputs.read()
     received_at = time.monotonic()
 
 
 def run_until(is_over, speed=0.0, goal=None):
     """Moves the setpoint to height `goal` at `speed` until it is reached or `is_over()`."""
-    sent_at = seen.now
+    sent_at = inputs.now
     while not is_over():
-        step = PERIOD_S if LOCKSTEP else seen.now - sent_at
+        step = PERIOD_S if LOCKSTEP else inputs.now - sent_at
         if PERIOD_S <= step:
-            sent_at = seen.now
+            sent_at = inputs.now
             if goal is not None:
                 left = goal - position[2]
                 if abs(left) < 1e-9:
@@ -158,8 +158,8 @@ def run_until(is_over, speed=0.0, goal=None):
 
 def after(seconds):
     """True once this much simulation time has passed since the call."""
-    end = seen.now + seconds
-    return lambda: end <= seen.now
+    end = inputs.now + seconds
+    return lambda: end <= inputs.now
 
 
 def never():
@@ -173,52 +173,52 @@ def mean(samples):
 
 
 def mark(name):
-    trace.append([name, round(seen.now, 3), round(seen.object.z, 5), round(seen.push(), 3)])
+    trace.append([name, round(inputs.now, 3), round(inputs.object.z, 5), round(inputs.push(), 3)])
 
 
 run_until(after(0.1))
 mark("approach")
-felt = run_until(lambda: TOUCH_N <= seen.push(), TRAVEL_M_S, seen.object.z)
-assert felt, "came down to the object's center and felt notarget"
+felt = run_until(lambda: TOUCH_N <= inputs.push(), TRAVEL_M_S, inputs.object.z)
+assert felt, "came down to the object's center and felt nothing"
 mark("push")
 peak_n = 0.0
 
 
 def pushed_enough():
     global peak_n
-    peak_n = max(peak_n, seen.push())
-    return PUSH_MAX_N <= seen.push()
+    peak_n = max(peak_n, inputs.push())
+    return PUSH_MAX_N <= inputs.push()
 
 
 run_until(pushed_enough, PUSH_M_S, position[2] - PUSH_M)
 run_until(after(SETTLE_S))
 mark("evacuate")
 pressure = GRIP_PA
-gripped = run_until(lambda g=after(5.0): seen.gauge <= 0.95 * GRIP_PA or g())
-reached_pa = seen.gauge
+gripped = run_until(lambda g=after(5.0): inputs.gauge <= 0.95 * GRIP_PA or g())
+reached_pa = inputs.gauge
 run_until(after(SETTLE_S))
-rest_z, cloud_z = seen.object.z, sum(seen.grain_heights) / len(seen.grain_heights)
+rest_z, cloud_z = inputs.object.z, sum(inputs.grain_heights) / len(inputs.grain_heights)
 mark("lift")
 run_until(never, TRAVEL_M_S, position[2] + LIFT_M)
 run_until(after(SETTLE_S))
 mark("hold")
-hold_from, lowest, highest = seen.now, math.inf, -math.inf
+hold_from, lowest, highest = inputs.now, math.inf, -math.inf
 end = after(HOLD_S)
-seen.holding = True
+inputs.holding = True
 
 
 def held():
     global lowest, highest
-    lowest, highest = min(lowest, seen.object.z), max(highest, seen.object.z)
+    lowest, highest = min(lowest, inputs.object.z), max(highest, inputs.object.z)
     return end()
 
 
 run_until(held)
-seen.holding = False
-held_s = seen.now - hold_from
-cloud_lifted = sum(seen.grain_heights) / len(seen.grain_heights) - cloud_z
+inputs.holding = False
+held_s = inputs.now - hold_from
+cloud_lifted = sum(inputs.grain_heights) / len(inputs.grain_heights) - cloud_z
 mark("lower")
-run_until(never, TRAVEL_M_S, position[2] - max(0.0, seen.object.z - rest_z) + 0.005)
+run_until(never, TRAVEL_M_S, position[2] - max(0.0, inputs.object.z - rest_z) + 0.005)
 run_until(lambda: False, PUSH_M_S, position[2] - 0.005)
 pressure = VENT_PA
 run_until(after(VENT_S))
@@ -235,16 +235,16 @@ print(
             "held_s": held_s,
             "peak_push_n": peak_n,
             "gauge_reached_pa": reached_pa,
-            "hold_force_z_n": mean(seen.hold_forces),
-            "hold_force_swing_n": max(seen.hold_forces) - min(seen.hold_forces),
-            "n_hold_forces": len(seen.hold_forces),
+            "hold_force_z_n": mean(inputs.hold_forces),
+            "hold_force_swing_n": max(inputs.hold_forces) - min(inputs.hold_forces),
+            "n_hold_forces": len(inputs.hold_forces),
             "cloud_lifted_m": cloud_lifted,
-            "n_grains": len(seen.grain_heights),
-            "n_vertices": len(seen.vertex_heights),
-            "n_clouds": seen.n_clouds,
-            "n_membranes": seen.n_membranes,
-            "put_back_m": seen.object.z - rest_z,
-            "let_go_n": seen.push(),
+            "n_grains": len(inputs.grain_heights),
+            "n_vertices": len(inputs.vertex_heights),
+            "n_clouds": inputs.n_clouds,
+            "n_membranes": inputs.n_membranes,
+            "put_back_m": inputs.object.z - rest_z,
+            "let_go_n": inputs.push(),
             "trace": trace,
         }
     ),
