@@ -7,7 +7,7 @@ root=$(cd "$here/../.." && pwd)
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 sed "s|@JAMGRIP@|$root|" "$here/Cargo.toml.in" > "$folder/Cargo.toml"
-cp "$here/main.rs" "$folder/main.rs"
+cp "$here/program.rs" "$folder/main.rs"
 cp "$root/Cargo.lock" "$folder/Cargo.lock" # the same versions as the library's own
 CARGO_TARGET_DIR="${EXTERNAL_TARGET_DIR:-$folder/target}" \
     cargo run --release --quiet --manifest-path "$folder/Cargo.toml" "$@"
