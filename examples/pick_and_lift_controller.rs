@@ -1,13 +1,13 @@
-//! Picks up and lifts from another process: a ROS 2 node that sees and commands topics only.
+//! Picks up and lifts an object from another process: a ROS 2 node that only uses topics.
 //!
 //!     cargo run --release -- run launch_configs/pick_and_lift.yaml --set controller=topics
 //!     cargo run --release --example pick_and_lift_controller
 //!
-//! The decisions are those of the built-in controller, with the same parameters: those of the
-//! scene file given as first argument, and of `key=value` overrides behind it. All that this file
-//! adds is what a controller on the other side of a wire needs: it waits for the simulation to
-//! listen, says a first command so that the run begins, keeps the newest of each topic, and goes
-//! by the simulation's `/clock` instead of its own.
+//! The decisions are those of the built-in controller, with the parameters of the scene file given
+//! as first argument and of the `key=value` overrides after it. This file adds what a controller in
+//! another process needs: it waits until the simulation is discovered, sends a first command to
+//! start the run, keeps the newest message of each topic, and uses the simulation's `/clock`
+//! instead of its own.
 
 use std::{
     error::Error,
@@ -33,54 +33,57 @@ use jamgrip::{
             jamgrip_msgs::VacuumState,
             rosgraph_msgs::Clock,
         },
-        topics::{Common, OfObject, Topic, common, of_object, topics},
+        topics::{CommonTopic, ObjectTopic, Topic, common, object_topic, topics},
     },
 };
 
-/// Wall time without a clock after which the simulation is taken for gone.
+/// Wall-clock time without a clock message after which the simulation is assumed to have ended.
 const TIMEOUT: Duration = Duration::from_secs(30);
-/// Wall time between two tries to begin the run.
-const CALL_PERIOD: Duration = Duration::from_millis(500);
-/// Wall time between two looks at the topics; the clock ticks once a millisecond at best.
-const PAUSE: Duration = Duration::from_micros(500);
+/// Wall-clock time between two attempts to start the run.
+const START_PERIOD: Duration = Duration::from_millis(500);
+/// Wall-clock time between two polls of the topics; the clock ticks at most once a millisecond.
+const POLL_PERIOD: Duration = Duration::from_micros(500);
 
 fn main() -> Result<(), Box<dyn Error>> {
     env_logger::Builder::new().parse_filters(LOG_FILTER).parse_default_env().init();
     let scene = read_scene()?;
     let Controller::Builtin(parameters) = &scene.controller else {
-        return Err("leave `controller: builtin` here: its parameters are ours".into());
+        return Err(
+            "this example needs `controller: builtin`, because it uses its parameters".into()
+        );
     };
-    let reach = DiscoveryRange::choose(&scene.outputs.ros, |name| std::env::var(name).ok())?;
-    let node = RosNode::join_as("pick_and_lift_controller", &reach)?;
+    let range = DiscoveryRange::choose(&scene.outputs.ros, |name| std::env::var(name).ok())?;
+    let node = RosNode::join_as("pick_and_lift_controller", &range)?;
     let topics = topics(&scene);
-    let mut eyes = Eyes::open(&node, &topics)?;
-    let hands = Hands::open(&node, &scene, &topics)?;
+    let mut inputs = Inputs::open(&node, &topics)?;
+    let commands = Commands::open(&node, &scene, &topics)?;
     let mut out = std::io::stdout().lock();
 
-    writeln!(out, "waiting for the simulation in domain {}", reach.domain_id)?;
-    while !hands.are_felt(&node) {
+    writeln!(out, "waiting for the simulation in domain {}", range.domain_id)?;
+    while !commands.are_matched(&node) {
         std::thread::sleep(Duration::from_millis(10));
     }
-    let mut machine = PickAndLift::new(parameters);
-    let mut tale = Tale::default();
-    let mut heard_at = now();
-    let mut called_at = None;
-    while !machine.is_done() {
-        // The other side may find us later than we find it: a first command is said until heard.
-        if !eyes.are_open() && called_at.is_none_or(|it| CALL_PERIOD < now() - it) {
-            hands.carry_out(&[Command::Vacuum { gauge_pa: 0.0 }])?;
-            called_at = Some(now());
+    let mut controller = PickAndLift::new(parameters);
+    let mut log = Log::default();
+    let mut received_at = now();
+    let mut started_at = None;
+    while !controller.is_done() {
+        // The simulation may discover this node later than the reverse: repeat a first command
+        // until it arrives.
+        if !inputs.are_complete() && started_at.is_none_or(|it| START_PERIOD < now() - it) {
+            commands.send(&[Command::Vacuum { gauge_pa: 0.0 }])?;
+            started_at = Some(now());
         }
-        std::thread::sleep(PAUSE);
-        if let Some(seen) = eyes.look()? {
-            heard_at = now();
-            hands.carry_out(&machine.decide(&seen))?;
-            tale.go_on(machine.phase(), &seen, &mut out)?;
-        } else if TIMEOUT < now() - heard_at {
-            return Err(format!("no news for {TIMEOUT:?}: did the simulation end?").into());
+        std::thread::sleep(POLL_PERIOD);
+        if let Some(observation) = inputs.read()? {
+            received_at = now();
+            commands.send(&controller.decide(&observation))?;
+            log.update(controller.phase(), &observation, &mut out)?;
+        } else if TIMEOUT < now() - received_at {
+            return Err(format!("no clock message for {TIMEOUT:?}: did the simulation end?").into());
         }
     }
-    writeln!(out, "lifted {:.1} mm, held for {:.2} s", tale.lifted * 1e3, tale.held_s)?;
+    writeln!(out, "lifted {:.1} mm, held for {:.2} s", log.lifted * 1e3, log.held_s)?;
     Ok(())
 }
 
@@ -91,13 +94,13 @@ fn read_scene() -> Result<Scene, Box<dyn Error>> {
     Ok(scene::load(&PathBuf::from(file), &arguments.collect::<Vec<_>>())?)
 }
 
-#[expect(clippy::disallowed_methods, reason = "whether anyone is there shows in wall time only")]
+#[expect(clippy::disallowed_methods, reason = "timeouts need wall-clock time")]
 fn now() -> Instant {
     Instant::now()
 }
 
-/// The topics that are seen, and the newest of each.
-struct Eyes {
+/// The subscribed topics, and the newest value of each.
+struct Inputs {
     clock: Subscription<Clock>,
     wrench: Subscription<WrenchStamped>,
     flange: Subscription<PoseStamped>,
@@ -109,14 +112,14 @@ struct Eyes {
     gauge_pa: Option<f64>,
 }
 
-impl Eyes {
+impl Inputs {
     fn open(node: &Arc<RosNode>, topics: &[Topic]) -> Result<Self, RosError> {
         Ok(Self {
-            clock: node.subscription(&topics[common(Common::Clock)])?,
-            wrench: node.subscription(&topics[common(Common::Wrench)])?,
-            flange: node.subscription(&topics[common(Common::FlangePose)])?,
-            object: node.subscription(&topics[of_object(0, OfObject::Pose)])?,
-            vacuum: node.subscription(&topics[common(Common::VacuumState)])?,
+            clock: node.subscription(&topics[common(CommonTopic::Clock)])?,
+            wrench: node.subscription(&topics[common(CommonTopic::Wrench)])?,
+            flange: node.subscription(&topics[common(CommonTopic::FlangePose)])?,
+            object: node.subscription(&topics[object_topic(0, ObjectTopic::Pose)])?,
+            vacuum: node.subscription(&topics[common(CommonTopic::VacuumState)])?,
             contact_force: None,
             flange_pose: None,
             object_pose: None,
@@ -124,16 +127,16 @@ impl Eyes {
         })
     }
 
-    /// True once every topic has been heard of.
-    fn are_open(&self) -> bool {
+    /// True once every topic has been received.
+    fn are_complete(&self) -> bool {
         self.contact_force.is_some()
             && self.flange_pose.is_some()
             && self.object_pose.is_some()
             && self.gauge_pa.is_some()
     }
 
-    /// What is to be seen, if time has gone on and every topic has been heard of.
-    fn look(&mut self) -> Result<Option<Observation>, Box<dyn Error>> {
+    /// The present observation, if time has advanced and every topic has been received.
+    fn read(&mut self) -> Result<Option<Observation>, Box<dyn Error>> {
         let time_s = newest(&self.clock)?
             .map(|it| f64::from(it.clock.sec) + 1e-9 * f64::from(it.clock.nanosec));
         if let Some(message) = newest(&self.wrench)? {
@@ -163,7 +166,7 @@ impl Eyes {
     }
 }
 
-/// The last of the messages that wait.
+/// The newest of the waiting messages.
 fn newest<M>(subscription: &Subscription<M>) -> Result<Option<M>, Box<dyn Error>>
 where
     M: serde::de::DeserializeOwned + 'static,
@@ -181,15 +184,15 @@ fn pose(message: &geometry_msgs::Pose) -> Pose {
     Pose::from_parts(Vec3::new(p.x, p.y, p.z).into(), rotation)
 }
 
-/// The topics that are commanded.
-struct Hands {
+/// The publishers of the commands.
+struct Commands {
     codec: CommandCodec,
     publishers: Vec<Option<(String, Publisher<Body>)>>,
 }
 
-impl Hands {
+impl Commands {
     fn open(node: &Arc<RosNode>, scene: &Scene, topics: &[Topic]) -> Result<Self, RosError> {
-        let needed = [common(Common::VacuumCommand), common(Common::FlangePoseCommand)];
+        let needed = [common(CommonTopic::VacuumCommand), common(CommonTopic::FlangePoseCommand)];
         let open = |(index, topic): (usize, &Topic)| {
             if needed.contains(&index) {
                 node.publisher(topic).map(|it| Some((topic.name.clone(), it)))
@@ -202,12 +205,12 @@ impl Hands {
         Ok(Self { codec: CommandCodec::new(topics.to_vec(), objects), publishers })
     }
 
-    /// True when someone listens to every command.
-    fn are_felt(&self, node: &RosNode) -> bool {
+    /// True once every command topic has a reader.
+    fn are_matched(&self, node: &RosNode) -> bool {
         self.publishers.iter().flatten().all(|(topic, _)| 0 < node.n_readers(topic))
     }
 
-    fn carry_out(&self, commands: &[Command]) -> Result<(), Box<dyn Error>> {
+    fn send(&self, commands: &[Command]) -> Result<(), Box<dyn Error>> {
         for command in commands {
             let message = self.codec.encode(command, 0);
             if let Some((_, publisher)) = &self.publishers[message.topic] {
@@ -218,9 +221,9 @@ impl Hands {
     }
 }
 
-/// What happened, for people to read.
+/// Prints what happens.
 #[derive(Default)]
-struct Tale {
+struct Log {
     phase: Option<Phase>,
     rest_height: f64,
     lifted: f64,
@@ -228,30 +231,30 @@ struct Tale {
     held_s: f64,
 }
 
-impl Tale {
-    fn go_on(
+impl Log {
+    fn update(
         &mut self,
         phase: Phase,
-        seen: &Observation,
+        observation: &Observation,
         out: &mut impl Write,
     ) -> std::io::Result<()> {
-        let height = seen.object_pose.translation.z;
+        let height = observation.object_pose.translation.z;
         if self.phase != Some(phase) {
             match phase {
                 Phase::Lift => self.rest_height = height,
-                Phase::Hold => self.held_since = seen.time_s,
+                Phase::Hold => self.held_since = observation.time_s,
                 _ => {}
             }
             self.phase = Some(phase);
             writeln!(
                 out,
                 "{:8.3} s  {:<9} flange {:.1} mm, object {:.1} mm, push {:.2} N, {:.1} kPa",
-                seen.time_s,
+                observation.time_s,
                 phase.name(),
-                seen.flange_pose.translation.z * 1e3,
+                observation.flange_pose.translation.z * 1e3,
                 height * 1e3,
-                seen.contact_force.norm(),
-                seen.gauge_pa * 1e-3,
+                observation.contact_force.norm(),
+                observation.gauge_pa * 1e-3,
             )?;
             out.flush()?;
         }
@@ -259,7 +262,7 @@ impl Tale {
             self.lifted = self.lifted.max(height - self.rest_height);
         }
         if phase == Phase::Hold && 0.5 * self.lifted < height - self.rest_height {
-            self.held_s = seen.time_s - self.held_since;
+            self.held_s = observation.time_s - self.held_since;
         }
         Ok(())
     }

@@ -1,10 +1,10 @@
-//! Reads the zero-copy streams of a run on this host and says once a second what arrives.
+//! Reads the zero-copy streams of a run on this host and prints a summary once a second.
 //!
 //!     cargo run --release --example stream_subscriber
 //!
-//! It wakes with the tick, takes every state that is waiting, and looks at grains and membrane in
-//! place, in the memory that the run wrote them to. With a number as argument it stops after so
-//! many states. `JAMGRIP_STREAM_PREFIX` chooses among several runs.
+//! It wakes after every tick, takes all waiting states, and reads grains and membrane in place, in
+//! the memory that the run wrote them to. A number as argument sets the number of states after
+//! which it stops. `JAMGRIP_STREAM_PREFIX` selects one of several runs.
 
 use std::{
     error::Error,
@@ -17,7 +17,7 @@ use jamgrip::shm::{
     stream::{Services, prefix},
 };
 
-/// What arrived since the last line.
+/// Totals since the last line of output.
 struct Tally {
     since: Instant,
     n_states: u64,
@@ -28,7 +28,7 @@ struct Tally {
     lowest_vertex_m: f64,
 }
 
-#[expect(clippy::disallowed_methods, reason = "a reader measures its own rate by the wall clock")]
+#[expect(clippy::disallowed_methods, reason = "a reader measures its own rate in wall-clock time")]
 fn now() -> Instant {
     Instant::now()
 }
@@ -60,11 +60,11 @@ fn main() -> Result<(), Box<dyn Error>> {
             tally.n_lists += 1;
         }
         if Duration::from_secs(1) <= now() - tally.since {
-            tally.say(&mut std::io::stdout().lock())?;
+            tally.print(&mut std::io::stdout().lock())?;
             tally = Tally::new(tally.last);
         }
     }
-    tally.say(&mut std::io::stdout().lock())?;
+    tally.print(&mut std::io::stdout().lock())?;
     Ok(())
 }
 
@@ -88,7 +88,7 @@ impl Tally {
         self.last = row;
     }
 
-    fn say(&self, out: &mut impl Write) -> std::io::Result<()> {
+    fn print(&self, out: &mut impl Write) -> std::io::Result<()> {
         let seconds = (now() - self.since).as_secs_f64();
         let count = u32::try_from(self.n_states).unwrap_or(u32::MAX);
         writeln!(

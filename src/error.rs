@@ -2,7 +2,7 @@
 
 use crate::{
     base::parallel::ThreadPoolError,
-    cosim::{compile::CompileError, refused::ChangeError, saved_state::SavedStateError},
+    cosim::{change_error::ChangeError, compile::CompileError, saved_state::SavedStateError},
     physics::health::Diverged,
     scene::SceneError,
     session::SessionError,

@@ -1,4 +1,4 @@
-//! The list of checks, each with the features that it is about.
+//! The list of checks, with the features that each of them covers.
 
 use jamgrip::wire::messages::simulation_interfaces::{
     GetSimulatorFeaturesRequest, SimulatorFeatures as F, srv::GetSimulatorFeatures,
@@ -6,45 +6,49 @@ use jamgrip::wire::messages::simulation_interfaces::{
 
 use crate::{
     client::{Client, ensure},
-    entities, running, spawning, worlds,
+    entities, run_state, spawning, worlds,
 };
 
-/// What came of a check.
+/// The outcome of a check.
 pub(crate) struct Outcome {
     /// Name of the check.
     pub(crate) name: &'static str,
-    /// Passed or not.
-    pub(crate) verdict: Verdict,
+    /// The result of the check.
+    pub(crate) result: CheckResult,
 }
 
-/// Passed or not.
-pub(crate) enum Verdict {
-    /// It did.
+/// The result of a check.
+pub(crate) enum CheckResult {
+    /// It passed.
     Passed,
-    /// The simulator does not advertise what it is about.
+    /// The simulator does not advertise the features.
     Skipped,
-    /// It did not.
+    /// It failed, with the reason.
     Failed(String),
 }
 
-/// A check: its name, the features it needs, what it does.
+/// A check: its name, the features it needs, and the function that runs it.
 pub(crate) type Check = (&'static str, &'static [u8], fn(&mut Client) -> Result<(), String>);
 
 const CHECKS: &[Check] = &[
-    ("states: read", &[F::SIMULATION_STATE_GETTING], running::state_is_read),
+    ("states: read", &[F::SIMULATION_STATE_GETTING], run_state::state_is_read),
     (
         "states: play, pause, stop",
         &[F::SIMULATION_STATE_SETTING, F::SIMULATION_STATE_PAUSE, F::SIMULATION_STATE_GETTING],
-        running::states_follow,
+        run_state::states_follow,
     ),
-    ("states: what is refused", &[F::SIMULATION_STATE_SETTING], running::states_are_refused),
-    ("pause: the clock stands still", &[F::SIMULATION_STATE_PAUSE], running::pause_holds),
-    ("steps: one is one tick", &[F::STEP_SIMULATION_SINGLE], running::one_step),
-    ("steps: many are as many ticks", &[F::STEP_SIMULATION_MULTIPLE], running::many_steps),
-    ("steps: refused unless paused", &[F::STEP_SIMULATION_SINGLE], running::steps_need_pause),
-    ("steps: an action with feedback", &[F::STEP_SIMULATION_ACTION], running::action_steps),
-    ("steps: an action is cancelled", &[F::STEP_SIMULATION_ACTION], running::action_is_cancelled),
-    ("steps: an action is refused", &[F::STEP_SIMULATION_ACTION], running::action_is_refused),
+    (
+        "states: invalid requests are rejected",
+        &[F::SIMULATION_STATE_SETTING],
+        run_state::invalid_states_are_rejected,
+    ),
+    ("pause: the clock stops", &[F::SIMULATION_STATE_PAUSE], run_state::pause_holds),
+    ("steps: one is one tick", &[F::STEP_SIMULATION_SINGLE], run_state::one_step),
+    ("steps: n are n ticks", &[F::STEP_SIMULATION_MULTIPLE], run_state::many_steps),
+    ("steps: rejected unless paused", &[F::STEP_SIMULATION_SINGLE], run_state::steps_need_pause),
+    ("steps: an action with feedback", &[F::STEP_SIMULATION_ACTION], run_state::action_steps),
+    ("steps: an action is canceled", &[F::STEP_SIMULATION_ACTION], run_state::action_is_canceled),
+    ("steps: an action is rejected", &[F::STEP_SIMULATION_ACTION], run_state::action_is_rejected),
     ("entities: listed once each", &[], entities::listed),
     ("entities: filtered by name", &[], entities::filtered_by_name),
     ("entities: filtered by category", &[F::ENTITY_CATEGORIES], entities::filtered_by_category),
@@ -56,7 +60,7 @@ const CHECKS: &[Check] = &[
     (
         "entities: filtered by a sphere",
         &[F::ENTITY_STATE_GETTING, F::ENTITY_BOUNDS],
-        entities::filtered_by_place,
+        entities::filtered_by_sphere,
     ),
     ("entities: states agree", &[F::ENTITY_STATE_GETTING], entities::states_agree),
     ("entities: an unknown one", &[F::ENTITY_STATE_GETTING], entities::unknown),
@@ -65,39 +69,39 @@ const CHECKS: &[Check] = &[
         &[F::ENTITY_STATE_SETTING, F::ENTITY_STATE_GETTING],
         entities::state_is_set,
     ),
-    (
-        "entities: senseless states are refused",
-        &[F::ENTITY_STATE_SETTING],
-        entities::senseless_states,
-    ),
+    ("entities: invalid states are rejected", &[F::ENTITY_STATE_SETTING], entities::invalid_states),
     (
         "entities: information is set",
         &[F::ENTITY_INFO_GETTING, F::ENTITY_INFO_SETTING],
         entities::info_is_set,
     ),
     ("entities: bounds", &[F::ENTITY_BOUNDS], entities::bounds),
-    ("reset: time", &[F::SIMULATION_RESET_TIME], running::reset_time),
-    ("reset: state", &[F::SIMULATION_RESET_STATE, F::ENTITY_STATE_GETTING], running::reset_state),
+    ("reset: time", &[F::SIMULATION_RESET_TIME], run_state::reset_time),
+    ("reset: state", &[F::SIMULATION_RESET_STATE, F::ENTITY_STATE_GETTING], run_state::reset_state),
     (
-        "spawn: in, moved, out",
+        "spawn: spawned, moved, deleted",
         &[F::SPAWNING, F::DELETING, F::SPAWNING_RESOURCE_STRING],
-        spawning::in_and_out,
+        spawning::spawned_and_deleted,
     ),
     (
         "spawn: a mesh and its convex hull",
         &[F::SPAWNING, F::DELETING, F::SPAWNING_RESOURCE_STRING, F::ENTITY_BOUNDS_CONVEX],
         spawning::convex_hull,
     ),
-    ("spawn: what is refused", &[F::SPAWNING, F::SPAWNING_RESOURCE_STRING], spawning::refused),
-    ("spawn: many at once", &[F::SPAWNING_ENTITIES, F::SPAWNING_RESOURCE_STRING], spawning::many),
-    ("spawn: what is there to spawn", &[F::SPAWNABLES, F::SPAWNING], spawning::spawnables),
     (
-        "spawn: gone after a reset",
+        "spawn: invalid requests are rejected",
+        &[F::SPAWNING, F::SPAWNING_RESOURCE_STRING],
+        spawning::refused,
+    ),
+    ("spawn: many at once", &[F::SPAWNING_ENTITIES, F::SPAWNING_RESOURCE_STRING], spawning::many),
+    ("spawn: list of spawnables", &[F::SPAWNABLES, F::SPAWNING], spawning::spawnables),
+    (
+        "spawn: deleted by a reset",
         &[F::SPAWNING, F::SPAWNING_RESOURCE_STRING, F::SIMULATION_RESET_SPAWNED],
-        spawning::gone_after_reset,
+        spawning::deleted_by_reset,
     ),
     ("named poses", &[F::NAMED_POSES, F::POSE_BOUNDS], spawning::named_poses),
-    ("worlds: the present one", &[F::WORLD_INFO_GETTING], worlds::current_world),
+    ("worlds: the current one", &[F::WORLD_INFO_GETTING], worlds::current_world),
     ("worlds: others, by tags", &[F::AVAILABLE_WORLDS, F::WORLD_TAGS], worlds::available_worlds),
     (
         "worlds: unloaded, and loaded again",
@@ -110,7 +114,7 @@ const CHECKS: &[Check] = &[
         worlds::loaded_from_text,
     ),
     (
-        "worlds: what is refused",
+        "worlds: invalid requests are rejected",
         &[F::WORLD_LOADING, F::WORLD_RESOURCE_STRING, F::WORLD_INFO_GETTING],
         worlds::refused,
     ),
@@ -120,12 +124,12 @@ const CHECKS: &[Check] = &[
         worlds::others_loaded,
     ),
     ("reset: what was spawned", &[F::SIMULATION_RESET_SPAWNED], entities::reset_spawned),
-    ("reset: everything, twice the same", &[F::SIMULATION_RESET], running::reset_all),
+    ("reset: everything, with equal results", &[F::SIMULATION_RESET], run_state::reset_all),
 ];
 
-/// Runs all of them.
+/// Runs all checks.
 pub(crate) fn all(client: &mut Client) -> Result<Vec<Outcome>, String> {
-    let answer = client.ask::<GetSimulatorFeatures>(
+    let answer = client.call::<GetSimulatorFeatures>(
         "get_simulator_features",
         &GetSimulatorFeaturesRequest::default(),
     )?;
@@ -136,19 +140,20 @@ pub(crate) fn all(client: &mut Client) -> Result<Vec<Outcome>, String> {
         if is_advertised {
             outcomes.push(outcome(name, check(client)));
         } else {
-            outcomes.push(Outcome { name, verdict: Verdict::Skipped });
+            outcomes.push(Outcome { name, result: CheckResult::Skipped });
         }
     }
-    let tried = CHECKS.iter().flat_map(|(_, needs, _)| needs.iter().map(|it| u16::from(*it)));
-    let tried: Vec<u16> = tried.chain([F::ENTITY_BOUNDS_BOX.into()]).collect();
-    let untried: Vec<_> = features.iter().filter(|it| !tried.contains(it)).collect();
-    let is_complete = ensure(untried.is_empty(), || format!("no check for features {untried:?}"));
-    outcomes.push(outcome("features: all were tried", is_complete));
+    let covered = CHECKS.iter().flat_map(|(_, needs, _)| needs.iter().map(|it| u16::from(*it)));
+    let covered: Vec<u16> = covered.chain([F::ENTITY_BOUNDS_BOX.into()]).collect();
+    let uncovered: Vec<_> = features.iter().filter(|it| !covered.contains(it)).collect();
+    let is_complete =
+        ensure(uncovered.is_empty(), || format!("no check for features {uncovered:?}"));
+    outcomes.push(outcome("features: all are covered", is_complete));
     Ok(outcomes)
 }
 
 fn outcome(name: &'static str, result: Result<(), String>) -> Outcome {
-    Outcome { name, verdict: result.map_or_else(Verdict::Failed, |()| Verdict::Passed) }
+    Outcome { name, result: result.map_or_else(CheckResult::Failed, |()| CheckResult::Passed) }
 }
 
 fn consistent(features: &[u16]) -> Result<(), String> {

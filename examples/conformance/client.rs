@@ -1,4 +1,4 @@
-//! Asks services one at a time, follows the clock and drives an action.
+//! A client of services, which also reads the clock.
 
 use std::{
     collections::BTreeMap,
@@ -24,28 +24,28 @@ use jamgrip::{
 
 use crate::Options;
 
-/// A client of everything.
+/// Clients of all services, and the clock.
 pub(crate) struct Client {
     node: Arc<RosNode>,
     options: Options,
     clients: BTreeMap<String, RosClient>,
     clock: Subscription<Clock>,
-    /// Simulated times heard since they were last looked at (ns), repetitions left out.
+    /// Simulation times received since they were last taken (ns), without repetitions.
     times_ns: Vec<i64>,
-    /// The last simulated time heard (ns).
+    /// The last simulation time received (ns).
     last_ns: Option<i64>,
 }
 
-#[expect(clippy::disallowed_methods, reason = "how long is waited for an answer")]
+#[expect(clippy::disallowed_methods, reason = "timeouts of responses")]
 fn now() -> Instant {
     Instant::now()
 }
 
-/// Waits this long between two looks.
-const NAP: Duration = Duration::from_millis(1);
+/// Time between two polls.
+const POLL_PERIOD: Duration = Duration::from_millis(1);
 
 impl Client {
-    /// A client that has heard of the simulator.
+    /// Creates a client and subscribes to the clock.
     pub(crate) fn new(node: Arc<RosNode>, options: &Options) -> Result<Self, String> {
         let topic = Topic::input::<Clock>("/clock", Qos::reliable(1000));
         let clock = node.subscription::<Clock>(&topic).map_err(|it| it.to_string())?;
@@ -53,81 +53,81 @@ impl Client {
         Ok(Self { node, options, clients, clock, times_ns: Vec::new(), last_ns: None })
     }
 
-    /// The version of the standard that the simulator speaks.
+    /// The version of the standard that the simulator uses.
     pub(crate) fn version(&self) -> u8 {
         self.options.version
     }
 
-    /// Asks a service of the simulator by its short name.
-    pub(crate) fn ask<S: RosService>(
+    /// Calls a service of the simulator by its short name.
+    pub(crate) fn call<S: RosService>(
         &mut self,
         name: &str,
-        question: &S::Request,
+        request: &S::Request,
     ) -> Result<S::Response, String> {
-        self.ask_raw(name, S::TYPE, &Cdr::of(question))?
+        self.call_raw(name, S::TYPE, &Cdr::of(request))?
             .read()
-            .map_err(|it| format!("{name}: its answer cannot be read: {it}"))
+            .map_err(|it| format!("{name}: its response cannot be decoded: {it}"))
     }
 
-    /// Asks with bytes.
-    pub(crate) fn ask_raw(
+    /// Calls a service with an encoded request.
+    pub(crate) fn call_raw(
         &mut self,
         name: &str,
-        of: ServiceType,
-        question: &Cdr,
+        service_type: ServiceType,
+        request: &Cdr,
     ) -> Result<Cdr, String> {
-        self.send_raw(name, of, question)?;
+        self.send_raw(name, service_type, request)?;
         self.wait(name)
     }
 
-    /// Asks and does not wait.
+    /// Sends a request without waiting for the response.
     pub(crate) fn send_raw(
         &mut self,
         name: &str,
-        of: ServiceType,
-        question: &Cdr,
+        service_type: ServiceType,
+        request: &Cdr,
     ) -> Result<(), String> {
         let full = format!("{}/{name}", self.options.prefix);
         if !self.clients.contains_key(name) {
-            let offer = ServiceSpec { name: full.clone(), service_type: of };
-            let client = RosClient::open(&self.node, &offer, self.options.way);
+            let spec = ServiceSpec { name: full.clone(), service_type };
+            let client = RosClient::open(&self.node, &spec, self.options.mapping);
             let mut client = client.map_err(|it| it.to_string())?;
-            let deadline = now() + self.options.patience;
+            let deadline = now() + self.options.timeout;
             while !client.is_matched() {
                 if deadline < now() {
-                    return Err(format!("nobody serves {full}"));
+                    return Err(format!("no server for {full}"));
                 }
-                std::thread::sleep(NAP);
+                std::thread::sleep(POLL_PERIOD);
             }
             self.clients.insert(name.to_owned(), client);
         }
         let client = self.clients.get_mut(name).ok_or("no client")?;
-        client.ask(question);
+        client.send(request);
         Ok(())
     }
 
-    /// The answer to the last question, if it is there.
+    /// The response to the last request, if it has arrived.
     pub(crate) fn poll(&mut self, name: &str) -> Option<Cdr> {
-        self.clients.get_mut(name)?.answer()
+        self.clients.get_mut(name)?.take_response()
     }
 
-    /// Waits for the answer to the last question.
+    /// Waits for the response to the last request.
     pub(crate) fn wait(&mut self, name: &str) -> Result<Cdr, String> {
-        let deadline = now() + self.options.patience;
+        let deadline = now() + self.options.timeout;
         loop {
-            if let Some(answer) = self.poll(name) {
-                return Ok(answer);
+            if let Some(response) = self.poll(name) {
+                return Ok(response);
             }
             if deadline < now() {
-                return Err(format!("{name}: no answer within {:?}", self.options.patience));
+                return Err(format!("{name}: no response within {:?}", self.options.timeout));
             }
-            self.listen();
-            std::thread::sleep(NAP);
+            self.read_clock();
+            std::thread::sleep(POLL_PERIOD);
         }
     }
 
-    /// Takes what the clock has said.
-    pub(crate) fn listen(&mut self) {
+    /// Reads the waiting clock messages.
+    pub(crate) fn read_clock(&mut self) {
         while let Ok(Some((message, _))) = self.clock.take() {
             let stamp = message.clock;
             let time_ns = i64::from(stamp.sec) * 1_000_000_000 + i64::from(stamp.nanosec);
@@ -138,72 +138,72 @@ impl Client {
         }
     }
 
-    /// New simulated times since the last call (ns).
+    /// New simulation times since the last call (ns).
     pub(crate) fn take_times(&mut self) -> Vec<i64> {
-        self.listen();
+        self.read_clock();
         std::mem::take(&mut self.times_ns)
     }
 
-    /// The last simulated time heard (ns); waits for one.
+    /// The last simulation time received (ns); waits for one.
     pub(crate) fn time_ns(&mut self) -> Result<i64, String> {
-        let deadline = now() + self.options.patience;
+        let deadline = now() + self.options.timeout;
         loop {
-            self.listen();
+            self.read_clock();
             if let Some(time_ns) = self.last_ns {
                 return Ok(time_ns);
             }
             if deadline < now() {
-                return Err("/clock says nothing".to_owned());
+                return Err("no message on /clock".to_owned());
             }
-            std::thread::sleep(NAP);
+            std::thread::sleep(POLL_PERIOD);
         }
     }
 
-    /// Lets wall time pass, with open ears.
+    /// Lets wall-clock time pass while reading the clock.
     pub(crate) fn idle(&mut self, time: Duration) {
         let deadline = now() + time;
         while now() < deadline {
-            self.listen();
-            std::thread::sleep(NAP);
+            self.read_clock();
+            std::thread::sleep(POLL_PERIOD);
         }
     }
 
-    /// Waits until `is_so`.
+    /// Waits until the condition is true.
     pub(crate) fn until(
         &mut self,
         what: &str,
-        mut is_so: impl FnMut(&mut Self) -> bool,
+        mut condition: impl FnMut(&mut Self) -> bool,
     ) -> Result<(), String> {
-        let deadline = now() + self.options.patience;
-        while !is_so(self) {
+        let deadline = now() + self.options.timeout;
+        while !condition(self) {
             if deadline < now() {
-                return Err(format!("waited in vain for {what}"));
+                return Err(format!("timed out waiting for {what}"));
             }
-            std::thread::sleep(NAP);
+            std::thread::sleep(POLL_PERIOD);
         }
         Ok(())
     }
 }
 
-/// An answer that must be OK.
-pub(crate) fn must_be_ok(what: &str, told: &SimResult) -> Result<(), String> {
-    must_be(what, told, SimResult::RESULT_OK)
+/// Checks that a result is OK.
+pub(crate) fn must_be_ok(what: &str, result: &SimResult) -> Result<(), String> {
+    must_be(what, result, SimResult::RESULT_OK)
 }
 
-/// An answer that must have this code.
-pub(crate) fn must_be(what: &str, told: &SimResult, code: u8) -> Result<(), String> {
-    if told.result == code {
+/// Checks that a result has this code.
+pub(crate) fn must_be(what: &str, result: &SimResult, code: u8) -> Result<(), String> {
+    if result.result == code {
         return Ok(());
     }
-    Err(format!("{what}: result {} (`{}`), not {code}", told.result, told.error_message))
+    Err(format!("{what}: result {} (`{}`), expected {code}", result.result, result.error_message))
 }
 
-/// An answer that must not be OK.
-pub(crate) fn must_fail(what: &str, told: &SimResult) -> Result<(), String> {
-    if told.result == SimResult::RESULT_OK { Err(format!("{what}: result OK")) } else { Ok(()) }
+/// Checks that a result is not OK.
+pub(crate) fn must_fail(what: &str, result: &SimResult) -> Result<(), String> {
+    if result.result == SimResult::RESULT_OK { Err(format!("{what}: result OK")) } else { Ok(()) }
 }
 
-/// Something that must hold.
-pub(crate) fn ensure(is_so: bool, what: impl FnOnce() -> String) -> Result<(), String> {
-    if is_so { Ok(()) } else { Err(what()) }
+/// Checks a condition.
+pub(crate) fn ensure(condition: bool, what: impl FnOnce() -> String) -> Result<(), String> {
+    if condition { Ok(()) } else { Err(what()) }
 }

@@ -16,7 +16,7 @@ use jamgrip::wire::{
 
 use crate::{
     client::{Client, ensure, must_be, must_be_ok, must_fail},
-    running::{go_to, reset},
+    run_state::{enter, reset},
 };
 
 fn select(
@@ -24,37 +24,37 @@ fn select(
     filters: &EntityFilters,
 ) -> Result<(SimResult, Vec<String>), String> {
     let request = GetEntitiesRequest { filters: filters.clone() };
-    let answer = client.ask::<srv::GetEntities>("get_entities", &request)?;
-    Ok((answer.result, answer.entities))
+    let response = client.call::<srv::GetEntities>("get_entities", &request)?;
+    Ok((response.result, response.entities))
 }
 
 /// Names of all entities.
 pub(crate) fn all(client: &mut Client) -> Result<Vec<String>, String> {
-    let (told, entities) = select(client, &EntityFilters::default())?;
-    must_be_ok("get_entities", &told)?;
+    let (result, entities) = select(client, &EntityFilters::default())?;
+    must_be_ok("get_entities", &result)?;
     Ok(entities)
 }
 
 fn state_of(client: &mut Client, name: &str) -> Result<EntityState, String> {
     let request = GetEntityStateRequest { entity: name.to_owned() };
-    let answer = client.ask::<srv::GetEntityState>("get_entity_state", &request)?;
-    must_be_ok(&format!("get_entity_state of `{name}`"), &answer.result)?;
-    Ok(answer.state)
+    let response = client.call::<srv::GetEntityState>("get_entity_state", &request)?;
+    must_be_ok(&format!("get_entity_state of `{name}`"), &response.result)?;
+    Ok(response.state)
 }
 
-/// Where an entity is.
+/// The pose of an entity.
 pub(crate) fn pose_of(client: &mut Client, name: &str) -> Result<Pose, String> {
     Ok(state_of(client, name)?.pose)
 }
 
 fn info_of(client: &mut Client, name: &str) -> Result<EntityInfo, String> {
     let request = GetEntityInfoRequest { entity: name.to_owned() };
-    let answer = client.ask::<srv::GetEntityInfo>("get_entity_info", &request)?;
-    must_be_ok(&format!("get_entity_info of `{name}`"), &answer.result)?;
-    Ok(answer.info)
+    let response = client.call::<srv::GetEntityInfo>("get_entity_info", &request)?;
+    must_be_ok(&format!("get_entity_info of `{name}`"), &response.result)?;
+    Ok(response.info)
 }
 
-/// An entity that may be moved about: a dynamic one, if there is any.
+/// An entity that can be moved, preferably a dynamic one.
 pub(crate) fn movable(client: &mut Client) -> Result<Option<String>, String> {
     for name in all(client)? {
         let category = info_of(client, &name)?.category.category;
@@ -68,7 +68,7 @@ pub(crate) fn movable(client: &mut Client) -> Result<Option<String>, String> {
 }
 
 pub(crate) fn listed(client: &mut Client) -> Result<(), String> {
-    go_to(client, S::STATE_PAUSED)?;
+    enter(client, S::STATE_PAUSED)?;
     let mut entities = all(client)?;
     let n = entities.len();
     ensure(entities.iter().all(|it| !it.is_empty()), || "an entity has no name".to_owned())?;
@@ -80,7 +80,7 @@ pub(crate) fn listed(client: &mut Client) -> Result<(), String> {
 pub(crate) fn filtered_by_name(client: &mut Client) -> Result<(), String> {
     let entities = all(client)?;
     for name in &entities {
-        // Every character that means something in a POSIX expression is escaped by brackets.
+        // Every character with a meaning in POSIX expressions is escaped by brackets.
         let escaped: String =
             name.chars()
                 .map(|it| {
@@ -92,8 +92,8 @@ pub(crate) fn filtered_by_name(client: &mut Client) -> Result<(), String> {
                 })
                 .collect();
         let filters = EntityFilters { filter: format!("^{escaped}$"), ..Default::default() };
-        let (told, found) = select(client, &filters)?;
-        must_be_ok("get_entities", &told)?;
+        let (result, found) = select(client, &filters)?;
+        must_be_ok("get_entities", &result)?;
         ensure(found == [name.clone()], || format!("`^{escaped}$` finds {found:?}"))?;
     }
     let alternatives = format!("^({})$", entities.join("|"));
@@ -102,8 +102,8 @@ pub(crate) fn filtered_by_name(client: &mut Client) -> Result<(), String> {
     ensure(found.len() == entities.len(), || format!("alternatives find {found:?}"))?;
     let filters =
         EntityFilters { filter: "^no[[:digit:]]{7}such$".to_owned(), ..Default::default() };
-    let (told, found) = select(client, &filters)?;
-    must_be_ok("get_entities", &told)?;
+    let (result, found) = select(client, &filters)?;
+    must_be_ok("get_entities", &result)?;
     ensure(found.is_empty(), || format!("a filter without match finds {found:?}"))?;
     let filters = EntityFilters { filter: "([".to_owned(), ..Default::default() };
     must_fail("a filter that is no expression", &select(client, &filters)?.0)
@@ -114,8 +114,8 @@ pub(crate) fn filtered_by_category(client: &mut Client) -> Result<(), String> {
     for category in [0, 1, 2, 4, 5] {
         let categories = vec![EntityCategory { category }];
         let filters = EntityFilters { categories, ..Default::default() };
-        let (told, found) = select(client, &filters)?;
-        must_be_ok("get_entities", &told)?;
+        let (result, found) = select(client, &filters)?;
+        must_be_ok("get_entities", &result)?;
         counted += found.len();
         for name in found {
             let its = info_of(client, &name)?.category.category;
@@ -128,7 +128,7 @@ pub(crate) fn filtered_by_category(client: &mut Client) -> Result<(), String> {
 
 fn set_info(client: &mut Client, entity: &str, info: EntityInfo) -> Result<SimResult, String> {
     let request = SetEntityInfoRequest { entity: entity.to_owned(), info };
-    Ok(client.ask::<srv::SetEntityInfo>("set_entity_info", &request)?.result)
+    Ok(client.call::<srv::SetEntityInfo>("set_entity_info", &request)?.result)
 }
 
 pub(crate) fn filtered_by_tags(client: &mut Client) -> Result<(), String> {
@@ -147,38 +147,38 @@ pub(crate) fn filtered_by_tags(client: &mut Client) -> Result<(), String> {
         let tags =
             TagsFilter { tags: tags.iter().map(|it| (*it).to_owned()).collect(), filter_mode };
         let filters = EntityFilters { tags: tags.clone(), ..Default::default() };
-        let (told, found) = select(client, &filters)?;
-        must_be_ok("get_entities", &told)?;
+        let (result, found) = select(client, &filters)?;
+        must_be_ok("get_entities", &result)?;
         ensure(found.len() == n, || format!("{tags:?} finds {found:?}"))?;
     }
     must_be_ok("set_entity_info", &set_info(client, name, before)?)
 }
 
-pub(crate) fn filtered_by_place(client: &mut Client) -> Result<(), String> {
+pub(crate) fn filtered_by_sphere(client: &mut Client) -> Result<(), String> {
     let sphere = |centre: Vector3, radius: f64| Bounds {
         r#type: Bounds::TYPE_SPHERE,
         points: vec![centre, Vector3 { x: radius, ..Default::default() }],
     };
     for name in all(client)? {
         let p = pose_of(client, &name)?.position;
-        // Large enough to reach any body from its frame's origin.
+        // Large enough to reach any body from the origin of its frame.
         let bounds = sphere(Vector3 { x: p.x, y: p.y, z: p.z }, 1.0);
-        let (told, found) = select(client, &EntityFilters { bounds, ..Default::default() })?;
-        must_be_ok("get_entities", &told)?;
+        let (result, found) = select(client, &EntityFilters { bounds, ..Default::default() })?;
+        must_be_ok("get_entities", &result)?;
         ensure(found.contains(&name), || format!("a sphere about `{name}` finds {found:?}"))?;
     }
     let bounds = sphere(Vector3 { x: 1e6, y: 1e6, z: 1e6 }, 1.0);
-    let (told, found) = select(client, &EntityFilters { bounds, ..Default::default() })?;
-    must_be_ok("get_entities", &told)?;
+    let (result, found) = select(client, &EntityFilters { bounds, ..Default::default() })?;
+    must_be_ok("get_entities", &result)?;
     ensure(found.is_empty(), || format!("far away there is {found:?}"))
 }
 
 pub(crate) fn states_agree(client: &mut Client) -> Result<(), String> {
-    go_to(client, S::STATE_PAUSED)?;
+    enter(client, S::STATE_PAUSED)?;
     let request = GetEntitiesStatesRequest::default();
-    let answer = client.ask::<srv::GetEntitiesStates>("get_entities_states", &request)?;
-    must_be_ok("get_entities_states", &answer.result)?;
-    let (names, states) = (answer.entities, answer.states);
+    let response = client.call::<srv::GetEntitiesStates>("get_entities_states", &request)?;
+    must_be_ok("get_entities_states", &response.result)?;
+    let (names, states) = (response.entities, response.states);
     ensure(names.len() == states.len(), || format!("{} states of {names:?}", states.len()))?;
     let listed = all(client)?;
     ensure(names == listed, || format!("states of {names:?}, entities {listed:?}"))?;
@@ -188,7 +188,7 @@ pub(crate) fn states_agree(client: &mut Client) -> Result<(), String> {
         let q = &state.pose.orientation;
         let length = (q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w).sqrt();
         ensure((length - 1.0).abs() < 1e-6, || {
-            format!("the quaternion of `{name}` is {length} long")
+            format!("the quaternion of `{name}` has norm {length}")
         })?;
     }
     Ok(())
@@ -196,24 +196,24 @@ pub(crate) fn states_agree(client: &mut Client) -> Result<(), String> {
 
 pub(crate) fn unknown(client: &mut Client) -> Result<(), String> {
     let request = GetEntityStateRequest { entity: "no such entity".to_owned() };
-    let answer = client.ask::<srv::GetEntityState>("get_entity_state", &request)?;
-    must_be("the state of nothing", &answer.result, SimResult::RESULT_NOT_FOUND)
+    let response = client.call::<srv::GetEntityState>("get_entity_state", &request)?;
+    must_be("the state of an unknown entity", &response.result, SimResult::RESULT_NOT_FOUND)
 }
 
 fn set_state(client: &mut Client, request: &SetEntityStateRequest) -> Result<SimResult, String> {
     if client.version() == 2 {
-        return Ok(client.ask::<srv::SetEntityState>("set_entity_state", request)?.result);
+        return Ok(client.call::<srv::SetEntityState>("set_entity_state", request)?.result);
     }
-    // Version 1 ends before the three flags.
+    // Requests of version 1 end before the three flags.
     let mut body = Cdr::of(request);
     body.bytes.truncate(body.bytes.len() - 3);
-    let answer = client.ask_raw("set_entity_state", srv::SetEntityState::TYPE, &body)?;
-    let answer: SetEntityStateResponse = answer.read().map_err(|it| it.to_string())?;
-    Ok(answer.result)
+    let response = client.call_raw("set_entity_state", srv::SetEntityState::TYPE, &body)?;
+    let response: SetEntityStateResponse = response.read().map_err(|it| it.to_string())?;
+    Ok(response.result)
 }
 
 pub(crate) fn state_is_set(client: &mut Client) -> Result<(), String> {
-    go_to(client, S::STATE_PAUSED)?;
+    enter(client, S::STATE_PAUSED)?;
     let Some(name) = movable(client)? else { return Ok(()) };
     let before = state_of(client, &name)?;
     let mut state = before.clone();
@@ -224,10 +224,10 @@ pub(crate) fn state_is_set(client: &mut Client) -> Result<(), String> {
     (request.set_pose, request.set_twist) = (true, true);
     must_be_ok("pose and twist", &set_state(client, &request)?)?;
     let now = state_of(client, &name)?;
-    let is_there = near(&now.pose, &request.state.pose)
+    let is_set = near(&now.pose, &request.state.pose)
         && (now.twist.linear.x - 0.25).abs() < 1e-9
         && (now.twist.linear.z - 0.5).abs() < 1e-9;
-    ensure(is_there, || format!("`{name}` was set to {:?} and is {now:?}", request.state))?;
+    ensure(is_set, || format!("`{name}` was set to {:?} and is {now:?}", request.state))?;
     if client.version() == 2 {
         let mut only = request.clone();
         (only.set_pose, only.set_twist) = (true, false);
@@ -248,13 +248,13 @@ pub(crate) fn state_is_set(client: &mut Client) -> Result<(), String> {
     must_be_ok("reset_simulation", &reset(client, 0)?)
 }
 
-/// The same place.
+/// True if two poses are equal within a tolerance.
 pub(crate) fn near(a: &Pose, b: &Pose) -> bool {
     let (p, q) = (&a.position, &b.position);
     (p.x - q.x).abs() < 1e-9 && (p.y - q.y).abs() < 1e-9 && (p.z - q.z).abs() < 1e-9
 }
 
-pub(crate) fn senseless_states(client: &mut Client) -> Result<(), String> {
+pub(crate) fn invalid_states(client: &mut Client) -> Result<(), String> {
     let Some(name) = movable(client)? else { return Ok(()) };
     let before = state_of(client, &name)?;
     let mut request =
@@ -278,7 +278,11 @@ pub(crate) fn senseless_states(client: &mut Client) -> Result<(), String> {
     must_fail("an unknown frame", &set_state(client, &wrong)?)?;
     let mut wrong = request;
     wrong.entity = "no such entity".to_owned();
-    must_be("the state of nothing", &set_state(client, &wrong)?, SimResult::RESULT_NOT_FOUND)?;
+    must_be(
+        "the state of an unknown entity",
+        &set_state(client, &wrong)?,
+        SimResult::RESULT_NOT_FOUND,
+    )?;
     let after = state_of(client, &name)?;
     ensure(after.pose == before.pose, || format!("`{name}` has moved to {:?}", after.pose))
 }
@@ -294,22 +298,22 @@ pub(crate) fn info_is_set(client: &mut Client) -> Result<(), String> {
         ensure(now == info, || format!("`{name}` was set to {info:?} and is {now:?}"))?;
         must_be_ok("set_entity_info", &set_info(client, &name, before)?)?;
     }
-    let told = set_info(client, "no such entity", EntityInfo::default())?;
-    must_be("information on nothing", &told, SimResult::RESULT_NOT_FOUND)
+    let result = set_info(client, "no such entity", EntityInfo::default())?;
+    must_be("information about an unknown entity", &result, SimResult::RESULT_NOT_FOUND)
 }
 
 pub(crate) fn bounds(client: &mut Client) -> Result<(), String> {
     let names = all(client)?;
     for name in names.iter().map(String::as_str).chain(["no such entity"]) {
         let request = GetEntityBoundsRequest { entity: name.to_owned() };
-        let answer = client.ask::<srv::GetEntityBounds>("get_entity_bounds", &request)?;
+        let response = client.call::<srv::GetEntityBounds>("get_entity_bounds", &request)?;
         if !names.iter().any(|it| it == name) {
-            must_be("bounds of nothing", &answer.result, SimResult::RESULT_NOT_FOUND)?;
+            must_be("bounds of an unknown entity", &response.result, SimResult::RESULT_NOT_FOUND)?;
             continue;
         }
-        must_be_ok(&format!("bounds of `{name}`"), &answer.result)?;
-        let points = &answer.bounds.points;
-        let is_right = match answer.bounds.r#type {
+        must_be_ok(&format!("bounds of `{name}`"), &response.result)?;
+        let points = &response.bounds.points;
+        let is_right = match response.bounds.r#type {
             Bounds::TYPE_EMPTY => points.is_empty(),
             Bounds::TYPE_BOX => matches!(points.as_slice(), [high, low]
                 if low.x <= high.x && low.y <= high.y && low.z <= high.z),
@@ -317,7 +321,7 @@ pub(crate) fn bounds(client: &mut Client) -> Result<(), String> {
             Bounds::TYPE_SPHERE => points.len() == 2 && 0.0 <= points[1].x,
             _ => false,
         };
-        ensure(is_right, || format!("bounds of `{name}` are {:?}", answer.bounds))?;
+        ensure(is_right, || format!("bounds of `{name}` are {:?}", response.bounds))?;
     }
     Ok(())
 }

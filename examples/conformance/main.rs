@@ -1,17 +1,18 @@
-//! Asks a simulator what it advertises of `simulation_interfaces`, and tries all of it from outside.
+//! Tests a simulator against `simulation_interfaces`: everything that it advertises, from outside.
 //!
 //! ```text
-//! conformance [--prefix /jamgrip] [--way enhanced|cyclone] [--version 1|2] [--patience 10]
+//! conformance [--prefix /jamgrip] [--way enhanced|cyclone] [--version 1|2] [--timeout 10]
 //! ```
 //!
-//! It knows nothing of the simulator but the standard, so it may be pointed at any. The simulation is
-//! reset and its entities are moved about. Exit codes: 0 all that is advertised passes, 1 nobody
-//! answers, 2 the command line is wrong, 3 something fails.
+//! It only depends on the standard, so it can test any simulator. `--mapping` selects how requests are
+//! identified (rmw_fastrtps or rmw_cyclonedds), `--timeout` is the timeout of responses in
+//! seconds. The simulation is reset and its entities are moved. Exit codes: 0 all advertised
+//! features pass, 1 no response, 2 the command line is invalid, 3 a check fails.
 
-mod checks; // what is tried
-mod client; // how it is asked
+mod checks; // the list of checks
+mod client; // calls services and reads the clock
 mod entities; // checks on entities
-mod running; // checks on states, steps and resets
+mod run_state; // checks on states, steps and resets
 mod spawning; // checks on spawning and named poses
 mod worlds; // checks on worlds
 
@@ -21,34 +22,34 @@ use std::{
     time::Duration,
 };
 
-use checks::{Outcome, Verdict};
+use checks::{CheckResult, Outcome};
 use client::Client;
 use jamgrip::{
-    ros::{discovery::DiscoveryRange, node::RosNode, service::Way},
+    ros::{discovery::DiscoveryRange, node::RosNode, service::ServiceMapping},
     scene::Ros,
 };
 
-/// What was asked for on the command line.
+/// The command line options.
 #[derive(Clone, Debug)]
 struct Options {
     prefix: String,
-    way: Way,
+    mapping: ServiceMapping,
     version: u8,
-    patience: Duration,
+    timeout: Duration,
 }
 
 fn main() -> ExitCode {
     let options = match options(std::env::args().skip(1)) {
         Ok(options) => options,
-        Err(fault) => {
-            drop(writeln!(io::stderr().lock(), "{fault}"));
+        Err(error) => {
+            drop(writeln!(io::stderr().lock(), "{error}"));
             return ExitCode::from(2);
         }
     };
     match run(&options) {
-        Ok(outcomes) => tell(&outcomes),
-        Err(fault) => {
-            drop(writeln!(io::stderr().lock(), "{fault}"));
+        Ok(outcomes) => report(&outcomes),
+        Err(error) => {
+            drop(writeln!(io::stderr().lock(), "{error}"));
             ExitCode::FAILURE
         }
     }
@@ -57,23 +58,24 @@ fn main() -> ExitCode {
 fn options(mut arguments: impl Iterator<Item = String>) -> Result<Options, String> {
     let mut options = Options {
         prefix: "/jamgrip".to_owned(),
-        way: Way::Enhanced,
+        mapping: ServiceMapping::Enhanced,
         version: 2,
-        patience: Duration::from_secs(10),
+        timeout: Duration::from_secs(10),
     };
     while let Some(name) = arguments.next() {
         let value = arguments.next().ok_or(format!("{name} needs a value"))?;
         match (name.as_str(), value.as_str()) {
             ("--prefix", _) => options.prefix = value,
-            ("--way", "enhanced") => options.way = Way::Enhanced,
-            ("--way", "cyclone") => options.way = Way::Cyclone,
+            ("--way", "enhanced") => options.mapping = ServiceMapping::Enhanced,
+            ("--way", "cyclone") => options.mapping = ServiceMapping::Cyclone,
             ("--version", "1") => options.version = 1,
             ("--version", "2") => options.version = 2,
-            ("--patience", _) => {
-                let seconds = value.parse().map_err(|_| format!("`{value}` is no time in s"))?;
-                options.patience = Duration::from_secs(seconds);
+            ("--timeout", _) => {
+                let seconds =
+                    value.parse().map_err(|_| format!("`{value}` is not a number of seconds"))?;
+                options.timeout = Duration::from_secs(seconds);
             }
-            _ => return Err(format!("what is `{name} {value}`?")),
+            _ => return Err(format!("unknown option `{name} {value}`")),
         }
     }
     Ok(options)
@@ -81,24 +83,24 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Options, Strin
 
 fn run(options: &Options) -> Result<Vec<Outcome>, String> {
     let scene = Ros { enabled: true, ..Ros::OFF };
-    let reach = DiscoveryRange::choose(&scene, |name| std::env::var(name).ok());
-    let node = RosNode::join_as("conformance", &reach.map_err(|it| it.to_string())?);
+    let range = DiscoveryRange::choose(&scene, |name| std::env::var(name).ok());
+    let node = RosNode::join_as("conformance", &range.map_err(|it| it.to_string())?);
     let mut client = Client::new(node.map_err(|it| it.to_string())?, options)?;
     checks::all(&mut client)
 }
 
-fn tell(outcomes: &[Outcome]) -> ExitCode {
+fn report(outcomes: &[Outcome]) -> ExitCode {
     let mut out = io::stdout().lock();
     for outcome in outcomes {
-        let (word, text) = match &outcome.verdict {
-            Verdict::Passed => ("pass", ""),
-            Verdict::Skipped => ("skip", "not advertised"),
-            Verdict::Failed(why) => ("FAIL", why.as_str()),
+        let (word, text) = match &outcome.result {
+            CheckResult::Passed => ("pass", ""),
+            CheckResult::Skipped => ("skip", "not advertised"),
+            CheckResult::Failed(reason) => ("FAIL", reason.as_str()),
         };
         drop(writeln!(out, "{word}  {:<46} {text}", outcome.name));
     }
-    let n_failed = outcomes.iter().filter(|it| matches!(it.verdict, Verdict::Failed(_))).count();
-    let n_passed = outcomes.iter().filter(|it| matches!(it.verdict, Verdict::Passed)).count();
-    drop(writeln!(out, "{n_passed} passed, {n_failed} failed, {} in all", outcomes.len()));
+    let n_failed = outcomes.iter().filter(|it| matches!(it.result, CheckResult::Failed(_))).count();
+    let n_passed = outcomes.iter().filter(|it| matches!(it.result, CheckResult::Passed)).count();
+    drop(writeln!(out, "{n_passed} passed, {n_failed} failed, {} in total", outcomes.len()));
     if n_failed == 0 { ExitCode::SUCCESS } else { ExitCode::from(3) }
 }

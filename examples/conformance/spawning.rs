@@ -17,10 +17,10 @@ use jamgrip::wire::{
 use crate::{
     client::{Client, ensure, must_be, must_be_ok},
     entities::{all, near, pose_of},
-    running::{go_to, reset, step},
+    run_state::{enter, reset, step},
 };
 
-/// A ball, in the one format that every simulator with a ROS interface reads.
+/// A ball, in the format that every simulator with a ROS interface reads.
 const BALL: &str = r#"<?xml version="1.0"?>
 <robot name="conformance_ball">
   <link name="body">
@@ -34,7 +34,7 @@ const BALL: &str = r#"<?xml version="1.0"?>
 </robot>
 "#;
 
-/// A ball that falls freely for a while, `x` metres aside.
+/// A request for a ball in free fall, `x` meters aside.
 fn ball(name: &str, x: f64) -> SpawnEntityRequest {
     let mut initial_pose = PoseStamped::default();
     initial_pose.pose.position.x = x;
@@ -49,21 +49,21 @@ fn ball(name: &str, x: f64) -> SpawnEntityRequest {
 }
 
 fn spawn(client: &mut Client, request: &SpawnEntityRequest) -> Result<SpawnEntityResponse, String> {
-    client.ask::<srv::SpawnEntity>("spawn_entity", request)
+    client.call::<srv::SpawnEntity>("spawn_entity", request)
 }
 
 fn delete(client: &mut Client, entity: &str) -> Result<SimResult, String> {
     let request = DeleteEntityRequest { entity: entity.to_owned() };
-    Ok(client.ask::<srv::DeleteEntity>("delete_entity", &request)?.result)
+    Ok(client.call::<srv::DeleteEntity>("delete_entity", &request)?.result)
 }
 
-pub(crate) fn in_and_out(client: &mut Client) -> Result<(), String> {
-    go_to(client, S::STATE_PAUSED)?;
+pub(crate) fn spawned_and_deleted(client: &mut Client) -> Result<(), String> {
+    enter(client, S::STATE_PAUSED)?;
     let before = all(client)?;
     let request = ball("conformance_ball", 0.75);
-    let answer = spawn(client, &request)?;
-    must_be_ok("spawn_entity", &answer.result)?;
-    let name = answer.entity_name;
+    let response = spawn(client, &request)?;
+    must_be_ok("spawn_entity", &response.result)?;
+    let name = response.entity_name;
     ensure(all(client)?.contains(&name), || format!("`{name}` is not listed"))?;
     let pose = pose_of(client, &name)?;
     ensure(near(&pose, &request.initial_pose.pose), || format!("`{name}` is at {pose:?}"))?;
@@ -89,33 +89,33 @@ pub(crate) fn refused(client: &mut Client) -> Result<(), String> {
     };
     let cases: [(&str, SpawnEntityRequest, u8); 7] = [
         ("a name twice", with(&|it| it.name = "conformance_ball".to_owned()), 101),
-        ("a name of signs", with(&|it| it.name = "a b/!".to_owned()), 102),
-        ("nothing", with(&|it| it.entity_resource.resource_string.clear()), 104),
+        ("an invalid name", with(&|it| it.name = "a b/!".to_owned()), 102),
+        ("no resource", with(&|it| it.entity_resource.resource_string.clear()), 104),
         (
-            "a file that is not there",
+            "a missing file",
             with(&|it| {
                 it.entity_resource =
                     Resource { uri: "/no/such.urdf".to_owned(), ..Default::default() };
             }),
             104,
         ),
-        ("a namespace of signs", with(&|it| it.entity_namespace = "a b".to_owned()), 105),
+        ("an invalid namespace", with(&|it| it.entity_namespace = "a b".to_owned()), 105),
         ("half a file", with(&|it| it.entity_resource.resource_string.truncate(90)), 106),
         ("a pose of NaN", with(&|it| it.initial_pose.pose.position.y = f64::NAN), 109),
     ];
     for (what, request, code) in cases {
-        let answer = spawn(client, &request)?;
-        must_be(what, &answer.result, code)?;
+        let response = spawn(client, &request)?;
+        must_be(what, &response.result, code)?;
     }
     let renamed = with(&|it| {
         it.name = "conformance_ball".to_owned();
         it.allow_renaming = true;
     });
-    let answer: R = spawn(client, &renamed)?;
-    must_be_ok("a name twice, with renaming", &answer.result)?;
-    let is_new = answer.entity_name != first.entity_name;
-    ensure(is_new, || format!("two entities are called `{}`", answer.entity_name))?;
-    for name in [first.entity_name, answer.entity_name] {
+    let response: R = spawn(client, &renamed)?;
+    must_be_ok("a name twice, with renaming", &response.result)?;
+    let is_new = response.entity_name != first.entity_name;
+    ensure(is_new, || format!("two entities are called `{}`", response.entity_name))?;
+    for name in [first.entity_name, response.entity_name] {
         must_be_ok("delete_entity", &delete(client, &name)?)?;
     }
     let after = all(client)?;
@@ -131,9 +131,13 @@ pub(crate) fn many(client: &mut Client) -> Result<(), String> {
     wrong.entity_resource = Resource::default();
     let spawn_requests = vec![item("conformance_a", 0.7), wrong, item("conformance_b", 0.8)];
     let request = SpawnEntitiesRequest { spawn_requests };
-    let answer = client.ask::<srv::SpawnEntities>("spawn_entities", &request)?;
-    must_be("two and a wrong one", &answer.result, SpawnEntitiesResponse::ENTITIES_SPAWN_FAILED)?;
-    let codes: Vec<u8> = answer.results.iter().map(|it| it.result.result).collect();
+    let response = client.call::<srv::SpawnEntities>("spawn_entities", &request)?;
+    must_be(
+        "two valid requests and an invalid one",
+        &response.result,
+        SpawnEntitiesResponse::ENTITIES_SPAWN_FAILED,
+    )?;
+    let codes: Vec<u8> = response.results.iter().map(|it| it.result.result).collect();
     let expected = [SimResult::RESULT_OK, SpawnResult::NO_RESOURCE, SimResult::RESULT_OK];
     ensure(codes == expected, || format!("results {codes:?}"))?;
     for name in ["conformance_a", "conformance_b"] {
@@ -144,28 +148,28 @@ pub(crate) fn many(client: &mut Client) -> Result<(), String> {
 
 pub(crate) fn spawnables(client: &mut Client) -> Result<(), String> {
     let request = Cdr::of(&GetSpawnablesRequest::default());
-    let answer = client.ask_raw("get_spawnables", srv::GetSpawnables::TYPE, &request)?;
+    let response = client.call_raw("get_spawnables", srv::GetSpawnables::TYPE, &request)?;
     let uris: Vec<String> = if client.version() == 2 {
-        let answer: GetSpawnablesResponse = answer.read().map_err(|it| it.to_string())?;
-        must_be_ok("get_spawnables", &answer.result)?;
-        answer.spawnables.into_iter().map(|it| it.entity_resource.uri).collect()
+        let response: GetSpawnablesResponse = response.read().map_err(|it| it.to_string())?;
+        must_be_ok("get_spawnables", &response.result)?;
+        response.spawnables.into_iter().map(|it| it.entity_resource.uri).collect()
     } else {
         type Flat = (SimResult, Vec<(String, String, Bounds)>);
-        let (told, list): Flat = answer.read().map_err(|it| it.to_string())?;
-        must_be_ok("get_spawnables", &told)?;
+        let (result, list): Flat = response.read().map_err(|it| it.to_string())?;
+        must_be_ok("get_spawnables", &result)?;
         list.into_iter().map(|it| it.0).collect()
     };
     for uri in uris.into_iter().take(3) {
         let mut request = ball("conformance_listed", 1.25);
         request.entity_resource = Resource { uri: uri.clone(), ..Default::default() };
-        let answer = spawn(client, &request)?;
-        must_be_ok(&format!("spawning `{uri}`"), &answer.result)?;
-        must_be_ok("delete_entity", &delete(client, &answer.entity_name)?)?;
+        let response = spawn(client, &request)?;
+        must_be_ok(&format!("spawning `{uri}`"), &response.result)?;
+        must_be_ok("delete_entity", &delete(client, &response.entity_name)?)?;
     }
     Ok(())
 }
 
-pub(crate) fn gone_after_reset(client: &mut Client) -> Result<(), String> {
+pub(crate) fn deleted_by_reset(client: &mut Client) -> Result<(), String> {
     let before = all(client)?;
     must_be_ok("spawn_entity", &spawn(client, &ball("conformance_ball", 0.75))?.result)?;
     must_be_ok("reset_simulation", &reset(client, 3)?)?;
@@ -178,32 +182,32 @@ pub(crate) fn gone_after_reset(client: &mut Client) -> Result<(), String> {
 
 pub(crate) fn named_poses(client: &mut Client) -> Result<(), String> {
     let request = GetNamedPosesRequest::default();
-    let answer = client.ask::<srv::GetNamedPoses>("get_named_poses", &request)?;
-    must_be_ok("get_named_poses", &answer.result)?;
-    let all = answer.poses;
+    let response = client.call::<srv::GetNamedPoses>("get_named_poses", &request)?;
+    must_be_ok("get_named_poses", &response.result)?;
+    let all = response.poses;
     for pose in &all {
         let request = GetNamedPoseBoundsRequest { name: pose.name.clone() };
-        let answer = client.ask::<srv::GetNamedPoseBounds>("get_named_pose_bounds", &request)?;
-        must_be_ok("get_named_pose_bounds", &answer.result)?;
+        let response = client.call::<srv::GetNamedPoseBounds>("get_named_pose_bounds", &request)?;
+        must_be_ok("get_named_pose_bounds", &response.result)?;
         let Some(tag) = pose.tags.first() else { continue };
         let tags = TagsFilter { tags: vec![tag.clone()], filter_mode: TagsFilter::FILTER_MODE_ALL };
         let request = GetNamedPosesRequest { tags };
-        let found = client.ask::<srv::GetNamedPoses>("get_named_poses", &request)?.poses;
+        let found = client.call::<srv::GetNamedPoses>("get_named_poses", &request)?.poses;
         let is_right = found.contains(pose) && found.iter().all(|it| it.tags.contains(tag));
         ensure(is_right, || format!("tag `{tag}` finds {found:?}"))?;
     }
     let request = GetNamedPoseBoundsRequest { name: "no such pose".to_owned() };
-    let answer = client.ask::<srv::GetNamedPoseBounds>("get_named_pose_bounds", &request)?;
-    must_be("bounds of no pose", &answer.result, SimResult::RESULT_NOT_FOUND)
+    let response = client.call::<srv::GetNamedPoseBounds>("get_named_pose_bounds", &request)?;
+    must_be("bounds of no pose", &response.result, SimResult::RESULT_NOT_FOUND)
 }
 
-/// Corners of a regular tetrahedron (m), and its faces seen from outside.
+/// Corners (m) of a regular tetrahedron, and its faces as seen from outside.
 const TETRAHEDRON: ([[f64; 3]; 4], [[usize; 3]; 4]) = (
     [[0.02, 0.02, 0.02], [0.02, -0.02, -0.02], [-0.02, 0.02, -0.02], [-0.02, -0.02, 0.02]],
     [[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]],
 );
 
-/// The same as an STL file.
+/// The tetrahedron as an STL file.
 fn tetrahedron() -> String {
     let (corners, faces) = TETRAHEDRON;
     let mut text = "solid conformance\n".to_owned();
@@ -218,7 +222,8 @@ fn tetrahedron() -> String {
     text + "endsolid conformance\n"
 }
 
-/// Only where the simulator can read a file from here; another one says that assets are missing.
+/// Checks the convex hull of a mesh, if the simulator can read a file from here; otherwise it
+/// reports missing assets.
 pub(crate) fn convex_hull(client: &mut Client) -> Result<(), String> {
     let file = std::env::temp_dir().join(format!("conformance_{}.stl", std::process::id()));
     std::fs::write(&file, tetrahedron()).map_err(|it| format!("{}: {it}", file.display()))?;
@@ -233,11 +238,11 @@ pub(crate) fn convex_hull(client: &mut Client) -> Result<(), String> {
     }
     must_be_ok("spawning a mesh", &spawned.result)?;
     let entity = spawned.entity_name.clone();
-    let asked = GetEntityBoundsRequest { entity };
-    let answer = client.ask::<srv::GetEntityBounds>("get_entity_bounds", &asked)?;
-    must_be_ok("get_entity_bounds", &answer.result)?;
+    let request = GetEntityBoundsRequest { entity };
+    let response = client.call::<srv::GetEntityBounds>("get_entity_bounds", &request)?;
+    must_be_ok("get_entity_bounds", &response.result)?;
     must_be_ok("delete_entity", &delete(client, &spawned.entity_name)?)?;
-    let Bounds { r#type: kind, points } = &answer.bounds;
+    let Bounds { r#type: kind, points } = &response.bounds;
     ensure(*kind == Bounds::TYPE_CONVEX_HULL, || format!("bounds of a mesh are of type {kind}"))?;
     ensure(points.len() == 4, || format!("a tetrahedron has corners {points:?}"))?;
     let edge = 0.04 * 2.0_f64.sqrt();
@@ -245,7 +250,7 @@ pub(crate) fn convex_hull(client: &mut Client) -> Result<(), String> {
         for b in &points[..i] {
             let squares = [a.x - b.x, a.y - b.y, a.z - b.z].map(|it| it * it);
             let length = squares.iter().sum::<f64>().sqrt();
-            // Formats of meshes keep seven digits.
+            // Mesh formats store seven digits.
             ensure((length - edge).abs() < 1e-6, || format!("an edge of {edge} m is {length} m"))?;
         }
     }

@@ -1,5 +1,6 @@
-//! The chain of digests: of every tick the digest of its state, tied to all commands and digests
-//! before it. Whoever alters, drops or reorders one of them breaks every link that follows.
+//! The chain of digests: the digest of the state after every tick, hashed together with all
+//! commands and digests before it. Changing, dropping or reordering any of them breaks all later
+//! links.
 
 use xxhash_rust::xxh3::Xxh3;
 
@@ -8,23 +9,23 @@ use crate::wire::{
     topics::{Qos, Topic},
 };
 
-/// The topic of the links of a node's run; only recordings have it. A tick has another link for each
-/// time that the world was changed after it.
+/// The topic of a node's chained digests, which is only recorded. A tick has an additional link for
+/// each change made after it.
 pub fn topic(node: &str) -> Topic {
     Topic::output::<StateDigest>(&topic_name(node), Qos::reliable(10))
 }
 
-/// Name of that topic.
+/// Name of the topic of chained digests.
 pub fn topic_name(node: &str) -> String {
     format!("{node}/state_digest")
 }
 
-/// The topic of changes of the world between ticks; only recordings have it.
+/// The topic of changes of the world between ticks, which is only recorded.
 pub fn changes_topic(node: &str) -> Topic {
     Topic::output::<WorldChange>(&changes_topic_name(node), Qos::reliable(10))
 }
 
-/// Name of that topic.
+/// Name of the topic of changes.
 pub fn changes_topic_name(node: &str) -> String {
     format!("{node}/world_change")
 }
@@ -34,14 +35,14 @@ pub fn changes_topic_name(node: &str) -> String {
 pub struct Chain {
     end: u64,
     tick: Option<u64>,
-    waiting: Xxh3,
+    hasher: Xxh3,
 }
 
 impl Chain {
-    /// A chain that begins with the text of a scene.
+    /// A chain that starts with the text of a scene.
     pub fn new(scene_text: &str) -> Self {
         let end = xxhash_rust::xxh3::xxh3_64(scene_text.as_bytes());
-        Self { end, tick: None, waiting: Xxh3::new() }
+        Self { end, tick: None, hasher: Xxh3::new() }
     }
 
     /// The last tick that was linked.
@@ -49,17 +50,17 @@ impl Chain {
         self.tick
     }
 
-    /// Takes in a command of the next tick, or a change before it, as it is recorded.
+    /// Adds a command of the next tick, or a change before it, as it is recorded.
     pub fn command(&mut self, topic: &str, cdr: &[u8]) {
-        self.waiting.update(&(topic.len() as u64).to_le_bytes());
-        self.waiting.update(topic.as_bytes());
-        self.waiting.update(&(cdr.len() as u64).to_le_bytes());
-        self.waiting.update(cdr);
+        self.hasher.update(&(topic.len() as u64).to_le_bytes());
+        self.hasher.update(topic.as_bytes());
+        self.hasher.update(&(cdr.len() as u64).to_le_bytes());
+        self.hasher.update(cdr);
     }
 
     /// Links the next tick.
     pub fn link(&mut self, tick: u64, digest: u64) -> StateDigest {
-        let mut hasher = std::mem::take(&mut self.waiting);
+        let mut hasher = std::mem::take(&mut self.hasher);
         for number in [self.end, tick, digest] {
             hasher.update(&number.to_le_bytes());
         }
@@ -73,9 +74,10 @@ impl Chain {
 mod tests {
     use super::*;
 
-    /// Oracle: the meaning of the chain: whatever comes before changes the end, nothing else does.
+    /// Oracle: the definition of the chain: its end depends on everything before, and on nothing
+    /// else.
     #[test]
-    fn every_change_before_shows_at_the_end() {
+    fn the_end_depends_on_everything_before() {
         let end = |scene: &str, commands: &[(&str, &[u8])], digests: [u64; 2]| {
             let mut chain = Chain::new(scene);
             commands.iter().for_each(|(topic, cdr)| chain.command(topic, cdr));

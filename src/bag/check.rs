@@ -1,4 +1,4 @@
-//! Is a recording whole, and does all that it says of itself agree with what is in it?
+//! Checks a recording for damage, and compares its metadata with its contents.
 
 use std::{
     collections::BTreeMap,
@@ -9,38 +9,38 @@ use std::{
 use serde_json::Value;
 
 use super::{
-    NotABag,
+    OpenBagError,
     info::Info,
-    reader::{ChunkNote, Item, Reader},
+    reader::{ChunkSummary, Item, Reader},
     recording::Recording,
 };
 use crate::scene::json;
 
-/// Something that is not as it should be.
+/// A problem in a recording.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Finding {
-    /// True if something was lost or is wrong; false if it is only unusual.
+    /// True if data are lost or wrong; false if they are only unusual.
     pub is_error: bool,
-    /// Where.
+    /// The file.
     pub path: PathBuf,
-    /// What, and what to do.
+    /// The problem, and what to do.
     pub text: String,
 }
 
-/// Checks all of a recording.
+/// Checks a whole recording.
 ///
 /// # Errors
-/// If there is none.
-pub fn check(path: &Path) -> Result<Vec<Finding>, NotABag> {
+/// If the path is not a recording.
+pub fn check(path: &Path) -> Result<Vec<Finding>, OpenBagError> {
     let info = Info::read(path)?;
     let mut findings = Vec::new();
     for file in &info.files {
         let mut inspector = Inspector::default();
         let reader = Reader::open(&file.path);
         let reader =
-            reader.map_err(|fault| NotABag::Unreadable { path: file.path.clone(), fault })?;
-        reader.for_each(|item| inspector.look(&item));
-        let remarks = inspector.conclude();
+            reader.map_err(|error| OpenBagError::Unreadable { path: file.path.clone(), error })?;
+        reader.for_each(|item| inspector.inspect(&item));
+        let remarks = inspector.finish();
         findings.extend(remarks.into_iter().map(|(is_error, text)| Finding {
             is_error,
             path: file.path.clone(),
@@ -51,17 +51,17 @@ pub fn check(path: &Path) -> Result<Vec<Finding>, NotABag> {
         let path = path.join("metadata.yaml");
         findings.extend(check_metadata(&path, &info));
     }
-    findings.extend(check_course(path)?);
+    findings.extend(check_history(path)?);
     Ok(findings)
 }
 
-/// What is noticed in one file.
+/// Inspects the items of one file.
 #[derive(Default)]
 struct Inspector {
     remarks: Vec<(bool, String)>,
-    chunks: Vec<ChunkNote>,
-    /// Chunk indexes: where, and first and last time.
-    indexed: Vec<(u64, u64, u64)>,
+    chunks: Vec<ChunkSummary>,
+    /// Chunk indexes: position, and first and last time.
+    chunk_indexes: Vec<(u64, u64, u64)>,
     counts: BTreeMap<u16, u64>,
     in_chunk: Option<(u64, u64)>,
     time_last: u64,
@@ -74,16 +74,16 @@ impl Inspector {
         self.remarks.push((true, text));
     }
 
-    fn look(&mut self, item: &Item) {
+    fn inspect(&mut self, item: &Item) {
         use mcap::records::Record;
         match item {
             Item::Header(header) => {
                 self.has_header = true;
                 if header.library.is_empty() {
-                    self.remarks.push((false, "the header does not say what wrote it".to_owned()));
+                    self.remarks.push((false, "the header does not name the writer".to_owned()));
                 }
                 if !["", "ros1", "ros2"].contains(&header.profile.as_str()) {
-                    let text = format!("profile `{}` is not one of MCAP's", header.profile);
+                    let text = format!("profile `{}` is not a known MCAP profile", header.profile);
                     self.remarks.push((false, text));
                 }
             }
@@ -101,30 +101,32 @@ impl Inspector {
             }
             Item::Other(Record::ChunkIndex(it)) => {
                 let entry = (it.chunk_start_offset, it.message_start_time, it.message_end_time);
-                self.indexed.push(entry);
+                self.chunk_indexes.push(entry);
             }
             Item::Other(Record::DataEnd(_)) => self.close_chunk(),
             Item::Other(Record::Statistics(it)) => self.compare(it),
             Item::Damage(damage) => {
-                self.error(format!("{damage}; `jamgrip bag recover` keeps the rest"))
+                self.error(format!("{damage}; `jamgrip bag recover` saves the rest"))
             }
             _ => {}
         }
     }
 
-    /// Compares the times that a chunk's head names with those of its messages.
+    /// Compares the times in a chunk's header with those of its messages.
     fn close_chunk(&mut self) {
         let Some(found) = self.in_chunk.take() else { return };
         let Some(chunk) = self.chunks.last() else { return };
-        let told = (chunk.header.message_start_time, chunk.header.message_end_time);
-        if told != found && 0 < chunk.n_messages {
+        let stated = (chunk.header.message_start_time, chunk.header.message_end_time);
+        if stated != found && 0 < chunk.n_messages {
             let offset = chunk.offset;
-            self.error(format!("chunk at byte {offset}: times {told:?} are told, {found:?} found"));
+            self.error(format!(
+                "chunk at byte {offset}: header times {stated:?}, message times {found:?}"
+            ));
         }
     }
 
-    fn compare(&mut self, told: &mcap::records::Statistics) {
-        let counts: BTreeMap<u16, u64> = told
+    fn compare(&mut self, stated: &mcap::records::Statistics) {
+        let counts: BTreeMap<u16, u64> = stated
             .channel_message_counts
             .iter()
             .filter(|it| *it.1 != 0)
@@ -132,14 +134,12 @@ impl Inspector {
             .collect();
         if counts != self.counts {
             let found: u64 = self.counts.values().sum();
-            let told = told.message_count;
-            self.error(format!(
-                "statistics tell of {told} messages, by channel; {found} are found"
-            ));
+            let stated = stated.message_count;
+            self.error(format!("the statistics state {stated} messages, but {found} were found"));
         }
     }
 
-    fn conclude(mut self) -> Vec<(bool, String)> {
+    fn finish(mut self) -> Vec<(bool, String)> {
         if !self.has_header {
             self.error("there is no header".to_owned());
         }
@@ -147,25 +147,23 @@ impl Inspector {
             let text = format!("{} messages are older than one before them", self.n_backwards);
             self.remarks.push((false, text));
         }
-        for (offset, first, last) in std::mem::take(&mut self.indexed) {
+        for (offset, first, last) in std::mem::take(&mut self.chunk_indexes) {
             let chunk = self.chunks.iter().find(|it| it.offset == offset);
             let fits = chunk.is_some_and(|it| {
                 (it.header.message_start_time, it.header.message_end_time) == (first, last)
             });
             if !fits {
-                self.error(format!(
-                    "the index tells of a chunk at byte {offset} that is not there"
-                ));
+                self.error(format!("the index lists a chunk at byte {offset} that does not exist"));
             }
         }
         self.remarks
     }
 }
 
-/// Compares `metadata.yaml` with what was counted.
+/// Compares `metadata.yaml` with the counted contents.
 fn check_metadata(path: &Path, info: &Info) -> Vec<Finding> {
     let finding = |is_error, text| Finding { is_error, path: path.to_owned(), text };
-    let rewrite = "`jamgrip bag recover` writes it anew";
+    let rewrite = "`jamgrip bag recover` rewrites it";
     let text = match fs::read_to_string(path) {
         Ok(text) => text,
         Err(error) if error.kind() == io::ErrorKind::NotFound => {
@@ -179,20 +177,21 @@ fn check_metadata(path: &Path, info: &Info) -> Vec<Finding> {
     };
     let tree = &tree["rosbag2_bagfile_information"];
     let mut findings = Vec::new();
-    let told = tree["message_count"].as_u64();
-    if told != Some(info.n_messages()) {
-        let told = told.map_or("nothing".to_owned(), |it| it.to_string());
-        let text = format!("message_count is {told}, {} are found; {rewrite}", info.n_messages());
+    let stated = tree["message_count"].as_u64();
+    if stated != Some(info.n_messages()) {
+        let stated = stated.map_or("missing".to_owned(), |it| it.to_string());
+        let text =
+            format!("message_count is {stated}, {} were found; {rewrite}", info.n_messages());
         findings.push(finding(true, text));
     }
     let empty = Vec::new();
     let topics = tree["topics_with_message_count"].as_array().unwrap_or(&empty);
     let mut differing = topics.iter().filter_map(|topic| {
-        let (name, told) = (&topic["topic_metadata"]["name"], &topic["message_count"]);
+        let (name, stated) = (&topic["topic_metadata"]["name"], &topic["message_count"]);
         let name = name.as_str().unwrap_or_default();
         let found = info.topics.get(name).map(|it| it.n_messages);
-        let text = || format!("{name}: {told} messages are told, {} are found", found.unwrap_or(0));
-        (found != told.as_u64()).then(text)
+        let text = || format!("{name}: {stated} messages stated, {} found", found.unwrap_or(0));
+        (found != stated.as_u64()).then(text)
     });
     if let Some(first) = differing.next() {
         let others = match differing.count() {
@@ -202,41 +201,41 @@ fn check_metadata(path: &Path, info: &Info) -> Vec<Finding> {
         findings.push(finding(true, format!("{first}{others}; {rewrite}")));
     }
     let names: Vec<String> = info.metadata().1.into_iter().map(|it| it.file).collect();
-    let told: Vec<&str> = tree["relative_file_paths"]
+    let stated: Vec<&str> = tree["relative_file_paths"]
         .as_array()
         .map(|it| it.iter().filter_map(Value::as_str).collect())
         .unwrap_or_default();
-    if told != names {
-        let text = format!("files {told:?} are told, {names:?} are there; {rewrite}");
+    if stated != names {
+        let text = format!("files {stated:?} are listed, {names:?} exist; {rewrite}");
         findings.push(finding(true, text));
     }
     findings
 }
 
-/// The chain of digests and the checkpoints of a recording that has them.
-fn check_course(path: &Path) -> Result<Vec<Finding>, NotABag> {
+/// Checks the chain of digests and the checkpoints, if the recording has them.
+fn check_history(path: &Path) -> Result<Vec<Finding>, OpenBagError> {
     let finding = |is_error, text| Finding { is_error, path: path.to_owned(), text };
     let recording = Recording::open(path)?;
     let Some(tick_ns) = recording.facts.get("tick_ns").and_then(|it| it.parse().ok()) else {
         return Ok(Vec::new());
     };
-    let course = recording
-        .course_of_all(tick_ns)
-        .map_err(|fault| NotABag::Unreadable { path: path.to_owned(), fault })?;
+    let history = recording
+        .history_without_scene(tick_ns)
+        .map_err(|error| OpenBagError::Unreadable { path: path.to_owned(), error })?;
     let mut findings = Vec::new();
-    if let Some(tick) = course.broken_at {
+    if let Some(tick) = history.broken_at {
         let text = format!(
             "the chain of digests is broken at tick {tick}: a command, a digest or the scene was \
              altered after it was recorded"
         );
         findings.push(finding(true, text));
     }
-    if let Some(tick) = course.gap_after {
+    if let Some(tick) = history.gap_after {
         findings.push(finding(true, format!("ticks after {tick} are missing")));
     }
-    for place in &course.checkpoints {
-        if let Err(fault) = place.read() {
-            let text = format!("checkpoint at tick {}: {fault}", place.tick);
+    for checkpoint in &history.checkpoints {
+        if let Err(error) = checkpoint.read() {
+            let text = format!("checkpoint at tick {}: {error}", checkpoint.tick);
             findings.push(finding(true, text));
         }
     }

@@ -1,8 +1,8 @@
-//! A file that can always be completed: when the disk is full, a reserve is given up.
+//! A file that can always be completed: when the disk is full, it frees reserved space.
 //!
-//! The reserve is a second file, without a name, that holds a few megabytes. On a full disk it is
-//! closed, and what was begun is written into the room that it leaves. So a recording ends with
-//! its index, and everything in it stays readable.
+//! The reserve is a second, unnamed file of a few megabytes. When the disk is full it is closed,
+//! and the last data are written to the space that it frees. So a recording always ends with its
+//! index and stays readable.
 
 use std::{
     fs::{File, OpenOptions},
@@ -14,21 +14,21 @@ use std::{
     },
 };
 
-/// Room for the last chunk and the index of a long recording (bytes).
+/// Space for the last chunk and the index of a long recording (bytes).
 pub const RESERVE: usize = 4 << 20;
 
-/// Tells how long the file is, and whether the disk has become full.
+/// Reports the length of a file, and whether the disk is full.
 #[derive(Clone, Debug, Default)]
-pub struct Gauge(Arc<Reading>);
+pub struct FileStatus(Arc<SharedStatus>);
 
 #[derive(Debug, Default)]
-struct Reading {
+struct SharedStatus {
     is_full: AtomicBool,
     n_bytes: AtomicU64,
 }
 
-impl Gauge {
-    /// True once the reserve was needed.
+impl FileStatus {
+    /// True once the reserve has been used.
     pub fn is_full(&self) -> bool {
         self.0.is_full.load(Ordering::Relaxed)
     }
@@ -44,7 +44,7 @@ impl Gauge {
 pub struct ReservedFile {
     file: File,
     reserve: Option<File>,
-    gauge: Gauge,
+    status: FileStatus,
 }
 
 impl ReservedFile {
@@ -54,26 +54,27 @@ impl ReservedFile {
     /// If the file exists, the folder cannot be written, or there is no room for the reserve.
     pub fn create(path: &Path) -> io::Result<Self> {
         let file = OpenOptions::new().write(true).create_new(true).open(path)?;
-        let reserve = reserve_beside(path)?;
-        Ok(Self { file, reserve: Some(reserve), gauge: Gauge::default() })
+        let reserve = reserve_space(path)?;
+        Ok(Self { file, reserve: Some(reserve), status: FileStatus::default() })
     }
 
-    /// Tells length and fullness, also while someone else writes.
-    pub fn gauge(&self) -> Gauge {
-        self.gauge.clone()
+    /// A status that can be read while another owner writes.
+    pub fn status(&self) -> FileStatus {
+        self.status.clone()
     }
 
-    /// Sees to it that the file is on the disk, and not only in memory.
+    /// Flushes the file to the disk.
     ///
     /// # Errors
-    /// As the disk says.
+    /// The errors of the disk.
     pub fn sync(&self) -> io::Result<()> {
         self.file.sync_all()
     }
 }
 
-/// A file that keeps room and has no name: it goes when it is closed, even if the process is killed.
-fn reserve_beside(path: &Path) -> io::Result<File> {
+/// Reserves space with an unnamed file, which disappears when it is closed, even if the process is
+/// killed.
+fn reserve_space(path: &Path) -> io::Result<File> {
     let name = path.with_extension("reserve");
     let mut reserve = OpenOptions::new().write(true).create_new(true).open(&name)?;
     let filled = reserve.write_all(&vec![0; RESERVE]);
@@ -81,7 +82,7 @@ fn reserve_beside(path: &Path) -> io::Result<File> {
     filled.map(|()| reserve)
 }
 
-/// True for the errors of a disk, or a quota, without room.
+/// True for the errors of a full disk or an exhausted quota.
 pub fn is_full(error: &io::Error) -> bool {
     matches!(error.kind(), ErrorKind::StorageFull | ErrorKind::QuotaExceeded)
 }
@@ -91,12 +92,12 @@ impl Write for ReservedFile {
         let n_written = match self.file.write(bytes) {
             Err(error) if is_full(&error) && self.reserve.is_some() => {
                 self.reserve = None;
-                self.gauge.0.is_full.store(true, Ordering::Relaxed);
+                self.status.0.is_full.store(true, Ordering::Relaxed);
                 self.file.write(bytes)?
             }
             other => other?,
         };
-        self.gauge.0.n_bytes.fetch_add(n_written as u64, Ordering::Relaxed);
+        self.status.0.n_bytes.fetch_add(n_written as u64, Ordering::Relaxed);
         Ok(n_written)
     }
 

@@ -1,7 +1,8 @@
-//! The index at the end of a whole file: where its chunks are, and which topics and times they hold.
+//! The index at the end of a complete file: the positions of its chunks, with their topics and
+//! times.
 //!
-//! It only saves work: with it a reader passes over chunks in which nothing is wanted. A file without
-//! one, or whose index does not fit the file, is read from its beginning.
+//! It only saves work: with it, a reader skips chunks that are not needed. A file without an index,
+//! or whose index does not match, is read from its beginning.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -20,19 +21,19 @@ use mcap::{
 
 use super::reader::{Channel, Schema};
 
-/// What the index of a file says.
+/// The index of a file.
 #[derive(Clone, Debug)]
 pub struct Index {
-    /// In the order of the file.
+    /// Chunks, in the order of the file.
     chunks: Vec<ChunkIndex>,
-    /// Places of the attachments.
+    /// Positions of the attachments (bytes).
     attachments: Vec<Range<u64>>,
     pub(super) channels: BTreeMap<u16, Arc<Channel>>,
     pub(super) schemas: BTreeMap<u16, Arc<Schema>>,
 }
 
 impl Index {
-    /// Reads the index of a file; `None` without one that can be used.
+    /// Reads the index of a file; `None` if there is none or it does not match the file.
     pub fn read(path: &Path) -> Option<Self> {
         let mut file = File::open(path).ok()?;
         let length = file.metadata().ok()?.len();
@@ -81,43 +82,43 @@ impl Index {
         self.chunks.iter().map(|it| it.message_end_time).max().unwrap_or(0)
     }
 
-    /// What can be passed over by those who want nothing but messages from `time_ns` on, and before it the last
-    /// ones on channels that are `kept`: places in the file, ascending.
+    /// Ranges of the file (bytes, ascending) that can be skipped if only messages from `time_ns` on
+    /// are needed, plus the last earlier message of each channel that is `kept`.
     pub fn before(&self, time_ns: u64, kept: &dyn Fn(&Channel) -> bool) -> Vec<Range<u64>> {
         let kept: BTreeSet<u16> =
             self.channels.values().filter(|it| kept(it)).map(|it| it.id).collect();
-        let mut missing = kept;
+        let mut needed = kept;
         let mut gaps = self.attachments.clone();
         for chunk in self.chunks.iter().rev() {
             let has = |id: &u16| chunk.message_index_offsets.contains_key(id);
-            // Without a message index nobody knows what is in it.
+            // Without a message index, the channels in the chunk are unknown.
             if time_ns <= chunk.message_end_time || chunk.message_index_length == 0 {
                 continue;
             }
-            if missing.iter().any(has) {
-                missing.retain(|id| !has(id));
+            if needed.iter().any(has) {
+                needed.retain(|id| !has(id));
             } else {
                 gaps.extend(range(chunk));
             }
         }
         gaps.sort_by_key(|it| it.start);
-        joined(gaps)
+        merged(gaps)
     }
 }
 
-/// One range in place of those that follow each other.
-fn joined(ranges: Vec<Range<u64>>) -> Vec<Range<u64>> {
-    let mut joined: Vec<Range<u64>> = Vec::new();
+/// Merges adjacent ranges.
+fn merged(ranges: Vec<Range<u64>>) -> Vec<Range<u64>> {
+    let mut merged: Vec<Range<u64>> = Vec::new();
     for range in ranges {
-        match joined.last_mut() {
+        match merged.last_mut() {
             Some(before) if before.end == range.start => before.end = range.end,
-            _ => joined.push(range),
+            _ => merged.push(range),
         }
     }
-    joined
+    merged
 }
 
-/// A chunk with its message indexes.
+/// The range of a chunk and its message indexes.
 fn range(chunk: &ChunkIndex) -> Option<Range<u64>> {
     let length = chunk.chunk_length.checked_add(chunk.message_index_length)?;
     Some(chunk.chunk_start_offset..chunk.chunk_start_offset.checked_add(length)?)
@@ -171,9 +172,9 @@ mod tests {
         Index { chunks, attachments, channels, schemas: BTreeMap::new() }
     }
 
-    /// Oracle: a file drawn on paper: five chunks, an attachment behind the fourth.
+    /// Oracle: a sketched file: five chunks, an attachment after the fourth.
     #[test]
-    fn only_what_nobody_wants_is_passed_over() {
+    fn only_unneeded_ranges_are_skipped() {
         let chunks = [(0, (0, 9), &[1, 2][..]), (100, (10, 19), &[1]), (200, (20, 29), &[1, 2])];
         let more = [(300, (30, 39), &[1][..]), (450, (40, 49), &[1])];
         let chunks = chunks.into_iter().chain(more);
@@ -184,7 +185,7 @@ mod tests {
         };
         assert_eq!(before(45, ""), [(0, 450)]);
         assert_eq!(before(30, ""), [(0, 300), (400, 450)]);
-        assert_eq!(before(39, ""), [(0, 300), (400, 450)], "wanted up to the last message");
+        assert_eq!(before(39, ""), [(0, 300), (400, 450)], "needed up to the last message");
         assert_eq!(
             before(45, "/2"),
             [(0, 200), (300, 450)],

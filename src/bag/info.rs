@@ -1,4 +1,4 @@
-//! What is in a recording, counted message by message: no index is asked.
+//! Counts the contents of a recording, message by message and without an index.
 
 use std::{
     collections::BTreeMap,
@@ -9,68 +9,68 @@ use std::{
 use serde_json::{Value, json};
 
 use super::{
-    CHECKPOINT, NotABag, SCENE,
-    metadata::{Contents, Row},
+    CHECKPOINT, OpenBagError, SCENE,
+    metadata::{FileContents, TopicMetadata},
     reader::{Attachment, Channel, Damage, Item, Reader},
     recording::Recording,
 };
 
-/// What is in a recording.
+/// The contents of a recording.
 #[derive(Clone, Debug, Default)]
 pub struct Info {
     /// Its files.
     pub files: Vec<FileInfo>,
-    /// Its topics by name.
+    /// Topics by name.
     pub topics: BTreeMap<String, TopicInfo>,
-    /// What it says of its run.
+    /// The facts recorded about the run.
     pub facts: BTreeMap<String, String>,
-    /// What wrote it.
+    /// The program that wrote it.
     pub library: String,
     /// True if a scene is attached.
     pub has_scene: bool,
-    /// Ticks after which all that is needed to go on is kept.
+    /// Ticks of the checkpoints.
     pub checkpoints: Vec<u64>,
     /// Names of all other attachments.
     pub attachments: Vec<String>,
 }
 
-/// One file.
+/// The contents of a file.
 #[derive(Clone, Debug, Default)]
 pub struct FileInfo {
-    /// Where it is.
+    /// Its path.
     pub path: PathBuf,
     /// Its length (bytes).
     pub n_bytes: u64,
-    /// Its messages on each topic.
+    /// Number of messages on each topic.
     pub counts: BTreeMap<String, u64>,
-    /// Time of its first and its last message (ns).
+    /// Times of the first and last message (ns).
     pub times: Option<(u64, u64)>,
-    /// What is wrong with it.
+    /// Damaged parts.
     pub damages: Vec<Damage>,
 }
 
-/// One topic.
+/// A topic.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct TopicInfo {
-    /// Name of its type.
+    /// Name of the type.
     pub type_name: String,
-    /// Encoding of its messages.
+    /// Encoding of the messages.
     pub encoding: String,
-    /// How it was offered, as YAML.
+    /// Offered QoS profiles as YAML.
     pub qos: String,
-    /// Hash of the type's description.
+    /// Hash of the type description.
     pub type_hash: String,
-    /// Its messages.
+    /// Number of messages.
     pub n_messages: u64,
 }
 
 impl FileInfo {
-    /// All messages.
+    /// Total number of messages.
     pub fn n_messages(&self) -> u64 {
         self.counts.values().sum()
     }
 
-    /// Takes note of a message.
+    /// Counts a message.
     pub fn add(&mut self, topic: &str, time_ns: u64) {
         match self.counts.get_mut(topic) {
             Some(count) => *count += 1,
@@ -82,7 +82,7 @@ impl FileInfo {
 }
 
 impl TopicInfo {
-    /// Of a channel, without messages.
+    /// A topic without messages.
     pub fn of(channel: &Channel) -> Self {
         let known = |key: &str| channel.metadata.get(key).cloned().unwrap_or_default();
         Self {
@@ -96,11 +96,11 @@ impl TopicInfo {
 }
 
 impl Info {
-    /// Reads a recording.
+    /// Reads and counts a recording.
     ///
     /// # Errors
-    /// If there is none.
-    pub fn read(path: &Path) -> Result<Self, NotABag> {
+    /// If the path is not a recording.
+    pub fn read(path: &Path) -> Result<Self, OpenBagError> {
         let recording = Recording::open(path)?;
         let mut info = Self {
             facts: recording.facts,
@@ -109,7 +109,7 @@ impl Info {
             ..Self::default()
         };
         for path in recording.files {
-            info.read_file(&path).map_err(|fault| NotABag::Unreadable { path, fault })?;
+            info.read_file(&path).map_err(|error| OpenBagError::Unreadable { path, error })?;
         }
         Ok(info)
     }
@@ -149,33 +149,33 @@ impl Info {
         }
     }
 
-    /// Time of the first and of the last message (ns).
+    /// Times of the first and last message (ns).
     pub fn times(&self) -> Option<(u64, u64)> {
         let first = self.files.iter().filter_map(|it| Some(it.times?.0)).min()?;
         let last = self.files.iter().filter_map(|it| Some(it.times?.1)).max()?;
         Some((first, last))
     }
 
-    /// All messages.
+    /// Total number of messages.
     pub fn n_messages(&self) -> u64 {
         self.files.iter().map(FileInfo::n_messages).sum()
     }
 
-    /// True if nothing is wrong with any file.
-    pub fn is_whole(&self) -> bool {
+    /// True if no file is damaged.
+    pub fn is_undamaged(&self) -> bool {
         self.files.iter().all(|file| file.damages.is_empty())
     }
 
-    /// What `metadata.yaml` says of topics and files.
-    pub fn metadata(&self) -> (Vec<Row>, Vec<Contents>) {
-        let row = |(name, topic): (&String, &TopicInfo)| Row {
+    /// The topics and files for `metadata.yaml`.
+    pub fn metadata(&self) -> (Vec<TopicMetadata>, Vec<FileContents>) {
+        let row = |(name, topic): (&String, &TopicInfo)| TopicMetadata {
             name: name.clone(),
             type_name: topic.type_name.clone(),
             encoding: topic.encoding.clone(),
-            qos: super::metadata::qos_in_words(&topic.qos),
+            qos: super::metadata::qos_with_names(&topic.qos),
             type_hash: topic.type_hash.clone(),
         };
-        let contents = |file: &FileInfo| Contents {
+        let contents = |file: &FileInfo| FileContents {
             file: file.path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
             counts: self.topics.keys().map(|it| *file.counts.get(it).unwrap_or(&0)).collect(),
             times: file.times,
@@ -183,7 +183,7 @@ impl Info {
         (self.topics.iter().map(row).collect(), self.files.iter().map(contents).collect())
     }
 
-    /// All of it for machines.
+    /// The contents as JSON.
     pub fn to_json(&self) -> Value {
         let times = self.times();
         let file = |it: &FileInfo| {
@@ -210,7 +210,7 @@ impl Info {
             "has_scene": self.has_scene,
             "checkpoints": self.checkpoints,
             "attachments": self.attachments,
-            "is_whole": self.is_whole(),
+            "is_whole": self.is_undamaged(),
         })
     }
 }

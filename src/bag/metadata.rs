@@ -1,54 +1,54 @@
-//! `metadata.yaml` of a rosbag2 folder, version 9: what is in the recording.
+//! `metadata.yaml` of a rosbag2 folder, version 9.
 
 use crate::wire::topics::{Qos, Topic};
 
-/// What a file of a recording holds.
+/// The contents of a file of a recording.
 #[derive(Clone, Debug, Default)]
-pub struct Contents {
+pub struct FileContents {
     /// Name of the file.
     pub file: String,
-    /// Messages of each topic, in the order of the topics.
+    /// Number of messages on each topic, in the order of the topics.
     pub counts: Vec<u64>,
-    /// Time of the first and of the last message (ns).
+    /// Times of the first and last message (ns).
     pub times: Option<(u64, u64)>,
 }
 
-impl Contents {
-    /// Of a file without messages.
+impl FileContents {
+    /// A file without messages.
     pub fn new(file: String, n_topics: usize) -> Self {
         Self { file, counts: vec![0; n_topics], times: None }
     }
 
-    /// Takes note of a message.
+    /// Counts a message.
     pub fn add(&mut self, topic: usize, time_ns: u64) {
         self.counts[topic] += 1;
         let (first, last) = self.times.unwrap_or((time_ns, time_ns));
         self.times = Some((first.min(time_ns), last.max(time_ns)));
     }
 
-    /// All messages.
+    /// Total number of messages.
     pub fn n_messages(&self) -> u64 {
         self.counts.iter().sum()
     }
 }
 
-/// What `metadata.yaml` says of a topic.
+/// An entry of `metadata.yaml` about a topic.
 #[derive(Clone, Debug)]
-pub struct Row {
+pub struct TopicMetadata {
     /// Name.
     pub name: String,
     /// Type, such as `std_msgs/msg/String`.
     pub type_name: String,
-    /// Encoding of its messages.
+    /// Encoding of the messages.
     pub encoding: String,
-    /// List of qualities of service as YAML; empty if unknown.
+    /// List of QoS profiles as YAML; empty if unknown.
     pub qos: String,
-    /// Hash of the type's description; empty if unknown.
+    /// Hash of the type description; empty if unknown.
     pub type_hash: String,
 }
 
-impl Row {
-    /// Of one of our topics.
+impl TopicMetadata {
+    /// The entry of one of our topics.
     pub fn of(topic: &Topic) -> Self {
         Self {
             name: topic.name.clone(),
@@ -61,16 +61,16 @@ impl Row {
 }
 
 /// The text of `metadata.yaml`.
-pub fn file_text(rows: &[Row], files: &[Contents]) -> String {
+pub fn file_text(rows: &[TopicMetadata], files: &[FileContents]) -> String {
     format!("rosbag2_bagfile_information:\n{}", indented(2, &information(rows, files)))
 }
 
-/// The same without its outermost key, as the recording itself holds it.
-pub fn information(rows: &[Row], files: &[Contents]) -> String {
+/// The same without the outermost key, as stored in the recording itself.
+pub fn information(rows: &[TopicMetadata], files: &[FileContents]) -> String {
     let starts = files.iter().filter_map(|it| Some(it.times?.0));
     let ends = files.iter().filter_map(|it| Some(it.times?.1));
     let (first, last) = (starts.min().unwrap_or(0), ends.max().unwrap_or(0));
-    let n_messages: u64 = files.iter().map(Contents::n_messages).sum();
+    let n_messages: u64 = files.iter().map(FileContents::n_messages).sum();
     let total = |i: usize| files.iter().map(|file| file.counts[i]).sum::<u64>();
     let topics: String = rows.iter().enumerate().map(|(i, row)| topic(row, total(i))).collect();
     let topics = if topics.is_empty() { " []\n".to_owned() } else { format!("\n{topics}") };
@@ -95,12 +95,12 @@ ros_distro: jazzy
     )
 }
 
-/// A JSON string is a YAML string too, whatever characters it has.
+/// Quotes a text as a JSON string, which is also a YAML string.
 fn quoted(text: &str) -> String {
     serde_json::Value::from(text).to_string()
 }
 
-fn file(contents: &Contents) -> String {
+fn file(contents: &FileContents) -> String {
     let (first, last) = contents.times.unwrap_or_default();
     format!(
         "  - path: {}
@@ -116,7 +116,7 @@ fn file(contents: &Contents) -> String {
     )
 }
 
-fn topic(row: &Row, n_messages: u64) -> String {
+fn topic(row: &TopicMetadata, n_messages: u64) -> String {
     let qos = match row.qos.as_str() {
         "" => " []\n".to_owned(),
         text => format!("\n{}", indented(8, text)),
@@ -136,10 +136,10 @@ fn topic(row: &Row, n_messages: u64) -> String {
     )
 }
 
-/// The quality of service as a list of one, in the words of rosbag2.
+/// The QoS profile as a list with one entry, with the names of rosbag2.
 pub fn qos_profiles(qos: Qos) -> String {
-    // What rosbag2 writes for a time without limit.
-    const FOREVER: &str = "sec: 9223372036\n    nsec: 854775807";
+    // rosbag2 writes this for an unlimited time.
+    const UNLIMITED: &str = "sec: 9223372036\n    nsec: 854775807";
     let reliability = if qos.is_reliable { "reliable" } else { "best_effort" };
     let durability = if qos.is_latched { "transient_local" } else { "volatile" };
     format!(
@@ -148,12 +148,12 @@ pub fn qos_profiles(qos: Qos) -> String {
   reliability: {reliability}
   durability: {durability}
   deadline:
-    {FOREVER}
+    {UNLIMITED}
   lifespan:
-    {FOREVER}
+    {UNLIMITED}
   liveliness: automatic
   liveliness_lease_duration:
-    {FOREVER}
+    {UNLIMITED}
   avoid_ros_namespace_conventions: false
 ",
         qos.depth
@@ -164,26 +164,26 @@ fn indented(n_spaces: usize, text: &str) -> String {
     text.lines().map(|line| format!("{}{line}\n", " ".repeat(n_spaces))).collect()
 }
 
-/// Qualities of service in the words of version 9. Recordings of other makers may have the numbers
-/// of older versions; what is no list gives nothing.
-pub fn qos_in_words(text: &str) -> String {
+/// QoS profiles with the names of version 9. Recordings of other programs may use the numbers of
+/// older versions. Returns an empty text if the input is not a list.
+pub fn qos_with_names(text: &str) -> String {
     if !text.trim_start().starts_with('-') {
         return String::new();
     }
-    let in_words = |line: &str| {
+    let with_names = |line: &str| {
         let Some((key, value)) = line.split_once(": ") else { return format!("{line}\n") };
-        let word = match value.trim().parse() {
-            Ok(number) => word(key.trim_start_matches(['-', ' ']), number),
+        let name = match value.trim().parse() {
+            Ok(number) => name_of(key.trim_start_matches(['-', ' ']), number),
             Err(_) => None,
         };
-        format!("{key}: {}\n", word.unwrap_or(value))
+        format!("{key}: {}\n", name.unwrap_or(value))
     };
-    text.lines().map(in_words).collect()
+    text.lines().map(with_names).collect()
 }
 
-/// The word for a number of rmw's enumerations.
-fn word(key: &str, number: usize) -> Option<&'static str> {
-    let words: &[&str] = match key {
+/// The name of a value of rmw's enumerations.
+fn name_of(key: &str, number: usize) -> Option<&'static str> {
+    let names: &[&str] = match key {
         "history" => &["system_default", "keep_last", "keep_all", "unknown"],
         "reliability" => {
             &["system_default", "reliable", "best_effort", "unknown", "best_available"]
@@ -201,22 +201,22 @@ fn word(key: &str, number: usize) -> Option<&'static str> {
         ],
         _ => return None,
     };
-    words.get(number).copied()
+    names.get(number).copied()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// Oracle: rmw/types.h, where the enumerations are defined.
+    /// Oracle: rmw/types.h, which defines the enumerations.
     #[test]
-    fn numbers_of_older_versions_become_words() {
+    fn numbers_of_older_versions_become_names() {
         let old = "- history: 3\n  depth: 0\n  reliability: 1\n  durability: 2\n  liveliness: 1\n";
         let new = "- history: unknown\n  depth: 0\n  reliability: reliable\n  \
                    durability: volatile\n  liveliness: automatic\n";
-        assert_eq!(qos_in_words(old), new);
-        assert_eq!(qos_in_words(new), new);
-        assert_eq!(qos_in_words(""), "");
-        assert_eq!(qos_in_words("{}"), "");
+        assert_eq!(qos_with_names(old), new);
+        assert_eq!(qos_with_names(new), new);
+        assert_eq!(qos_with_names(""), "");
+        assert_eq!(qos_with_names("{}"), "");
     }
 }

@@ -1,21 +1,21 @@
-//! What a recording is: its names, how it is written, and how it is read, however damaged.
+//! Recordings: how they are written, and how they are read, even if damaged.
 //!
-//! A recording is a rosbag2 folder of MCAP files. Each file explains itself: it holds the scene, the
-//! files that the scene names, the build, every message and every command. The digest of every tick
-//! and, now and then, all that is needed to go on, make it more than a film: it can be run again.
+//! A recording is a rosbag2 folder of MCAP files. Each file is self-contained: it holds the scene,
+//! the files that the scene refers to, the build, all messages and all commands. With the digest of
+//! every tick and regular checkpoints, a recorded run can be simulated again, not only played back.
 
-pub mod chain; // the digest of every tick, each tied to all before it
-pub mod check; // does all that it says agree with what is in it?
+pub mod chain; // the chained digests of all ticks
+pub mod check; // compares a recording's metadata with its contents
 pub mod disk; // a file that can be completed on a full disk
-pub mod index; // where its chunks are
-pub mod info; // what is in it, counted
-pub mod metadata; // what a recording says about itself
-pub mod reader; // records of a file, however damaged
-pub mod recording; // what is needed to run it again
+pub mod index; // the index of a file's chunks
+pub mod info; // counts the contents of a recording
+pub mod metadata; // metadata.yaml of rosbag2
+pub mod reader; // reads the records of a file, even if damaged
+pub mod recording; // the data needed to simulate a recorded run again
 pub mod recover; // repairs a damaged file
 pub mod sink; // writes a recording
 pub mod source; // commands from a recording
-pub mod writer; // one file
+pub mod writer; // writes one MCAP file
 
 use std::{
     fs, io,
@@ -26,38 +26,38 @@ use crate::scene::BagCompression;
 
 /// Attachment with the resolved scene.
 pub const SCENE: &str = "scene.yaml";
-/// Attachments with files that the scene names begin with this.
+/// Prefix of attachments with files that the scene refers to.
 pub const SCENE_FILE: &str = "scene_file/";
-/// Attachments with checkpoints begin with this; the tick follows.
+/// Prefix of attachments with checkpoints; the tick follows.
 pub const CHECKPOINT: &str = "checkpoint/";
-/// Metadata record with what was known at the start.
+/// Metadata record written at the start.
 pub const START: &str = "jamgrip";
-/// Metadata record with what was known at the end.
+/// Metadata record written at the end.
 pub const END: &str = "jamgrip_end";
 /// Metadata record of rosbag2.
 pub const ROSBAG2: &str = "rosbag2";
 
-/// What a recording is about.
+/// A description of the recorded run, and the format to write it in.
 #[derive(Clone, Debug)]
-pub struct Subject {
+pub struct RunDescription {
     /// Text of the resolved scene.
     pub scene_text: String,
-    /// Files that the scene names: name and contents.
+    /// Files that the scene refers to: name and contents.
     pub scene_files: Vec<(String, Vec<u8>)>,
-    /// What else is worth knowing to run it again: key and value.
+    /// Other information needed to simulate the run again: key and value.
     pub facts: Vec<(&'static str, String)>,
-    /// How it is written.
+    /// The format of the recording.
     pub format: Format,
 }
 
-/// How a recording is written.
+/// The format of a recording.
 #[derive(Clone, Copy, Debug)]
 pub struct Format {
     /// How messages are compressed.
     pub compression: BagCompression,
-    /// A file as long as this is followed by another (bytes).
+    /// Length at which a new file is started (bytes).
     pub split_bytes: Option<u64>,
-    /// The same for the simulated time in it (ns).
+    /// Simulation time in a file after which a new one is started (ns).
     pub split_ns: Option<u64>,
 }
 
@@ -67,33 +67,34 @@ impl Default for Format {
     }
 }
 
-/// Why a path is no recording.
+/// Why a path cannot be opened as a recording.
 #[derive(Debug, thiserror::Error)]
-pub enum NotABag {
+pub enum OpenBagError {
     /// It cannot be read.
-    #[error("{}: cannot be read: {fault}; check the path", path.display())]
+    #[error("{}: cannot be read: {error}; check the path", path.display())]
     Unreadable {
         /// The file or folder.
         path: PathBuf,
-        /// What the system says.
-        fault: io::Error,
+        /// The error of the operating system.
+        error: io::Error,
     },
-    /// There is no MCAP file.
-    #[error("{}: no .mcap file in it; name a rosbag2 folder or an .mcap file", path.display())]
+    /// It contains no MCAP file.
+    #[error("{}: contains no .mcap file; give a rosbag2 folder or an .mcap file", path.display())]
     Empty {
         /// The folder.
         path: PathBuf,
     },
 }
 
-/// The MCAP files of a rosbag2 folder in the order they were written, or the one file.
+/// The MCAP files of a rosbag2 folder, in the order they were written; or the path itself if it is
+/// a file.
 ///
-/// The names alone decide: `metadata.yaml` may be missing, or older than what is there.
+/// The order follows from the names alone, because `metadata.yaml` may be missing or out of date.
 ///
 /// # Errors
-/// If the path cannot be read, or holds no such file.
-pub fn files(path: &Path) -> Result<Vec<PathBuf>, NotABag> {
-    let unreadable = |fault| NotABag::Unreadable { path: path.to_owned(), fault };
+/// If the path cannot be read, or contains no such file.
+pub fn files(path: &Path) -> Result<Vec<PathBuf>, OpenBagError> {
+    let unreadable = |error| OpenBagError::Unreadable { path: path.to_owned(), error };
     if fs::metadata(path).map_err(unreadable)?.is_file() {
         return Ok(vec![path.to_owned()]);
     }
@@ -105,9 +106,9 @@ pub fn files(path: &Path) -> Result<Vec<PathBuf>, NotABag> {
         }
     }
     if found.is_empty() {
-        return Err(NotABag::Empty { path: path.to_owned() });
+        return Err(OpenBagError::Empty { path: path.to_owned() });
     }
-    // The tenth comes after the ninth.
+    // By number: the tenth file comes after the ninth.
     found.sort_by_key(|file| (number_at_end(file), file.clone()));
     Ok(found)
 }
@@ -122,9 +123,9 @@ fn number_at_end(file: &Path) -> u64 {
 mod tests {
     use super::*;
 
-    /// Oracle: the order of counting.
+    /// Oracle: the numbers in the names.
     #[test]
-    fn files_come_in_the_order_they_were_written() {
+    fn files_are_sorted_in_the_order_they_were_written() {
         let folder = tempfile::tempdir().unwrap();
         for name in ["b_10.mcap", "b_9.mcap", "b_0.mcap", "metadata.yaml"] {
             fs::write(folder.path().join(name), "").unwrap();

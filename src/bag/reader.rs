@@ -1,9 +1,9 @@
-//! Records of a recording's files, one after the other, however damaged they are.
+//! Reads the records of a file in order, even if it is damaged.
 //!
-//! Nothing is read ahead and no index is needed: what a killed process left behind is read in the
-//! same way as a whole file. Only who wants a part of a file may tell what to pass over. Damage is an item of its own; whatever follows it and can still be made
-//! out follows. A chunk whose checksum is wrong is left out as a whole, one that is cut off gives
-//! the messages before the cut.
+//! The reader needs no index and does not read ahead, so a file of a killed process is read like a
+//! complete one. Callers that want only part of a file can skip ranges. Damage is reported as an
+//! item of its own, followed by everything after it that can still be read. A chunk with a wrong
+//! checksum is dropped as a whole; a truncated one yields the messages before the cut.
 
 use std::{
     collections::{BTreeMap, VecDeque},
@@ -24,35 +24,35 @@ use super::{index::Index, writer::text};
 
 /// First and last bytes of every file.
 pub const MAGIC: &[u8; 8] = b"\x89MCAP0\r\n";
-/// Opcode and length before every record (bytes).
-const RECORD_HEAD: usize = 9;
+/// Length of the opcode and length in front of every record (bytes).
+const RECORD_HEADER: usize = 9;
 
-/// A kind of message on a topic.
+/// A channel: messages of one type on a topic.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Channel {
-    /// Number in the file.
+    /// ID in the file.
     pub id: u16,
     /// Topic.
     pub topic: String,
     /// Encoding of messages, such as `cdr`.
     pub encoding: String,
-    /// What else is known, such as `offered_qos_profiles`.
+    /// Other information, such as `offered_qos_profiles`.
     pub metadata: BTreeMap<String, String>,
-    /// The type, if one is given.
+    /// The type, if given.
     pub schema: Option<Arc<Schema>>,
 }
 
 impl Channel {
-    /// Name of the type; empty without one.
+    /// Name of the type; empty if there is none.
     pub fn type_name(&self) -> &str {
         self.schema.as_ref().map_or("", |schema| &schema.name)
     }
 }
 
-/// A type of messages.
+/// The type of messages.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Schema {
-    /// Number in the file.
+    /// ID in the file.
     pub id: u16,
     /// Name, such as `std_msgs/msg/String`.
     pub name: String,
@@ -62,173 +62,172 @@ pub struct Schema {
     pub data: Vec<u8>,
 }
 
-/// A message.
+/// A recorded message.
 #[derive(Clone, Debug)]
-pub struct Recorded {
-    /// What it came on.
+pub struct RecordedMessage {
+    /// Its channel.
     pub channel: Arc<Channel>,
-    /// Its number on the topic, as the writer counted.
+    /// Sequence number on the topic, counted by the writer.
     pub sequence: u32,
-    /// When it was recorded (ns).
+    /// Time of recording (ns).
     pub log_time: u64,
-    /// When it was published (ns).
+    /// Time of publication (ns).
     pub publish_time: u64,
-    /// The bytes with their header.
+    /// The encoded message, with its header.
     pub data: Vec<u8>,
 }
 
-/// What was found in a file.
+/// An item of a file.
 #[derive(Debug)]
 pub enum Item {
     /// The file's first record: profile and library.
     Header(records::Header),
-    /// A topic that messages may come on. Once for each number.
+    /// A channel; reported once for each ID.
     Channel(Arc<Channel>),
     /// A message.
-    Message(Recorded),
-    /// A file within the file.
+    Message(RecordedMessage),
+    /// An attached file.
     Attachment(Attachment),
-    /// Named texts.
+    /// A metadata record.
     Metadata(records::Metadata),
-    /// A chunk of messages: its head and what was in it; the messages follow.
-    Chunk(ChunkNote),
-    /// Any other record at its place in the file.
+    /// A chunk; its messages follow.
+    Chunk(ChunkSummary),
+    /// Any other record.
     Other(Record<'static>),
-    /// Something is wrong here.
+    /// Damage at this position.
     Damage(Damage),
 }
 
-/// A file within the file.
+/// An attached file.
 #[derive(Clone, Debug)]
 pub struct Attachment {
     /// Its name.
     pub name: String,
-    /// What it is.
+    /// Its media type.
     pub media_type: String,
-    /// Times of recording and making (ns).
+    /// Times of recording and creation (ns).
     pub times: (u64, u64),
-    /// Its bytes.
+    /// Its contents.
     pub data: Vec<u8>,
 }
 
-/// What a chunk says of itself and what was found.
+/// A chunk's header, and the number of messages found.
 #[derive(Clone, Debug)]
-pub struct ChunkNote {
-    /// Place in the file.
+pub struct ChunkSummary {
+    /// Position in the file (bytes).
     pub offset: u64,
-    /// Its head.
+    /// Its header.
     pub header: records::ChunkHeader,
-    /// Messages in it.
+    /// Number of messages found in it.
     pub n_messages: usize,
 }
 
-/// What is wrong with a file, and where.
+/// Damage of a file, with its position.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Damage {
-    /// The file does not begin as an MCAP file does.
-    #[error("no MCAP file: it begins with other bytes")]
+    /// The file does not begin like an MCAP file.
+    #[error("not an MCAP file: it begins with other bytes")]
     NotMcap,
-    /// The file ends in the middle of a record.
-    #[error(
-        "cut off at byte {offset}: {missing} bytes of the record that begins there are missing"
-    )]
+    /// The file ends inside a record.
+    #[error("truncated: {missing} bytes of the record at byte {offset} are missing")]
     Cut {
-        /// Where the record begins.
+        /// Position of the record (bytes).
         offset: u64,
-        /// What is missing of it.
+        /// Number of missing bytes.
         missing: u64,
     },
-    /// The file ends before it is complete, but not in the middle of a record.
-    #[error("it ends at byte {offset} without a footer: it was not closed")]
+    /// The file ends between records but is not complete.
+    #[error("it ends at byte {offset} without a footer, so it was not closed")]
     NotClosed {
-        /// Its length.
+        /// Length of the file (bytes).
         offset: u64,
     },
-    /// A chunk that cannot be read, or not to its end.
-    #[error("chunk at byte {offset}: {fault}; {n_kept} of its messages are kept")]
+    /// A chunk cannot be read, or only in part.
+    #[error("chunk at byte {offset}: {reason}; {n_kept} of its messages are kept")]
     BadChunk {
-        /// Where the chunk begins.
+        /// Position of the chunk (bytes).
         offset: u64,
-        /// What is wrong.
-        fault: String,
-        /// Messages before the fault that are whole.
+        /// The error.
+        reason: String,
+        /// Number of valid messages before the error.
         n_kept: usize,
     },
-    /// Any other record that cannot be read.
-    #[error("record {opcode:#04x} at byte {offset}: {fault}")]
+    /// Any other record cannot be read.
+    #[error("record {opcode:#04x} at byte {offset}: {reason}")]
     BadRecord {
-        /// Where the record begins.
+        /// Position of the record (bytes).
         offset: u64,
-        /// What kind of record.
+        /// Type of the record.
         opcode: u8,
-        /// What is wrong.
-        fault: String,
+        /// The error.
+        reason: String,
     },
     /// The disk failed.
-    #[error("byte {offset} cannot be read: {fault}")]
+    #[error("byte {offset} cannot be read: {reason}")]
     Unreadable {
-        /// Where.
+        /// Position (bytes).
         offset: u64,
-        /// What the system says.
-        fault: String,
+        /// Reason given by the operating system.
+        reason: String,
     },
 }
 
-/// Reads one file.
+/// Reads a file.
 pub struct Reader<R> {
     input: R,
     length: u64,
     offset: u64,
     channels: BTreeMap<u16, Arc<Channel>>,
     schemas: BTreeMap<u16, Arc<Schema>>,
-    waiting: VecDeque<Item>,
-    /// What to pass over, and how.
+    queue: VecDeque<Item>,
+    /// Ranges to skip, and how to skip them.
     gaps: VecDeque<Range<u64>>,
-    pass_over: fn(&mut R, u64) -> io::Result<()>,
+    skip: fn(&mut R, u64) -> io::Result<()>,
     is_closed: bool,
-    is_over: bool,
+    is_finished: bool,
 }
 
 impl Reader<BufReader<File>> {
     /// Opens a file.
     ///
     /// # Errors
-    /// As the system says.
+    /// The errors of the operating system.
     pub fn open(path: &Path) -> io::Result<Self> {
         let file = File::open(path)?;
         let length = file.metadata()?.len();
         Ok(Self::new(BufReader::with_capacity(1 << 18, file), length))
     }
 
-    /// Opens a file to pass over parts of it, whole records each, that an index named. Channels are
-    /// those of the index: where they were told may be passed over too.
+    /// Opens a file and skips the ranges `gaps`, which consist of whole records named by the index.
+    /// Channels come from the index, because their records may be skipped, too.
     ///
     /// # Errors
-    /// As the system says.
-    pub fn open_in_part(path: &Path, index: &Index, gaps: Vec<Range<u64>>) -> io::Result<Self> {
+    /// The errors of the operating system.
+    pub fn open_with_gaps(path: &Path, index: &Index, gaps: Vec<Range<u64>>) -> io::Result<Self> {
         let mut reader = Self::open(path)?;
         reader.channels = index.channels.clone();
         reader.schemas = index.schemas.clone();
         reader.gaps = gaps.into();
-        reader.pass_over = |input, n| input.seek_relative(i64::try_from(n).unwrap_or(i64::MAX));
+        reader.skip = |input, n| input.seek_relative(i64::try_from(n).unwrap_or(i64::MAX));
         Ok(reader)
     }
 }
 
 impl<R: Read> Reader<R> {
-    /// Reads `length` bytes.
+    /// Reads an input of `length` bytes.
     pub fn new(mut input: R, length: u64) -> Self {
         let mut magic = [0; MAGIC.len()];
         let is_mcap = input.read_exact(&mut magic).is_ok() && magic == *MAGIC;
-        let mut waiting = VecDeque::new();
+        let mut queue = VecDeque::new();
         if !is_mcap {
-            waiting.push_back(Item::Damage(Damage::NotMcap));
+            queue.push_back(Item::Damage(Damage::NotMcap));
         }
         let reader = Self::from_record(input, MAGIC.len() as u64, length);
-        Self { waiting, is_over: !is_mcap, ..reader }
+        Self { queue, is_finished: !is_mcap, ..reader }
     }
 
-    /// Reads on from the record at `offset`, where `input` stands, in a file of `length` bytes.
+    /// Continues at the record at `offset`, where `input` is positioned, in a file of `length`
+    /// bytes.
     pub fn from_record(input: R, offset: u64, length: u64) -> Self {
         Self {
             input,
@@ -236,27 +235,27 @@ impl<R: Read> Reader<R> {
             offset,
             channels: BTreeMap::new(),
             schemas: BTreeMap::new(),
-            waiting: VecDeque::new(),
+            queue: VecDeque::new(),
             gaps: VecDeque::new(),
-            pass_over: |input, n| io::copy(&mut input.take(n), &mut io::sink()).map(drop),
+            skip: |input, n| io::copy(&mut input.take(n), &mut io::sink()).map(drop),
             is_closed: false,
-            is_over: false,
+            is_finished: false,
         }
     }
 
-    /// Where the next record begins.
+    /// Position of the next record (bytes).
     pub fn offset(&self) -> u64 {
         self.offset
     }
 
     fn end_with(&mut self, damage: Option<Damage>) {
-        self.is_over = true;
-        self.waiting.extend(damage.map(Item::Damage));
+        self.is_finished = true;
+        self.queue.extend(damage.map(Item::Damage));
     }
 
-    /// Reads the next record and queues what is in it.
+    /// Reads the next record and queues its items.
     fn read_record(&mut self) {
-        if let Err(error) = self.pass_gaps() {
+        if let Err(error) = self.skip_gaps() {
             return self.end_with(Some(unreadable(self.offset, &error)));
         }
         let offset = self.offset;
@@ -265,26 +264,27 @@ impl<R: Read> Reader<R> {
             let damage = (!self.is_closed).then_some(Damage::NotClosed { offset });
             return self.end_with(damage);
         }
-        let mut head = [0; RECORD_HEAD];
-        if left < RECORD_HEAD as u64 {
-            return self.end_with(Some(Damage::Cut { offset, missing: RECORD_HEAD as u64 - left }));
+        let mut head = [0; RECORD_HEADER];
+        if left < RECORD_HEADER as u64 {
+            return self
+                .end_with(Some(Damage::Cut { offset, missing: RECORD_HEADER as u64 - left }));
         }
         if let Err(error) = self.input.read_exact(&mut head) {
             return self.end_with(Some(unreadable(offset, &error)));
         }
         let [opcode, length @ ..] = head;
         let length = u64::from_le_bytes(length);
-        let there = length.min(left - RECORD_HEAD as u64);
+        let available = length.min(left - RECORD_HEADER as u64);
         let mut body = Vec::new();
-        if let Err(error) = (&mut self.input).take(there).read_to_end(&mut body) {
+        if let Err(error) = (&mut self.input).take(available).read_to_end(&mut body) {
             return self.end_with(Some(unreadable(offset, &error)));
         }
-        self.offset += RECORD_HEAD as u64 + there;
-        if there < length {
+        self.offset += RECORD_HEADER as u64 + available;
+        if available < length {
             if opcode == op::CHUNK {
-                self.cut_chunk(offset, &body);
+                self.truncated_chunk(offset, &body);
             }
-            return self.end_with(Some(Damage::Cut { offset, missing: length - there }));
+            return self.end_with(Some(Damage::Cut { offset, missing: length - available }));
         }
         match opcode {
             op::CHUNK => self.chunk(offset, &body),
@@ -292,9 +292,9 @@ impl<R: Read> Reader<R> {
         }
     }
 
-    fn pass_gaps(&mut self) -> io::Result<()> {
+    fn skip_gaps(&mut self) -> io::Result<()> {
         while let Some(gap) = self.gaps.front().filter(|gap| gap.start == self.offset) {
-            (self.pass_over)(&mut self.input, gap.end - gap.start)?;
+            (self.skip)(&mut self.input, gap.end - gap.start)?;
             self.offset = gap.end;
             self.gaps.pop_front();
         }
@@ -306,19 +306,19 @@ impl<R: Read> Reader<R> {
         let record = body.map_or(Err(McapError::UnexpectedEof), |it| parse_record(opcode, it));
         match record {
             Ok(record) => {
-                if let Some(item) = self.take_in(record.into_owned()) {
-                    self.waiting.push_back(item);
+                if let Some(item) = self.item_of(record.into_owned()) {
+                    self.queue.push_back(item);
                 }
             }
             Err(error) => {
-                let fault = text(&error);
-                self.waiting.push_back(Item::Damage(Damage::BadRecord { offset, opcode, fault }));
+                let reason = text(&error);
+                self.queue.push_back(Item::Damage(Damage::BadRecord { offset, opcode, reason }));
             }
         }
     }
 
-    /// Makes an item of a record; schemas and repetitions give none.
-    fn take_in(&mut self, record: Record<'static>) -> Option<Item> {
+    /// Converts a record to an item; schemas and repeated channels yield none.
+    fn item_of(&mut self, record: Record<'static>) -> Option<Item> {
         match record {
             Record::Header(header) => Some(Item::Header(header)),
             Record::Schema { header, data } => {
@@ -340,7 +340,7 @@ impl<R: Read> Reader<R> {
             }
             Record::Message { header, data } => {
                 let channel = Arc::clone(self.channels.get(&header.channel_id)?);
-                Some(Item::Message(Recorded {
+                Some(Item::Message(RecordedMessage {
                     channel,
                     sequence: header.sequence,
                     log_time: header.log_time,
@@ -368,59 +368,61 @@ impl<R: Read> Reader<R> {
             Ok(Record::Chunk { header, data }) => self.unpack(offset, header, &data, true),
             Ok(_) => {}
             Err(error) => {
-                let damage = Damage::BadChunk { offset, fault: text(&error), n_kept: 0 };
-                self.waiting.push_back(Item::Damage(damage));
+                let damage = Damage::BadChunk { offset, reason: text(&error), n_kept: 0 };
+                self.queue.push_back(Item::Damage(damage));
             }
         }
     }
 
-    /// The messages of a chunk up to where it is cut off.
-    fn cut_chunk(&mut self, offset: u64, body: &[u8]) {
-        // Times, length, checksum: 28 bytes; then the compression's name and the length.
+    /// Reads the messages of a truncated chunk before the cut.
+    fn truncated_chunk(&mut self, offset: u64, body: &[u8]) {
+        // Times, length and checksum take 28 bytes; then come the name of the compression and the
+        // length.
         let Some(name_length) = body.get(28..32).and_then(|it| it.try_into().ok()) else { return };
         let end = (u32::from_le_bytes(name_length) as usize).saturating_add(40);
         let Some(data) = body.get(end..) else { return };
-        // A head of its own makes the crate read what there is.
-        let mut whole = body[..end].to_vec();
-        whole[end - 8..].copy_from_slice(&(data.len() as u64).to_le_bytes());
-        whole.extend_from_slice(data);
-        if let Ok(Record::Chunk { header, data }) = parse_record(op::CHUNK, &whole) {
+        // A header with the available length makes the crate read the rest.
+        let mut chunk = body[..end].to_vec();
+        chunk[end - 8..].copy_from_slice(&(data.len() as u64).to_le_bytes());
+        chunk.extend_from_slice(data);
+        if let Ok(Record::Chunk { header, data }) = parse_record(op::CHUNK, &chunk) {
             self.unpack(offset, header, &data, false);
         }
     }
 
     fn unpack(&mut self, offset: u64, header: records::ChunkHeader, data: &[u8], is_whole: bool) {
-        let (mut records, mut fault) = (Vec::new(), None);
+        let (mut records, mut reason) = (Vec::new(), None);
         match ChunkReader::new(header.clone(), data) {
             Ok(reader) => {
                 for record in reader {
                     match record {
                         Ok(record) => records.push(record.into_owned()),
-                        Err(error) => fault = fault.or_else(|| Some(text(&error))),
+                        Err(error) => reason = reason.or_else(|| Some(text(&error))),
                     }
-                    if fault.is_some() {
+                    if reason.is_some() {
                         break;
                     }
                 }
             }
-            Err(error) => fault = Some(text(&error)),
+            Err(error) => reason = Some(text(&error)),
         }
-        if fault.is_some() && is_whole {
-            // Which of its messages are as they were cannot be told.
+        if reason.is_some() && is_whole {
+            // The checksum does not tell which of the messages are valid.
             records.retain(|it| !matches!(it, Record::Message { .. }));
         }
-        let items: Vec<Item> = records.into_iter().filter_map(|it| self.take_in(it)).collect();
+        let items: Vec<Item> = records.into_iter().filter_map(|it| self.item_of(it)).collect();
         let n_messages = items.iter().filter(|it| matches!(it, Item::Message(_))).count();
-        self.waiting.push_back(Item::Chunk(ChunkNote { offset, header, n_messages }));
-        self.waiting.extend(items);
-        if let Some(fault) = fault {
-            let damage = Damage::BadChunk { offset, fault, n_kept: n_messages };
-            self.waiting.push_back(Item::Damage(damage));
+        self.queue.push_back(Item::Chunk(ChunkSummary { offset, header, n_messages }));
+        self.queue.extend(items);
+        if let Some(reason) = reason {
+            let damage = Damage::BadChunk { offset, reason, n_kept: n_messages };
+            self.queue.push_back(Item::Damage(damage));
         }
     }
 }
 
-/// An attachment without what may stand behind its checksum, which the crate takes from the end.
+/// Removes bytes after the checksum of an attachment, because the crate takes the checksum from the
+/// end.
 fn attachment(body: &[u8]) -> Option<&[u8]> {
     let mut end: usize = 16; // both times
     for width in [4, 4, 8] {
@@ -433,7 +435,7 @@ fn attachment(body: &[u8]) -> Option<&[u8]> {
 }
 
 fn unreadable(offset: u64, error: &io::Error) -> Damage {
-    Damage::Unreadable { offset, fault: error.to_string() }
+    Damage::Unreadable { offset, reason: error.to_string() }
 }
 
 impl<R: Read> Iterator for Reader<R> {
@@ -441,10 +443,10 @@ impl<R: Read> Iterator for Reader<R> {
 
     fn next(&mut self) -> Option<Item> {
         loop {
-            if let Some(item) = self.waiting.pop_front() {
+            if let Some(item) = self.queue.pop_front() {
                 return Some(item);
             }
-            if self.is_over {
+            if self.is_finished {
                 return None;
             }
             self.read_record();
@@ -452,7 +454,7 @@ impl<R: Read> Iterator for Reader<R> {
     }
 }
 
-/// Items of all files of a recording in their order, each with the place of its file in the list.
+/// The items of all files of a recording in order, each with the index of its file.
 ///
 /// # Errors
 /// If a file cannot be opened.
@@ -462,10 +464,10 @@ pub fn items(files: &[PathBuf]) -> io::Result<impl Iterator<Item = (usize, Item)
     Ok(numbered.flat_map(|(file, reader)| reader.map(move |item| (file, item))))
 }
 
-/// What a checkpoint was before it was compressed.
+/// Decompresses a checkpoint.
 ///
 /// # Errors
-/// If the bytes are no whole frame.
-pub fn unpacked(packed: &[u8]) -> io::Result<Vec<u8>> {
+/// If the data are not a complete frame.
+pub fn decompress(packed: &[u8]) -> io::Result<Vec<u8>> {
     zstd::stream::decode_all(packed)
 }

@@ -1,5 +1,5 @@
-//! All of a recording that is needed to run it again: the scene, the commands with their ticks, the
-//! digests, and where the checkpoints are.
+//! The data of a recording that are needed to simulate its run again: the scene, the commands with
+//! their ticks, the digests, and the locations of the checkpoints.
 
 use std::{
     collections::BTreeMap,
@@ -9,10 +9,10 @@ use std::{
 };
 
 use super::{
-    CHECKPOINT, NotABag, SCENE, SCENE_FILE, START,
+    CHECKPOINT, OpenBagError, SCENE, SCENE_FILE, START,
     chain::Chain,
     files,
-    reader::{Damage, Item, Reader, Recorded, unpacked},
+    reader::{Damage, Item, Reader, RecordedMessage, decompress},
     writer::CDR_HEADER,
 };
 use crate::wire::{
@@ -23,49 +23,49 @@ use crate::wire::{
     topics::{NODE, Topic},
 };
 
-/// The fact that names the topics of commands, in the order of the list of topics.
+/// The fact that lists the command topics, in the order of the topic list.
 pub const INPUTS: &str = "inputs";
 
-/// What a recording says about its run before anything happens in it.
+/// The part of a recording before its first message.
 #[derive(Clone, Debug, Default)]
 pub struct Recording {
     /// Its files, in the order they were written.
     pub files: Vec<PathBuf>,
     /// The resolved scene, if there is one.
     pub scene_text: Option<String>,
-    /// Files that the scene names: name and contents.
+    /// Files that the scene refers to: name and contents.
     pub scene_files: Vec<(String, Vec<u8>)>,
     /// Seed, version and more, as texts.
     pub facts: BTreeMap<String, String>,
-    /// What wrote it.
+    /// The program that wrote it.
     pub library: String,
 }
 
-/// What happened in a run, tick by tick.
+/// The history of a run, tick by tick.
 #[derive(Clone, Debug, Default)]
-pub struct Course {
-    /// Ticks and the digests after them, ascending.
+pub struct RunHistory {
+    /// Ticks and the digests after them, in ascending order.
     pub digests: Vec<(u64, u64)>,
-    /// True if there is a digest for every tick; false in recordings from before there were, which
-    /// have some in their statistics.
+    /// True if there is a digest for every tick. False in old recordings, which only have the
+    /// digests in their statistics.
     pub is_every_tick: bool,
-    /// Commands in the order they took effect.
-    pub commands: Vec<Order>,
-    /// What was done to the world between ticks, in this order.
-    pub changes: Vec<Alteration>,
-    /// Where all that is needed to go on is kept, ascending.
-    pub checkpoints: Vec<Place>,
-    /// What is wrong with the files.
+    /// Commands, in the order they took effect.
+    pub commands: Vec<RecordedCommand>,
+    /// Changes of the world between ticks, in order.
+    pub changes: Vec<RecordedChange>,
+    /// Locations of the checkpoints, in ascending order of ticks.
+    pub checkpoints: Vec<CheckpointLocation>,
+    /// Damaged parts of the files.
     pub damages: Vec<(PathBuf, Damage)>,
-    /// The first tick whose link does not fit what is before it.
+    /// The first tick whose chained digest does not match.
     pub broken_at: Option<u64>,
-    /// The first tick after which at least one is missing.
+    /// The first tick after which at least one tick is missing.
     pub gap_after: Option<u64>,
 }
 
-/// A command as it was recorded.
+/// A recorded command.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Order {
+pub struct RecordedCommand {
     /// The tick in which it took effect.
     pub tick: u64,
     /// Its topic.
@@ -74,22 +74,22 @@ pub struct Order {
     pub cdr: Vec<u8>,
 }
 
-/// A change of the world as it was recorded.
+/// A recorded change of the world.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Alteration {
+pub struct RecordedChange {
     /// The tick after which it was made.
     pub tick: u64,
-    /// What was done, in words.
+    /// Description of the change.
     pub what: String,
-    /// The same as bytes that `Change::from_bytes` reads.
+    /// The change, encoded for `Change::from_bytes`.
     pub change: Vec<u8>,
-    /// Digest of the state after it, and after others that were made with it.
+    /// Digest of the state after the change, and after others made with it.
     pub digest: Option<u64>,
 }
 
-/// Where a checkpoint is.
+/// The location of a checkpoint.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Place {
+pub struct CheckpointLocation {
     /// The tick after which it was taken.
     pub tick: u64,
     file: PathBuf,
@@ -97,15 +97,15 @@ pub struct Place {
 }
 
 impl Recording {
-    /// Reads what comes before the first message.
+    /// Reads the part before the first message.
     ///
     /// # Errors
-    /// If there is no file, or the first cannot be opened.
-    pub fn open(path: &Path) -> Result<Self, NotABag> {
+    /// If there is no file, or the first one cannot be opened.
+    pub fn open(path: &Path) -> Result<Self, OpenBagError> {
         let files = files(path)?;
         let first = files[0].clone();
         let reader = Reader::open(&first)
-            .map_err(|fault| NotABag::Unreadable { path: first.clone(), fault })?;
+            .map_err(|error| OpenBagError::Unreadable { path: first.clone(), error })?;
         let mut recording = Self { files, ..Self::default() };
         for item in reader {
             match item {
@@ -132,61 +132,62 @@ impl Recording {
         self.facts.get("version").map(String::as_str).or_else(by_library).unwrap_or("unknown")
     }
 
-    /// The topics of commands, where the recording says which: a node may have other names than the
-    /// scene says.
+    /// The command topics, if the recording lists them. The node may have other names than in the
+    /// scene.
     pub fn inputs(&self) -> Option<Vec<String>> {
         serde_json::from_str(self.facts.get(INPUTS)?).ok()
     }
 
-    /// Reads all files: digests, commands on those of `topics` that are inputs, places of
+    /// Reads all files: digests, commands on the inputs among `topics`, and locations of
     /// checkpoints. A tick has `tick_ns` nanoseconds.
     ///
     /// # Errors
     /// If a file cannot be opened.
-    pub fn course(&self, topics: &[Topic], tick_ns: u64) -> io::Result<Course> {
+    pub fn history(&self, topics: &[Topic], tick_ns: u64) -> io::Result<RunHistory> {
         let names = || topics.iter().filter(|it| it.is_input).map(|it| it.name.clone()).collect();
         let inputs = self.inputs().unwrap_or_else(names);
-        self.read_course(Inputs::Named(inputs), tick_ns)
+        self.read_history(Inputs::Named(inputs), tick_ns)
     }
 
-    /// As `course`, with the inputs told by their names alone: for those who do not read the scene.
+    /// As [`Recording::history`], but recognizes command topics by their names; for callers without
+    /// a scene.
     ///
     /// # Errors
     /// If a file cannot be opened.
-    pub fn course_of_all(&self, tick_ns: u64) -> io::Result<Course> {
-        self.read_course(self.inputs().map_or(Inputs::ByName, Inputs::Named), tick_ns)
+    pub fn history_without_scene(&self, tick_ns: u64) -> io::Result<RunHistory> {
+        self.read_history(self.inputs().map_or(Inputs::ByName, Inputs::Named), tick_ns)
     }
 
-    fn read_course(&self, inputs: Inputs, tick_ns: u64) -> io::Result<Course> {
-        let mut clerk = Clerk {
+    fn read_history(&self, inputs: Inputs, tick_ns: u64) -> io::Result<RunHistory> {
+        let mut history = HistoryReader {
             inputs,
             tick_ns,
             chain: self.scene_text.as_deref().map(Chain::new),
-            sparse: Vec::new(),
-            course: Course::default(),
+            statistics_digests: Vec::new(),
+            history: RunHistory::default(),
         };
         for file in &self.files {
             let mut reader = Reader::open(file)?;
             loop {
                 let offset = reader.offset();
                 let Some(item) = reader.next() else { break };
-                clerk.note(item, file, offset);
+                history.add(item, file, offset);
             }
         }
-        Ok(clerk.finish())
+        Ok(history.finish())
     }
 }
 
-impl Course {
+impl RunHistory {
     /// The last checkpoint at or before a tick.
-    pub fn checkpoint_before(&self, tick: u64) -> Option<&Place> {
-        let n = self.checkpoints.partition_point(|place| place.tick <= tick);
+    pub fn checkpoint_before(&self, tick: u64) -> Option<&CheckpointLocation> {
+        let n = self.checkpoints.partition_point(|it| it.tick <= tick);
         self.checkpoints[..n].last()
     }
 
     /// The checkpoint after a tick.
-    pub fn checkpoint_at(&self, tick: u64) -> Option<&Place> {
-        self.checkpoint_before(tick).filter(|place| place.tick == tick)
+    pub fn checkpoint_at(&self, tick: u64) -> Option<&CheckpointLocation> {
+        self.checkpoint_before(tick).filter(|it| it.tick == tick)
     }
 
     /// The digest of the state after a tick.
@@ -195,22 +196,22 @@ impl Course {
         Some(self.digests[found].1)
     }
 
-    /// What was done to the world after a tick.
-    pub fn changes_after(&self, tick: u64) -> impl Iterator<Item = &Alteration> {
+    /// Changes of the world after a tick.
+    pub fn changes_after(&self, tick: u64) -> impl Iterator<Item = &RecordedChange> {
         self.changes.iter().filter(move |it| it.tick == tick)
     }
 
-    /// The last tick whose digest is known.
+    /// The last tick with a known digest.
     pub fn last_tick(&self) -> u64 {
         self.digests.last().map_or(0, |(tick, _)| *tick)
     }
 }
 
-impl Place {
+impl CheckpointLocation {
     /// Reads the checkpoint.
     ///
     /// # Errors
-    /// If the file is not as it was when the place was noted.
+    /// If the file has changed since its location was read.
     pub fn read(&self) -> io::Result<Vec<u8>> {
         let mut file = File::open(&self.file)?;
         let length = file.metadata()?.len();
@@ -218,18 +219,18 @@ impl Place {
         let rest = Reader::from_record(BufReader::new(file), self.offset, length);
         for item in rest.take(1) {
             if let Item::Attachment(it) = item {
-                return unpacked(&it.data);
+                return decompress(&it.data);
             }
         }
-        Err(io::Error::new(io::ErrorKind::InvalidData, "no checkpoint where there was one"))
+        Err(io::Error::new(io::ErrorKind::InvalidData, "the checkpoint is no longer in the file"))
     }
 }
 
-/// Which topics carry commands.
+/// How to recognize command topics.
 enum Inputs {
-    /// These.
+    /// By this list.
     Named(Vec<String>),
-    /// Those of our node whose names say so.
+    /// By the names of the default node's topics.
     ByName,
 }
 
@@ -245,86 +246,91 @@ impl Inputs {
     }
 }
 
-/// Notes what is read.
-struct Clerk {
+/// Collects the history from the items of the files.
+struct HistoryReader {
     inputs: Inputs,
     tick_ns: u64,
     chain: Option<Chain>,
-    sparse: Vec<(u64, u64)>,
-    course: Course,
+    /// Ticks and digests from the statistics.
+    statistics_digests: Vec<(u64, u64)>,
+    history: RunHistory,
 }
 
-impl Clerk {
-    fn note(&mut self, item: Item, file: &Path, offset: u64) {
+impl HistoryReader {
+    fn add(&mut self, item: Item, file: &Path, offset: u64) {
         match item {
             Item::Message(message) => self.message(&message),
             Item::Attachment(it) => {
                 let tick = it.name.strip_prefix(CHECKPOINT).and_then(|it| it.parse().ok());
                 if let Some(tick) = tick {
                     let file = file.to_owned();
-                    self.course.checkpoints.push(Place { tick, file, offset });
+                    self.history.checkpoints.push(CheckpointLocation { tick, file, offset });
                 }
             }
-            Item::Damage(damage) => self.course.damages.push((file.to_owned(), damage)),
+            Item::Damage(damage) => self.history.damages.push((file.to_owned(), damage)),
             _ => {}
         }
     }
 
-    fn message(&mut self, message: &Recorded) {
-        let (topic, kind) = (&message.channel.topic, message.channel.type_name());
+    fn message(&mut self, message: &RecordedMessage) {
+        let (topic, type_name) = (&message.channel.topic, message.channel.type_name());
         let Some(cdr) = message.data.strip_prefix(&CDR_HEADER) else { return };
-        // By their types: a node may have other names than usual.
-        if kind == StateDigest::TYPE.name {
+        // Recognized by type, because the node may have another name.
+        if type_name == StateDigest::TYPE.name {
             if let Ok(link) = StateDigest::from_cdr(cdr) {
                 self.link(&link);
             }
-        } else if kind == WorldChange::TYPE.name {
+        } else if type_name == WorldChange::TYPE.name {
             if let Some(chain) = &mut self.chain {
                 chain.command(topic, cdr);
             }
             if let Ok(WorldChange { tick, what, change }) = WorldChange::from_cdr(cdr) {
-                self.course.changes.push(Alteration { tick, what, change, digest: None });
+                self.history.changes.push(RecordedChange { tick, what, change, digest: None });
             }
-        } else if kind == Statistics::TYPE.name {
+        } else if type_name == Statistics::TYPE.name {
             if let Ok(it) = Statistics::from_cdr(cdr) {
-                self.sparse.push((it.tick, it.state_digest));
+                self.statistics_digests.push((it.tick, it.state_digest));
             }
         } else if self.inputs.contains(topic) {
             if let Some(chain) = &mut self.chain {
                 chain.command(topic, cdr);
             }
             let tick = message.log_time / self.tick_ns + 1;
-            self.course.commands.push(Order { tick, topic: topic.clone(), cdr: cdr.to_vec() });
+            self.history.commands.push(RecordedCommand {
+                tick,
+                topic: topic.clone(),
+                cdr: cdr.to_vec(),
+            });
         }
     }
 
     fn link(&mut self, link: &StateDigest) {
-        let course = &mut self.course;
-        let last = course.digests.last().map(|(tick, _)| *tick);
+        let history = &mut self.history;
+        let last = history.digests.last().map(|(tick, _)| *tick);
         let is_of_change = last == Some(link.tick);
         if let Some(last) = last
             && !is_of_change
             && link.tick != last + 1
         {
-            course.gap_after = course.gap_after.or(Some(last));
+            history.gap_after = history.gap_after.or(Some(last));
         }
         let fits = self.chain.as_mut().is_none_or(|it| it.link(link.tick, link.digest) == *link);
         if !fits {
-            course.broken_at = course.broken_at.or(Some(link.tick));
+            history.broken_at = history.broken_at.or(Some(link.tick));
         }
-        match course.changes.last_mut() {
+        match history.changes.last_mut() {
             Some(change) if is_of_change => change.digest = Some(link.digest),
-            _ => course.digests.push((link.tick, link.digest)),
+            _ => history.digests.push((link.tick, link.digest)),
         }
     }
 
-    fn finish(mut self) -> Course {
-        self.course.is_every_tick = !self.course.digests.is_empty();
-        if !self.course.is_every_tick {
-            self.course.digests = self.sparse;
-            self.course.digests.dedup();
+    fn finish(mut self) -> RunHistory {
+        self.history.is_every_tick = !self.history.digests.is_empty();
+        if !self.history.is_every_tick {
+            self.history.digests = self.statistics_digests;
+            self.history.digests.dedup();
         }
-        self.course.checkpoints.sort_by_key(|place| place.tick);
-        self.course
+        self.history.checkpoints.sort_by_key(|it| it.tick);
+        self.history
     }
 }

@@ -1,8 +1,8 @@
-//! What can be saved of a damaged recording, written as a whole one beside it.
+//! Repairs a damaged recording: writes everything that can be read to a new one.
 //!
-//! Messages, attachments and metadata are kept as they are, with their channels; chunks are packed
-//! anew and indexed, and `metadata.yaml` is made from what was found. The damaged recording itself is
-//! never touched.
+//! Messages, attachments and metadata are copied with their channels; chunks are compressed and
+//! indexed again, and `metadata.yaml` is generated from the contents. The damaged recording itself
+//! is never changed.
 
 use std::{
     collections::BTreeSet,
@@ -17,60 +17,60 @@ use mcap::{
 };
 
 use super::{
-    NotABag, ROSBAG2,
+    OpenBagError, ROSBAG2,
     info::Info,
     metadata::file_text,
-    reader::{self, Channel, Damage, Item, Reader, Recorded},
-    writer::{WriteError, of_system, text},
+    reader::{self, Channel, Damage, Item, Reader, RecordedMessage},
+    writer::{WriteError, io_error, text},
 };
 
-/// Metadata record that tells of the rescue.
+/// Metadata record about the repair.
 pub const RECOVERED: &str = "jamgrip_recovered";
 
-/// Why nothing was saved.
+/// Why a recording could not be repaired.
 #[derive(Debug, thiserror::Error)]
 pub enum RecoverError {
-    /// There is no recording.
+    /// The path is not a recording.
     #[error(transparent)]
-    NotABag(#[from] NotABag),
-    /// There is something where the result shall be.
-    #[error("{}: exists already; choose another output", path.display())]
+    Open(#[from] OpenBagError),
+    /// The output already exists.
+    #[error("{}: already exists; choose another output", path.display())]
     InUse {
-        /// Where.
+        /// The output.
         path: PathBuf,
     },
-    /// The result cannot be written.
-    #[error("{}: cannot be written ({fault}); choose another output", path.display())]
+    /// The output cannot be written.
+    #[error("{}: cannot be written ({reason}); choose another output", path.display())]
     CannotWrite {
-        /// Where.
+        /// The output.
         path: PathBuf,
-        /// What the system says.
-        fault: String,
+        /// Reason given by the operating system.
+        reason: String,
     },
-    /// There is no whole message in it.
-    #[error("{}: nothing in it can be saved: {first_damage}", path.display())]
+    /// It contains no readable message.
+    #[error("{}: contains no readable messages: {first_damage}", path.display())]
     Nothing {
         /// The recording.
         path: PathBuf,
-        /// What is wrong with it first.
+        /// The first damage.
         first_damage: String,
     },
 }
 
-/// What was saved.
+/// The result of a repair.
 #[derive(Clone, Debug, Default)]
 pub struct Recovered {
-    /// Where it is: a folder, or a file if one file was given.
+    /// The output: a folder, or a file if the input is a file.
     pub output: PathBuf,
-    /// Messages saved.
+    /// Number of messages saved.
     pub n_messages: u64,
-    /// Attachments saved.
+    /// Number of attachments saved.
     pub n_attachments: u64,
-    /// What was wrong, by file.
+    /// The damaged parts, with their files.
     pub damages: Vec<(PathBuf, Damage)>,
 }
 
-/// Where the result goes if nothing is said: beside the recording, its name and `_recovered`.
+/// The default output: next to the recording, with `_recovered` added to its name.
 pub fn default_output(path: &Path) -> PathBuf {
     let name =
         |part: Option<&std::ffi::OsStr>| part.unwrap_or_default().to_string_lossy().into_owned();
@@ -78,16 +78,16 @@ pub fn default_output(path: &Path) -> PathBuf {
         let stem = name(path.file_stem());
         path.with_file_name(format!("{stem}_recovered.mcap"))
     } else {
-        // `bags/..` and the like have names only when written out.
-        let whole = path.canonicalize().unwrap_or_else(|_| path.to_owned());
-        whole.with_file_name(format!("{}_recovered", name(whole.file_name())))
+        // Paths such as `bags/..` only have a name in canonical form.
+        let canonical = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+        canonical.with_file_name(format!("{}_recovered", name(canonical.file_name())))
     }
 }
 
-/// Saves what can be saved of the recording at `path` into `output`, which must not exist yet.
+/// Writes everything readable in the recording at `path` to `output`, which must not exist yet.
 ///
 /// # Errors
-/// If there is nothing to save, or no place to save it to.
+/// If nothing is readable, or the output cannot be written.
 pub fn recover(path: &Path, output: &Path) -> Result<Recovered, RecoverError> {
     let files = super::files(path)?;
     if output.exists() {
@@ -95,7 +95,7 @@ pub fn recover(path: &Path, output: &Path) -> Result<Recovered, RecoverError> {
     }
     let is_folder = path.is_dir();
     let cannot_write =
-        |at: &Path, fault: String| RecoverError::CannotWrite { path: at.to_owned(), fault };
+        |at: &Path, reason: String| RecoverError::CannotWrite { path: at.to_owned(), reason };
     if is_folder {
         fs::create_dir_all(output).map_err(|e| cannot_write(output, e.to_string()))?;
     }
@@ -104,15 +104,15 @@ pub fn recover(path: &Path, output: &Path) -> Result<Recovered, RecoverError> {
         let name = file.file_name().unwrap_or_default();
         let target = if is_folder { output.join(name) } else { output.to_owned() };
         let reader = Reader::open(file)
-            .map_err(|fault| NotABag::Unreadable { path: file.clone(), fault })?;
-        let saved = save(reader, &target).map_err(|e| cannot_write(&target, text(&e)))?;
-        recovered.damages.extend(saved.damages.into_iter().map(|it| (file.clone(), it)));
-        if saved.n_messages + saved.n_attachments == 0 {
-            // A whole file with nothing in it would only be in the way.
+            .map_err(|error| OpenBagError::Unreadable { path: file.clone(), error })?;
+        let result = copy_readable(reader, &target).map_err(|e| cannot_write(&target, text(&e)))?;
+        recovered.damages.extend(result.damages.into_iter().map(|it| (file.clone(), it)));
+        if result.n_messages + result.n_attachments == 0 {
+            // A valid but empty file would be useless.
             drop(fs::remove_file(&target));
         }
-        recovered.n_messages += saved.n_messages;
-        recovered.n_attachments += saved.n_attachments;
+        recovered.n_messages += result.n_messages;
+        recovered.n_attachments += result.n_attachments;
     }
     if recovered.n_messages == 0 {
         drop(if is_folder { fs::remove_dir_all(output) } else { fs::remove_file(output) });
@@ -129,15 +129,18 @@ pub fn recover(path: &Path, output: &Path) -> Result<Recovered, RecoverError> {
     Ok(recovered)
 }
 
-/// What was saved of one file.
+/// The result of repairing one file.
 #[derive(Default)]
-struct Saved {
+struct FileResult {
     n_messages: u64,
     n_attachments: u64,
     damages: Vec<Damage>,
 }
 
-fn save(reader: impl Iterator<Item = Item>, target: &Path) -> Result<Saved, WriteError> {
+fn copy_readable(
+    reader: impl Iterator<Item = Item>,
+    target: &Path,
+) -> Result<FileResult, WriteError> {
     let mut reader = reader.peekable();
     let (profile, library) = match reader.peek() {
         Some(Item::Header(header)) => (header.profile.clone(), header.library.clone()),
@@ -151,29 +154,29 @@ fn save(reader: impl Iterator<Item = Item>, target: &Path) -> Result<Saved, Writ
         .compression(Some(Compression::Zstd))
         .compression_threads(0)
         .create(BufWriter::new(file))?;
-    let mut rescue = Rescue { writer, known: BTreeSet::new(), saved: Saved::default() };
+    let mut recovery = Recovery { writer, known: BTreeSet::new(), result: FileResult::default() };
     for item in reader {
-        rescue.take(item)?;
+        recovery.take(item)?;
     }
-    rescue.finish()
+    recovery.finish()
 }
 
-struct Rescue {
+struct Recovery {
     writer: Writer<BufWriter<File>>,
-    /// Numbers of the channels that are written.
+    /// IDs of the channels that have been written.
     known: BTreeSet<u16>,
-    saved: Saved,
+    result: FileResult,
 }
 
-impl Rescue {
+impl Recovery {
     fn take(&mut self, item: Item) -> Result<(), WriteError> {
         match item {
             Item::Channel(channel) => self.channel(&channel)?,
             Item::Message(message) => self.message(&message)?,
             Item::Attachment(attachment) => self.attachment(&attachment)?,
-            // rosbag2's own record counts what was there; it is told anew by metadata.yaml.
+            // rosbag2's own record counts the original contents; `metadata.yaml` replaces it.
             Item::Metadata(it) if it.name != ROSBAG2 => self.writer.write_metadata(&it)?,
-            Item::Damage(damage) => self.saved.damages.push(damage),
+            Item::Damage(damage) => self.result.damages.push(damage),
             _ => {}
         }
         Ok(())
@@ -182,12 +185,12 @@ impl Rescue {
     fn channel(&mut self, channel: &Channel) -> Result<(), WriteError> {
         match self.add(channel) {
             Ok(()) => drop(self.known.insert(channel.id)),
-            Err(error) if of_system(&error).is_some() => return Err(error),
+            Err(error) if io_error(&error).is_some() => return Err(error),
             Err(error) => {
-                // A number that means two things: what comes under it now cannot be told apart.
+                // An ID that is used twice: later messages with it are ambiguous.
                 self.known.remove(&channel.id);
-                let (opcode, fault) = (op::CHANNEL, text(&error));
-                self.saved.damages.push(Damage::BadRecord { offset: 0, opcode, fault });
+                let (opcode, reason) = (op::CHANNEL, text(&error));
+                self.result.damages.push(Damage::BadRecord { offset: 0, opcode, reason });
             }
         }
         Ok(())
@@ -203,21 +206,21 @@ impl Rescue {
         Ok(())
     }
 
-    fn message(&mut self, message: &Recorded) -> Result<(), WriteError> {
+    fn message(&mut self, message: &RecordedMessage) -> Result<(), WriteError> {
         let channel_id = message.channel.id;
         if !self.known.contains(&channel_id) {
             return Ok(());
         }
-        let &Recorded { sequence, log_time, publish_time, .. } = message;
+        let &RecordedMessage { sequence, log_time, publish_time, .. } = message;
         let header = MessageHeader { channel_id, sequence, log_time, publish_time };
         self.writer.write_to_known_channel(&header, &message.data)?;
-        self.saved.n_messages += 1;
+        self.result.n_messages += 1;
         Ok(())
     }
 
     fn attachment(&mut self, attachment: &reader::Attachment) -> Result<(), WriteError> {
         let (log_time, create_time) = attachment.times;
-        self.saved.n_attachments += 1;
+        self.result.n_attachments += 1;
         self.writer.attach(&Attachment {
             log_time,
             create_time,
@@ -227,8 +230,8 @@ impl Rescue {
         })
     }
 
-    fn finish(mut self) -> Result<Saved, WriteError> {
-        let damages: Vec<String> = self.saved.damages.iter().map(ToString::to_string).collect();
+    fn finish(mut self) -> Result<FileResult, WriteError> {
+        let damages: Vec<String> = self.result.damages.iter().map(ToString::to_string).collect();
         let metadata = [
             ("version".to_owned(), env!("CARGO_PKG_VERSION").to_owned()),
             ("damages".to_owned(), damages.join("; ")),
@@ -238,6 +241,6 @@ impl Rescue {
         self.writer.finish()?;
         let file = self.writer.into_inner().into_inner().map_err(io::IntoInnerError::into_error)?;
         file.sync_all()?;
-        Ok(self.saved)
+        Ok(self.result)
     }
 }

@@ -1,9 +1,9 @@
-//! Recordings while they are made: a rosbag2 folder of MCAP files.
+//! Writes recordings: rosbag2 folders of MCAP files.
 //!
-//! They hold every message that is published, every command that was received, refused ones too,
-//! what was done to the world between ticks, the digest of every tick and, now and then, all that is
-//! needed to go on. Log times are those of the run: simulated time, except that they go on when it is
-//! reset, because readers sort by them. A command has the time at which its tick began.
+//! A recording holds all published messages, all received commands including rejected ones, changes
+//! of the world between ticks, the digest of every tick, and regular checkpoints. Log times are
+//! times of the run: simulation time, except that they continue when it is reset, because readers
+//! sort by them. A command is logged at the start of its tick.
 
 use std::{
     collections::BTreeMap,
@@ -15,14 +15,14 @@ use std::{
     time::{Duration, Instant},
 };
 
-pub use crate::bag::{Format, Subject};
+pub use crate::bag::{Format, RunDescription};
 use crate::io::sink::{Packet, Sink};
 use crate::{
     bag::{
         chain::{self, Chain},
         disk::{RESERVE, is_full},
-        metadata::{Contents, Row, file_text, information},
-        writer::{OpenFile, WriteError, of_system, text},
+        metadata::{FileContents, TopicMetadata, file_text, information},
+        writer::{OpenFile, WriteError, io_error, text},
     },
     command::change::Change,
     wire::{
@@ -32,49 +32,49 @@ use crate::{
     },
 };
 
-/// A crash loses at most what came in this time, in wall time.
+/// A crash loses at most the messages of this wall-clock time.
 const FLUSH_PERIOD: Duration = Duration::from_secs(1);
-/// Why nothing more is recorded.
+/// Why recording has stopped.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum BagError {
-    /// The folder is there already.
+    /// The folder is not empty.
     #[error(
-        "bag folder {}: there is something in it already; choose another folder, or move it away",
+        "bag folder {}: is not empty; choose another folder, or move its contents",
         folder.display()
     )]
     FolderInUse {
         /// The folder.
         folder: PathBuf,
     },
-    /// The folder or a file in it cannot be made.
+    /// The folder or a file in it cannot be created.
     #[error(
-        "bag folder {}: cannot create {} ({fault}); choose a folder that can be written, \
-         on a disk with at least {} MiB of room",
+        "bag folder {}: cannot create {} ({reason}); choose a writable folder \
+         on a disk with at least {} MiB of free space",
         folder.display(), path.display(), RESERVE >> 20
     )]
     CannotCreate {
         /// The folder.
         folder: PathBuf,
-        /// What could not be created.
+        /// The file or folder that could not be created.
         path: PathBuf,
-        /// What the system says.
-        fault: String,
+        /// Reason given by the operating system.
+        reason: String,
     },
-    /// There is no room on the disk.
+    /// The disk is full.
     #[error(
-        "bag folder {}: the disk is full after {:.3} s of simulated time; what was recorded until \
-         then is complete; make room, or choose another disk",
+        "bag folder {}: the disk is full after {:.3} s of simulation time; the recording up \
+         to there is complete; free some space, or choose another disk",
         folder.display(), seconds(*recorded_ns)
     )]
     DiskFull {
         /// The folder.
         folder: PathBuf,
-        /// Simulated time of the last message (ns).
+        /// Simulation time of the last message (ns).
         recorded_ns: u64,
     },
-    /// The disk does not do what it should.
+    /// The disk reported an error.
     #[error(
-        "bag folder {}: cannot write {} ({fault}); recorded up to {:.3} s of simulated time; \
+        "bag folder {}: cannot write {} ({reason}); recorded up to {:.3} s of simulation time; \
          check the disk, or choose another",
         folder.display(), path.display(), seconds(*recorded_ns)
     )]
@@ -83,9 +83,9 @@ pub enum BagError {
         folder: PathBuf,
         /// The file.
         path: PathBuf,
-        /// What the system says.
-        fault: String,
-        /// Simulated time of the last message (ns).
+        /// Reason given by the operating system.
+        reason: String,
+        /// Simulation time of the last message (ns).
         recorded_ns: u64,
     },
 }
@@ -94,7 +94,7 @@ fn seconds(time_ns: u64) -> f64 {
     time_ns as f64 * 1e-9
 }
 
-/// What a recording holds so far.
+/// The contents of a recording so far.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct BagReport {
     /// Its folder.
@@ -103,58 +103,58 @@ pub struct BagReport {
     pub message_counts: Vec<(String, u64)>,
 }
 
-/// Reads the report of a recording while it runs and after it has ended.
+/// Provides the report of a recording, during the run and after it.
 #[derive(Clone, Debug, Default)]
 pub struct BagReporter(Arc<Mutex<BagReport>>);
 
 impl BagReporter {
-    /// What the recording holds so far.
+    /// The contents so far.
     pub fn report(&self) -> BagReport {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 }
 
-/// A recording.
+/// A recording that is being written.
 pub struct Bag {
     encoder: Arc<Encoder>,
-    subject: Subject,
+    description: RunDescription,
     folder: PathBuf,
-    /// The encoder's topics, then those of the digests and of changes, then those that came later.
+    /// The encoder's topics, then those of digests and changes, then topics added during the run.
     topics: Vec<Topic>,
-    /// Place of the digests' topic; that of changes is behind it.
-    links: usize,
+    /// Index of the digests' topic; the topic of changes follows it.
+    digest_topic: usize,
     file: Option<OpenFile>,
-    /// What each file holds, the open one last.
-    files: Vec<Contents>,
-    /// Messages of each topic so far.
-    n_sent: Vec<u64>,
-    /// The last message of each topic that late readers get; repeated when a new file begins.
+    /// Contents of the files; the open file is the last.
+    files: Vec<FileContents>,
+    /// Number of messages written so far on each topic.
+    n_written: Vec<u64>,
+    /// The last message on each latched topic; repeated at the start of a new file.
     latched: BTreeMap<usize, Message>,
     chain: Chain,
     /// Digest of the last state.
     digest: u64,
-    /// Number of the last packet.
-    number: u64,
-    /// Why the recording has ended early.
-    fault: Option<BagError>,
+    /// Sequence number of the last packet.
+    packet_number: u64,
+    /// Why recording has stopped early.
+    error: Option<BagError>,
     flushed_at: Instant,
     reporter: BagReporter,
 }
 
 impl Bag {
-    /// Starts a recording in a folder that does not exist yet, or is empty.
+    /// Starts a recording in a new or empty folder.
     ///
     /// # Errors
-    /// If the folder is in use, cannot be written, or its disk has no room.
+    /// If the folder is not empty or not writable, or its disk is full.
     pub fn create(
         folder: &Path,
         encoder: Arc<Encoder>,
-        subject: Subject,
+        description: RunDescription,
     ) -> Result<Self, BagError> {
-        let cannot_create = |path: &Path, fault: String| BagError::CannotCreate {
+        let cannot_create = |path: &Path, reason: String| BagError::CannotCreate {
             folder: folder.to_owned(),
             path: path.to_owned(),
-            fault,
+            reason,
         };
         fs::create_dir_all(folder).map_err(|e| cannot_create(folder, e.to_string()))?;
         let mut entries = fs::read_dir(folder).map_err(|e| cannot_create(folder, e.to_string()))?;
@@ -162,7 +162,7 @@ impl Bag {
             return Err(BagError::FolderInUse { folder: folder.to_owned() });
         }
         let mut topics = encoder.topics().to_vec();
-        let links = topics.len();
+        let digest_topic = topics.len();
         let node = &encoder.scene().outputs.ros.node;
         topics.push(chain::topic(node));
         topics.push(chain::changes_topic(node));
@@ -170,29 +170,29 @@ impl Bag {
             folder: folder.to_owned(),
             file: None,
             files: Vec::new(),
-            n_sent: vec![0; topics.len()],
+            n_written: vec![0; topics.len()],
             latched: BTreeMap::new(),
-            chain: Chain::new(&subject.scene_text),
+            chain: Chain::new(&description.scene_text),
             digest: 0,
-            number: 0,
-            fault: None,
+            packet_number: 0,
+            error: None,
             flushed_at: now(),
             reporter: BagReporter::default(),
             topics,
-            links,
+            digest_topic,
             encoder,
-            subject,
+            description,
         };
         bag.begin_file().map_err(|error| {
-            // An empty folder can be used again; that it cannot be emptied is the smaller fault.
+            // Best effort: an empty folder can be used again.
             let _ = fs::remove_file(bag.path());
             cannot_create(&bag.path(), text(&error))
         })?;
-        bag.note().map_err(|e| cannot_create(&bag.metadata_path(), e.to_string()))?;
+        bag.update_metadata().map_err(|e| cannot_create(&bag.metadata_path(), e.to_string()))?;
         Ok(bag)
     }
 
-    /// Where the report of this recording can be read.
+    /// The reporter of this recording.
     pub fn reporter(&self) -> BagReporter {
         self.reporter.clone()
     }
@@ -201,7 +201,7 @@ impl Bag {
         self.folder.join("metadata.yaml")
     }
 
-    /// The file that is written now, or was last.
+    /// The file that is open, or was last.
     fn path(&self) -> PathBuf {
         self.folder.join(self.files.last().map_or("", |it| &it.file))
     }
@@ -209,18 +209,18 @@ impl Bag {
     fn begin_file(&mut self) -> Result<(), WriteError> {
         let name = self.folder.file_name().map_or("bag".into(), |name| name.to_string_lossy());
         let name = format!("{name}_{}.mcap", self.files.len());
-        self.files.push(Contents::new(name, self.topics.len()));
-        self.file = Some(OpenFile::create(&self.path(), &self.topics, &self.subject)?);
+        self.files.push(FileContents::new(name, self.topics.len()));
+        self.file = Some(OpenFile::create(&self.path(), &self.topics, &self.description)?);
         Ok(())
     }
 
-    /// True for a packet that is shown once more while time stands still.
-    fn is_known(&mut self, packet: &Packet) -> bool {
-        let before = std::mem::replace(&mut self.number, packet.number);
+    /// True for a packet that is sent again while the simulation is paused.
+    fn is_repeated(&mut self, packet: &Packet) -> bool {
+        let before = std::mem::replace(&mut self.packet_number, packet.number);
         packet.number != 0 && packet.number == before
     }
 
-    /// Records a packet's commands and messages, its digest and its checkpoints.
+    /// Records a packet's commands, changes, messages, digest and checkpoints.
     fn record(&mut self, packet: &Packet) -> Result<(), WriteError> {
         let snapshot = &packet.snapshot;
         let encoder = Arc::clone(&self.encoder);
@@ -229,29 +229,34 @@ impl Bag {
         if self.is_split_due(time_ns) {
             self.split(begin_ns)?;
         }
-        if self.chain.tick().is_none() && self.n_sent.iter().all(|n| *n == 0) {
-            encoder.latched(begin_ns).iter().try_for_each(|message| self.put(message))?;
+        if self.chain.tick().is_none() && self.n_written.iter().all(|n| *n == 0) {
+            encoder.latched(begin_ns).iter().try_for_each(|message| self.write_message(message))?;
         }
-        // The start's checkpoint comes with the first packet: its digest is the first link.
+        // The start's checkpoint comes with the first packet; its digest is the first of the chain.
         for it in &packet.checkpoints {
             if it.tick < snapshot.run_tick || !packet.changes.is_empty() {
-                self.link(it.tick.0, it.time_ns, it.digest, false)?;
+                self.record_digest(it.tick.0, it.time_ns, it.digest, false)?;
             }
         }
         for change in &packet.changes {
-            self.alter(change, snapshot.run_tick.0, time_ns)?;
+            self.record_change(change, snapshot.run_tick.0, time_ns)?;
         }
         for record in &snapshot.commands {
             let message = encoder.commands().encode(&record.command, begin_ns);
             self.chain.command(&self.topics[message.topic].name, &message.cdr);
-            self.put(&message)?;
+            self.write_message(&message)?;
         }
         self.open_topics(packet)?;
         for message in packet.messages(&encoder) {
-            let topic = self.place(message.topic);
-            self.put(&Message { topic, time_ns, cdr: message.cdr.clone() })?;
+            let topic = self.recorded_index(message.topic);
+            self.write_message(&Message { topic, time_ns, cdr: message.cdr.clone() })?;
         }
-        self.link(snapshot.run_tick.0, time_ns, snapshot.digest, !packet.changes.is_empty())?;
+        self.record_digest(
+            snapshot.run_tick.0,
+            time_ns,
+            snapshot.digest,
+            !packet.changes.is_empty(),
+        )?;
         self.digest = snapshot.digest;
         if let Some(file) = &mut self.file {
             packet.checkpoints.iter().try_for_each(|checkpoint| file.attach(checkpoint))?;
@@ -262,26 +267,26 @@ impl Bag {
         Ok(())
     }
 
-    /// Place among the recording's topics of one of the encoder's.
-    fn place(&self, topic: usize) -> usize {
-        if topic < self.links { topic } else { topic + 2 }
+    /// Index in the recording's topics of an encoder's topic.
+    fn recorded_index(&self, topic: usize) -> usize {
+        if topic < self.digest_topic { topic } else { topic + 2 }
     }
 
-    /// Topics that have come since the last packet.
+    /// Opens topics that were added since the last packet.
     fn open_topics(&mut self, packet: &Packet) -> Result<(), WriteError> {
         for topic in packet.topics_beyond(self.topics.len() - 2) {
             if let Some(file) = &mut self.file {
                 file.open_topic(topic)?;
             }
             self.files.iter_mut().for_each(|it| it.counts.push(0));
-            self.n_sent.push(0);
+            self.n_written.push(0);
             self.topics.push(topic.clone());
         }
         Ok(())
     }
 
-    /// Links a tick, once, and once more after a change.
-    fn link(
+    /// Records the digest of a tick once, and again after a change.
+    fn record_digest(
         &mut self,
         tick: u64,
         time_ns: u64,
@@ -292,23 +297,28 @@ impl Bag {
             return Ok(());
         }
         let cdr = self.chain.link(tick, digest).to_cdr();
-        self.put(&Message { topic: self.links, time_ns, cdr })
+        self.write_message(&Message { topic: self.digest_topic, time_ns, cdr })
     }
 
-    /// Records what was done to the world after a tick.
-    fn alter(&mut self, change: &Change, tick: u64, time_ns: u64) -> Result<(), WriteError> {
+    /// Records a change of the world after a tick.
+    fn record_change(
+        &mut self,
+        change: &Change,
+        tick: u64,
+        time_ns: u64,
+    ) -> Result<(), WriteError> {
         let message = WorldChange { tick, what: change.to_string(), change: change.to_bytes() };
-        let (topic, cdr) = (self.links + 1, message.to_cdr());
+        let (topic, cdr) = (self.digest_topic + 1, message.to_cdr());
         self.chain.command(&self.topics[topic].name, &cdr);
-        self.put(&Message { topic, time_ns, cdr })
+        self.write_message(&Message { topic, time_ns, cdr })
     }
 
-    fn put(&mut self, message: &Message) -> Result<(), WriteError> {
+    fn write_message(&mut self, message: &Message) -> Result<(), WriteError> {
         let (Some(file), Some(contents)) = (&mut self.file, self.files.last_mut()) else {
             return Ok(());
         };
-        file.write(message, self.n_sent[message.topic])?;
-        self.n_sent[message.topic] += 1;
+        file.write(message, self.n_written[message.topic])?;
+        self.n_written[message.topic] += 1;
         contents.add(message.topic, message.time_ns);
         if self.topics[message.topic].qos.is_latched {
             self.latched.insert(message.topic, message.clone());
@@ -319,83 +329,83 @@ impl Bag {
     fn is_split_due(&self, time_ns: u64) -> bool {
         let (Some(file), Some(contents)) = (&self.file, self.files.last()) else { return false };
         let Some((first_ns, _)) = contents.times else { return false };
-        let Format { split_bytes, split_ns, .. } = self.subject.format;
-        split_bytes.is_some_and(|longest| longest <= file.gauge().n_bytes())
-            || split_ns.is_some_and(|longest| longest < time_ns - first_ns)
+        let Format { split_bytes, split_ns, .. } = self.description.format;
+        split_bytes.is_some_and(|limit| limit <= file.status().n_bytes())
+            || split_ns.is_some_and(|limit| limit < time_ns - first_ns)
     }
 
-    /// Completes the file and begins the next, with what late readers get repeated.
+    /// Completes the file and starts the next one, which begins with the latched messages.
     fn split(&mut self, time_ns: u64) -> Result<(), WriteError> {
         self.complete_file()?;
         self.begin_file()?;
         for (_, message) in std::mem::take(&mut self.latched) {
-            self.put(&Message { time_ns, ..message })?;
+            self.write_message(&Message { time_ns, ..message })?;
         }
-        Ok(self.note()?)
+        Ok(self.update_metadata()?)
     }
 
-    /// Hands everything to the operating system.
+    /// Passes all data to the operating system.
     fn flush(&mut self) -> Result<(), WriteError> {
         self.flushed_at = now();
         if let Some(file) = &mut self.file {
             file.flush()?;
         }
-        Ok(self.note()?)
+        Ok(self.update_metadata()?)
     }
 
-    fn rows(&self) -> Vec<Row> {
-        self.topics.iter().map(Row::of).collect()
+    fn topic_rows(&self) -> Vec<TopicMetadata> {
+        self.topics.iter().map(TopicMetadata::of).collect()
     }
 
-    /// Writes `metadata.yaml` anew, in one step, and brings the report up to date.
-    fn note(&mut self) -> io::Result<()> {
+    /// Replaces `metadata.yaml` atomically and updates the report.
+    fn update_metadata(&mut self) -> io::Result<()> {
         let names = self.topics.iter().map(|topic| topic.name.clone());
         let report = BagReport {
             folder: self.folder.clone(),
-            message_counts: names.zip(self.n_sent.iter().copied()).collect(),
+            message_counts: names.zip(self.n_written.iter().copied()).collect(),
         };
         *self.reporter.0.lock().unwrap_or_else(PoisonError::into_inner) = report;
         let path = self.metadata_path();
         let draft = path.with_extension("yaml.new");
-        fs::write(&draft, file_text(&self.rows(), &self.files))?;
+        fs::write(&draft, file_text(&self.topic_rows(), &self.files))?;
         fs::rename(&draft, &path)
     }
 
-    /// Completes the file that is open, if there is one.
+    /// Completes the open file, if there is one.
     fn complete_file(&mut self) -> Result<(), WriteError> {
         let Some(file) = self.file.take() else { return Ok(()) };
-        let n_messages: u64 = self.n_sent.iter().sum();
+        let n_messages: u64 = self.n_written.iter().sum();
         let facts = vec![
             ("state_digest", format!("{:016x}", self.digest)),
             ("tick", self.chain.tick().unwrap_or(0).to_string()),
             ("message_count", n_messages.to_string()),
         ];
-        file.finish(facts, information(&self.rows(), &self.files))
+        file.finish(facts, information(&self.topic_rows(), &self.files))
     }
 
     /// Completes the recording.
     fn finish(&mut self) -> Result<(), WriteError> {
         self.complete_file()?;
-        Ok(self.note()?)
+        Ok(self.update_metadata()?)
     }
 
-    /// Ends the recording early, with as much of it kept as the disk allows.
+    /// Stops recording, keeping as much as the disk allows.
     fn end(&mut self, error: &WriteError) -> BagError {
         let recorded_ns = self.files.iter().filter_map(|it| Some(it.times?.1)).max().unwrap_or(0);
         let (folder, path) = (self.folder.clone(), self.path());
-        let disk_is_full = of_system(error).is_some_and(is_full);
-        let fault = match self.finish() {
+        let disk_is_full = io_error(error).is_some_and(is_full);
+        let bag_error = match self.finish() {
             Ok(()) if disk_is_full => BagError::DiskFull { folder, recorded_ns },
-            _ => BagError::CannotWrite { folder, path, fault: text(error), recorded_ns },
+            _ => BagError::CannotWrite { folder, path, reason: text(error), recorded_ns },
         };
-        self.fault = Some(fault.clone());
-        fault
+        self.error = Some(bag_error.clone());
+        bag_error
     }
 
-    /// Says and remembers what became of an attempt; a full disk is found here.
-    fn conclude(&mut self, outcome: Result<(), WriteError>) -> Result<(), BagError> {
-        let is_disk_full = self.file.as_ref().is_some_and(|file| file.gauge().is_full());
-        match outcome {
+    /// Turns a failed write or a full disk into the end of the recording.
+    fn check(&mut self, result: Result<(), WriteError>) -> Result<(), BagError> {
+        let is_disk_full = self.file.as_ref().is_some_and(|file| file.status().is_full());
+        match result {
             Ok(()) if !is_disk_full => Ok(()),
             Ok(()) => Err(self.end(&io::Error::from(ErrorKind::StorageFull).into())),
             Err(error) => Err(self.end(&error)),
@@ -408,34 +418,34 @@ impl Sink for Bag {
         "bag"
     }
 
-    /// After a fault it gives that fault for every packet: nothing more is recorded.
+    /// After an error, nothing more is recorded and every packet returns the same error.
     fn write(&mut self, packet: &Packet) -> Result<(), Box<dyn Error + Send + Sync>> {
-        if let Some(fault) = &self.fault {
-            return Err(Box::new(fault.clone()));
+        if let Some(error) = &self.error {
+            return Err(Box::new(error.clone()));
         }
-        if self.is_known(packet) {
+        if self.is_repeated(packet) {
             return Ok(());
         }
-        let outcome = self.record(packet);
-        Ok(self.conclude(outcome)?)
+        let result = self.record(packet);
+        Ok(self.check(result)?)
     }
 
     fn idle(&mut self) -> Result<(), Box<dyn Error + Send + Sync>> {
-        if self.fault.is_some() {
+        if self.error.is_some() {
             return Ok(());
         }
-        let outcome = self.flush();
-        Ok(self.conclude(outcome)?)
+        let result = self.flush();
+        Ok(self.check(result)?)
     }
 
     fn close(&mut self) -> Result<(), Box<dyn Error + Send + Sync>> {
-        if self.fault.is_some() {
+        if self.error.is_some() {
             return Ok(());
         }
-        let outcome = self.flush();
-        self.conclude(outcome)?;
-        let outcome = self.finish();
-        Ok(self.conclude(outcome)?)
+        let result = self.flush();
+        self.check(result)?;
+        let result = self.finish();
+        Ok(self.check(result)?)
     }
 }
 

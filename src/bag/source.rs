@@ -1,7 +1,7 @@
 //! Commands from a recording, each in the tick in which it was given.
 //!
-//! Recordings of jamgrip's know their ticks. In others the first message is taken for the start of
-//! the run, and a message is a command of the tick in which it was recorded.
+//! jamgrip's own recordings store the ticks. For other recordings, the time of the first message is
+//! taken as the start of the run, and a command belongs to the tick in which it was recorded.
 
 use std::{
     path::{Path, PathBuf},
@@ -11,8 +11,8 @@ use std::{
 use crate::io::source::{Source, SourceCounters};
 use crate::{
     bag::{
-        NotABag, START,
-        reader::{Item, Reader, Recorded},
+        OpenBagError, START,
+        reader::{Item, Reader, RecordedMessage},
         writer::CDR_HEADER,
     },
     command::Command,
@@ -20,25 +20,25 @@ use crate::{
     wire::{from_ros::CommandCodec, topics::Topic},
 };
 
-/// Why there are no commands.
+/// Why a recording yields no commands.
 #[derive(Debug, thiserror::Error)]
-pub enum NoCommands {
-    /// There is no recording.
+pub enum ScriptError {
+    /// The path is not a recording.
     #[error(transparent)]
-    NotABag(#[from] NotABag),
+    Open(#[from] OpenBagError),
     /// None of its topics carries commands for this scene.
     #[error(
-        "{}: no messages on a topic that carries commands; these do: {known}", path.display()
+        "{}: contains no messages on the command topics {known}", path.display()
     )]
     NoTopic {
         /// The recording.
         path: PathBuf,
-        /// The topics that this scene listens to, with their types.
+        /// The command topics of the scene, with their types.
         known: String,
     },
 }
 
-/// Commands, each with the tick in which it takes effect. Copies share the list.
+/// Commands with the ticks in which they take effect. Clones share the list.
 #[derive(Clone, Debug, Default)]
 pub struct Script {
     commands: Arc<Vec<(u64, Command)>>,
@@ -47,51 +47,52 @@ pub struct Script {
 }
 
 impl Script {
-    /// Commands with their ticks; those of one tick keep their order.
+    /// Creates a script; commands of the same tick keep their order.
     pub fn new(mut commands: Vec<(u64, Command)>) -> Self {
         commands.sort_by_key(|(tick, _)| *tick);
         Self { commands: Arc::new(commands), ..Self::default() }
     }
 
-    /// The commands in a recording, whoever made it, on `topics` as `codec` reads them.
+    /// Reads the commands on `topics` from a recording of any program, decoded by `codec`.
     ///
     /// # Errors
-    /// If there is no recording, or nothing of use in it.
+    /// If the path is not a recording, or it contains no commands.
     pub fn read(
         path: &Path,
         topics: &[Topic],
         codec: &CommandCodec,
         tick_ns: u64,
-    ) -> Result<Self, NoCommands> {
-        let mut gathered = Gathered::default();
+    ) -> Result<Self, ScriptError> {
+        let mut found = FoundCommands::default();
         for file in crate::bag::files(path)? {
             let reader = Reader::open(&file)
-                .map_err(|fault| NotABag::Unreadable { path: file.clone(), fault })?;
+                .map_err(|error| OpenBagError::Unreadable { path: file.clone(), error })?;
             for item in reader {
                 match item {
-                    Item::Metadata(it) if it.name == START => gathered.is_ours = true,
-                    Item::Message(message) => gathered.take(&message, topics, codec),
+                    Item::Metadata(it) if it.name == START => found.is_own_recording = true,
+                    Item::Message(message) => found.take(&message, topics, codec),
                     _ => {}
                 }
             }
         }
-        if gathered.commands.is_empty() {
+        if found.commands.is_empty() {
             let known = topics.iter().filter(|it| it.is_input);
             let known: Vec<String> =
                 known.map(|it| format!("{} ({})", it.name, it.message_type.name)).collect();
             let (path, known) = (path.to_owned(), known.join(", "));
-            return Err(NoCommands::NoTopic { path, known });
+            return Err(ScriptError::NoTopic { path, known });
         }
-        let start_ns = if gathered.is_ours { 0 } else { gathered.first_ns.unwrap_or(0) };
+        let start_ns = if found.is_own_recording { 0 } else { found.first_ns.unwrap_or(0) };
         let in_tick = |(time_ns, command): (u64, Command)| {
             (time_ns.saturating_sub(start_ns) / tick_ns + 1, command)
         };
-        let script = Self::new(gathered.commands.into_iter().map(in_tick).collect());
-        Ok(Self { counters: gathered.counters, ..script })
+        let script = Self::new(found.commands.into_iter().map(in_tick).collect());
+        Ok(Self { counters: found.counters, ..script })
     }
 
-    /// The commands of a tick. Ticks are asked for in ascending order; what lies before is skipped.
-    pub fn of(&mut self, tick: u64) -> Vec<Command> {
+    /// The commands of a tick. Ticks must be requested in ascending order; earlier commands are
+    /// skipped.
+    pub fn commands_in(&mut self, tick: u64) -> Vec<Command> {
         let left = &self.commands[self.next..];
         let n_before = left.partition_point(|(at, _)| *at < tick);
         let of_tick = left[n_before..].iter().take_while(|(at, _)| *at == tick);
@@ -111,11 +112,11 @@ impl Source for Script {
         "bag"
     }
 
-    fn drain(&mut self, seen: &Snapshot) -> Vec<Command> {
-        self.of(seen.run_tick.0 + 1)
+    fn drain(&mut self, snapshot: &Snapshot) -> Vec<Command> {
+        self.commands_in(snapshot.run_tick.0 + 1)
     }
 
-    fn has_heard(&self) -> bool {
+    fn has_received(&self) -> bool {
         true
     }
 
@@ -124,17 +125,17 @@ impl Source for Script {
     }
 }
 
-/// What was found so far.
+/// The commands found so far.
 #[derive(Default)]
-struct Gathered {
-    is_ours: bool,
+struct FoundCommands {
+    is_own_recording: bool,
     first_ns: Option<u64>,
     commands: Vec<(u64, Command)>,
     counters: SourceCounters,
 }
 
-impl Gathered {
-    fn take(&mut self, message: &Recorded, topics: &[Topic], codec: &CommandCodec) {
+impl FoundCommands {
+    fn take(&mut self, message: &RecordedMessage, topics: &[Topic], codec: &CommandCodec) {
         let earliest = self.first_ns.unwrap_or(message.log_time).min(message.log_time);
         self.first_ns = Some(earliest);
         let name = &message.channel.topic;
@@ -148,7 +149,7 @@ impl Gathered {
                 self.counters.n_received += 1;
                 self.commands.push((message.log_time, command));
             }
-            // Another type, another byte order, or no command at all.
+            // Wrong type, wrong byte order, or not a command.
             _ => self.counters.n_malformed += 1,
         }
     }
@@ -160,15 +161,15 @@ mod tests {
 
     /// Oracle: the list itself.
     #[test]
-    fn every_command_comes_once_in_its_tick() {
+    fn every_command_is_returned_once_in_its_tick() {
         let vacuum = |gauge_pa| Command::Vacuum { gauge_pa };
         let list = vec![(5, vacuum(3.0)), (2, vacuum(1.0)), (2, vacuum(2.0)), (9, vacuum(4.0))];
         let mut script = Script::new(list);
-        assert_eq!(script.of(1), []);
-        assert_eq!(script.of(2), [1.0, 2.0].map(vacuum));
-        assert_eq!(script.of(3), []);
-        // A run that begins later leaves out what was before.
-        assert_eq!(script.of(9), [vacuum(4.0)]);
-        assert_eq!((script.of(10), script.last_tick()), (Vec::new(), 9));
+        assert_eq!(script.commands_in(1), []);
+        assert_eq!(script.commands_in(2), [1.0, 2.0].map(vacuum));
+        assert_eq!(script.commands_in(3), []);
+        // Earlier commands are skipped if the run starts later.
+        assert_eq!(script.commands_in(9), [vacuum(4.0)]);
+        assert_eq!((script.commands_in(10), script.last_tick()), (Vec::new(), 9));
     }
 }

@@ -1,5 +1,5 @@
-//! One MCAP file of a recording: what it holds before the first message, messages, checkpoints, and
-//! its completion.
+//! Writes one MCAP file of a recording: the description of the run, messages, checkpoints, and its
+//! end.
 
 use std::{collections::BTreeMap, io::BufWriter, path::Path};
 
@@ -10,8 +10,8 @@ use mcap::{
 };
 
 use super::{
-    CHECKPOINT, END, ROSBAG2, SCENE, SCENE_FILE, START, Subject,
-    disk::{Gauge, ReservedFile},
+    CHECKPOINT, END, ROSBAG2, RunDescription, SCENE, SCENE_FILE, START,
+    disk::{FileStatus, ReservedFile},
     metadata::qos_profiles,
 };
 use crate::{
@@ -20,87 +20,100 @@ use crate::{
     wire::topics::{Message, Topic},
 };
 
-/// Messages are compressed together up to this length (bytes).
-const CHUNK: u64 = 768 << 10;
-/// Names the encoding of a message: CDR, little endian.
+/// Length of a chunk of messages that are compressed together (bytes).
+const CHUNK_LENGTH: u64 = 768 << 10;
+/// Encapsulation header of a message: CDR, little endian.
 pub const CDR_HEADER: [u8; 4] = [0, 1, 0, 0];
-/// Fast, and half the size.
+/// Compression level of checkpoints: fast, and half the size.
 const CHECKPOINT_LEVEL: i32 = 1;
 
-/// The disk does not do what it should, or the file was not begun.
+/// The error of a write to the file.
 pub type WriteError = McapError;
 
-/// The MCAP file while it is written.
+/// An MCAP file that is being written.
 pub struct OpenFile {
     writer: Writer<NoSeek<BufWriter<ReservedFile>>>,
-    gauge: Gauge,
-    /// Channel of each topic.
+    status: FileStatus,
+    /// Channel ID of each topic.
     channels: Vec<u16>,
-    /// A message with its header, put together here.
+    /// Buffer for a message with its header.
     bytes: Vec<u8>,
 }
 
 impl OpenFile {
-    /// Creates the file, which must not exist yet, with all that explains it.
+    /// Creates the file, which must not exist yet, with the description of the run.
     ///
     /// # Errors
-    /// As the disk says.
-    pub fn create(path: &Path, topics: &[Topic], subject: &Subject) -> Result<Self, WriteError> {
+    /// The errors of the disk.
+    pub fn create(
+        path: &Path,
+        topics: &[Topic],
+        description: &RunDescription,
+    ) -> Result<Self, WriteError> {
         let disk = ReservedFile::create(path)?;
-        let gauge = disk.gauge();
-        let compression = match subject.format.compression {
+        let status = disk.status();
+        let compression = match description.format.compression {
             BagCompression::Zstd => Some(Compression::Zstd),
             BagCompression::Lz4 => Some(Compression::Lz4),
             BagCompression::Uncompressed => None,
         };
-        // Chunks are put together in memory and written whole: whatever happens, the file holds
-        // whole chunks, and readers find all messages of them.
+        // Chunks are assembled in memory and written as a whole. The file always contains complete
+        // chunks, and readers find all messages in them.
         let mut writer = WriteOptions::new()
             .profile("ros2")
             .library(concat!("jamgrip ", env!("CARGO_PKG_VERSION")))
             .compression(compression)
             .compression_threads(0)
-            .chunk_size(Some(CHUNK))
+            .chunk_size(Some(CHUNK_LENGTH))
             .disable_seeking(true)
             .create(NoSeek::new(BufWriter::new(disk)))?;
-        let facts = subject.facts.iter().map(|(key, value)| (*key, value.clone()));
+        let facts = description.facts.iter().map(|(key, value)| (*key, value.clone()));
         writer.write_metadata(&record(START, facts))?;
-        writer.attach(&attachment(SCENE, "application/yaml", 0, subject.scene_text.as_bytes()))?;
-        for (name, contents) in &subject.scene_files {
+        writer.attach(&attachment(
+            SCENE,
+            "application/yaml",
+            0,
+            description.scene_text.as_bytes(),
+        ))?;
+        for (name, contents) in &description.scene_files {
             let name = format!("{SCENE_FILE}{name}");
             writer.attach(&attachment(&name, "application/octet-stream", 0, contents))?;
         }
         let (channels, bytes) = (Vec::with_capacity(topics.len()), Vec::new());
-        let mut file = Self { writer, gauge, channels, bytes };
+        let mut file = Self { writer, status, channels, bytes };
         topics.iter().try_for_each(|topic| file.open_topic(topic))?;
         file.flush()?;
         Ok(file)
     }
 
-    /// Opens a channel for a topic, behind all others.
+    /// Adds a channel for a topic after all others.
     ///
     /// # Errors
-    /// As the disk says.
+    /// The errors of the disk.
     pub fn open_topic(&mut self, topic: &Topic) -> Result<(), WriteError> {
-        let kind = topic.message_type;
-        let schema = self.writer.add_schema(kind.name, "ros2msg", kind.definition.as_bytes())?;
+        let message_type = topic.message_type;
+        let schema = self.writer.add_schema(
+            message_type.name,
+            "ros2msg",
+            message_type.definition.as_bytes(),
+        )?;
         let metadata = BTreeMap::from([
             ("offered_qos_profiles".to_owned(), qos_profiles(topic.qos)),
-            ("topic_type_hash".to_owned(), kind.type_hash.to_owned()),
+            ("topic_type_hash".to_owned(), message_type.type_hash.to_owned()),
         ]);
         self.channels.push(self.writer.add_channel(schema, &topic.name, "cdr", &metadata)?);
         Ok(())
     }
 
-    /// Writes a message; `n_before` is its number on its topic.
+    /// Writes a message; `n_before` is the number of earlier messages on its topic.
     ///
     /// # Errors
-    /// As the disk says.
+    /// The errors of the disk.
     pub fn write(&mut self, message: &Message, n_before: u64) -> Result<(), WriteError> {
         self.bytes.clear();
         self.bytes.extend_from_slice(&CDR_HEADER);
         self.bytes.extend_from_slice(&message.cdr);
-        #[expect(clippy::cast_possible_truncation, reason = "sequence numbers may start anew")]
+        #[expect(clippy::cast_possible_truncation, reason = "sequence numbers may wrap")]
         let header = MessageHeader {
             channel_id: self.channels[message.topic],
             sequence: n_before as u32,
@@ -113,52 +126,52 @@ impl OpenFile {
     /// Writes a checkpoint, compressed.
     ///
     /// # Errors
-    /// As the disk says.
+    /// The errors of the disk.
     pub fn attach(&mut self, checkpoint: &Checkpoint) -> Result<(), WriteError> {
         let packed = zstd::bulk::compress(&checkpoint.bytes, CHECKPOINT_LEVEL)?;
         let name = format!("{CHECKPOINT}{:09}", checkpoint.tick.0);
         self.writer.attach(&attachment(&name, "application/zstd", checkpoint.time_ns, &packed))
     }
 
-    /// Hands everything to the operating system.
+    /// Passes all data to the operating system.
     ///
     /// # Errors
-    /// As the disk says.
+    /// The errors of the disk.
     pub fn flush(&mut self) -> Result<(), WriteError> {
         self.writer.flush()
     }
 
-    /// Length and fullness.
-    pub fn gauge(&self) -> &Gauge {
-        &self.gauge
+    /// Length of the file, and whether the disk is full.
+    pub fn status(&self) -> &FileStatus {
+        &self.status
     }
 
-    /// Completes the file with what is known at its end, and its index.
+    /// Completes the file with the final metadata and its index.
     ///
     /// # Errors
-    /// As the disk says.
+    /// The errors of the disk.
     pub fn finish(
         mut self,
         facts: Vec<(&'static str, String)>,
         information: String,
     ) -> Result<(), WriteError> {
         self.writer.write_metadata(&record(END, facts))?;
-        let of_rosbag2 = [("serialized_metadata", information), ("ROS_DISTRO", "jazzy".to_owned())];
-        self.writer.write_metadata(&record(ROSBAG2, of_rosbag2))?;
+        let rosbag2 = [("serialized_metadata", information), ("ROS_DISTRO", "jazzy".to_owned())];
+        self.writer.write_metadata(&record(ROSBAG2, rosbag2))?;
         self.writer.finish()?;
         let inner = self.writer.into_inner().into_inner();
         let disk = inner.into_inner().map_err(|error| McapError::Io(error.into_error()))?;
-        // With `disk` goes the reserve, so that there is room for metadata.yaml as well.
+        // Dropping `disk` also frees the reserve, so there is space for metadata.yaml.
         Ok(disk.sync()?)
     }
 }
 
-fn attachment<'a>(name: &str, kind: &str, time_ns: u64, bytes: &'a [u8]) -> Attachment<'a> {
+fn attachment<'a>(name: &str, media_type: &str, time_ns: u64, bytes: &'a [u8]) -> Attachment<'a> {
     Attachment {
         log_time: time_ns,
         create_time: time_ns,
         name: name.to_owned(),
-        media_type: kind.to_owned(),
+        media_type: media_type.to_owned(),
         data: bytes.into(),
     }
 }
@@ -168,7 +181,7 @@ fn record(name: &str, values: impl IntoIterator<Item = (&'static str, String)>) 
     Metadata { name: name.to_owned(), metadata }
 }
 
-/// An error and what caused it: the crate's own words say little.
+/// The message of an error with its causes, because the crate's own message says little.
 pub fn text(error: &WriteError) -> String {
     let mut text = error.to_string();
     let mut cause = std::error::Error::source(error);
@@ -179,8 +192,8 @@ pub fn text(error: &WriteError) -> String {
     text
 }
 
-/// The error of the system behind an error, if there is one.
-pub fn of_system(error: &WriteError) -> Option<&std::io::Error> {
+/// The operating system's error that caused an error, if there is one.
+pub fn io_error(error: &WriteError) -> Option<&std::io::Error> {
     match error {
         McapError::Io(error) => Some(error),
         _ => None,

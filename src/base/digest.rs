@@ -1,15 +1,15 @@
 //! A 64-bit digest of states and texts: XXH3 over the bytes in a fixed order.
 //!
-//! Two runs are equal when their digests are: the digest covers the exact bits of every number.
+//! The digest covers the exact bits of every number: equal digests mean equal runs.
 
 use xxhash_rust::xxh3::Xxh3;
 
 use super::{Real, Vec3};
 
-/// Bytes collected before they are hashed in one go.
+/// Number of bytes buffered before they are hashed.
 const BLOCK: usize = 16 * 1024;
 
-/// Collects numbers in the order they are given.
+/// Hashes numbers in the order in which they are added.
 #[derive(Default)]
 pub struct Digest {
     hasher: Xxh3,
@@ -31,7 +31,7 @@ impl Digest {
         }
     }
 
-    /// Adds a whole number.
+    /// Adds an integer.
     pub fn integer(&mut self, value: u64) {
         self.bytes(&value.to_le_bytes());
     }
@@ -55,7 +55,7 @@ impl Digest {
         }
     }
 
-    /// The digest of all that was added.
+    /// The digest of everything added.
     pub fn finish(mut self) -> u64 {
         self.hasher.update(&self.block);
         self.hasher.digest()

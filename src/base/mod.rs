@@ -1,4 +1,4 @@
-//! Words that everything shares: numbers, ticks, ids, random streams, digests, threads.
+//! Basic types: real numbers, ticks, random streams, digests, threads, SIMD lanes.
 
 pub mod digest;
 pub mod lanes;

@@ -1,6 +1,6 @@
-//! Named random streams: (seed, stream, index) always gives the same numbers, whoever asks first.
+//! Named random streams: a seed and a stream always give the same numbers, in whatever order streams are used.
 //!
-//! ChaCha with 8 rounds, whose stream number separates the users of one seed.
+//! The generator is ChaCha with 8 rounds. Its stream number separates the streams of one seed.
 
 use rand_chacha::{
     ChaCha8Rng,
@@ -9,16 +9,16 @@ use rand_chacha::{
 
 use super::Real;
 
-/// Who draws. A closed list: a new user of random numbers adds its name here.
+/// What the random numbers are for. Each new use adds a variant.
 #[derive(Clone, Copy, Debug)]
 pub enum Stream {
     /// Radii of the grains.
     Radius = 1,
-    /// First positions of the grains.
+    /// Initial positions of the grains.
     Position = 2,
 }
 
-/// A sequence of random numbers for one user.
+/// The sequence of random numbers of one stream.
 pub struct Random(ChaCha8Rng);
 
 impl Random {

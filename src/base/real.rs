@@ -1,4 +1,4 @@
-//! The numbers of the core: double precision and nalgebra's vectors, SI units throughout.
+//! Number types: double precision and nalgebra's vectors. SI units throughout.
 
 /// A real number.
 pub type Real = f64;
@@ -11,7 +11,7 @@ pub type Quat = nalgebra::UnitQuaternion<Real>;
 /// Position and orientation of a frame.
 pub type Pose = nalgebra::Isometry3<Real>;
 
-/// A positive real rounded up to a count, at least 1.
+/// Rounds a positive real up to a count of at least 1.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
@@ -21,7 +21,7 @@ pub fn count(value: Real) -> usize {
     value.ceil().max(1.0) as usize
 }
 
-/// A number of substeps, or of anything that is counted for long, as a real number.
+/// A 64-bit count, such as a number of substeps, as a real number.
 #[expect(clippy::cast_precision_loss, reason = "counts stay far below 2^53")]
 pub fn real_of(count: u64) -> Real {
     count as Real
@@ -33,14 +33,14 @@ pub fn real(count: usize) -> Real {
     count as Real
 }
 
-/// A number that is a small whole one as an index.
+/// A small non-negative integer, stored as a real number, as an index.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
-    reason = "the number is a small whole one"
+    reason = "the number is a small non-negative integer"
 )]
 #[inline(always)]
-pub fn whole(value: Real) -> usize {
+pub fn to_index(value: Real) -> usize {
     value as usize
 }
 
@@ -59,18 +59,18 @@ impl Twist {
         Self { linear: Vec3::zeros(), angular: Vec3::zeros() }
     }
 
-    /// Velocity of the material point at `arm` (m) from the frame's origin (m/s).
+    /// Velocity (m/s) of the material point at `arm` (m) from the frame's origin.
     pub fn at(&self, arm: &Vec3) -> Vec3 {
         self.linear + self.angular.cross(arm)
     }
 }
 
-/// A force and a torque about a stated point.
+/// A force and a torque about a given point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wrench {
     /// Force (N).
     pub force: Vec3,
-    /// Torque about the stated point (N m).
+    /// Torque about the given point (N m).
     pub torque: Vec3,
 }
 

@@ -1,4 +1,4 @@
-//! Simulated time is counted in ticks, never summed in seconds, so that it cannot drift.
+//! Simulated time, counted in ticks instead of summed in seconds, so it cannot drift.
 
 /// A number of whole ticks since the start of the run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
@@ -10,7 +10,7 @@ impl Tick {
         Self(self.0 + 1)
     }
 
-    /// Simulated time at the end of this tick (ns), for ticks of `tick_ns` nanoseconds.
+    /// Simulated time (ns) at the end of this tick, for ticks of `tick_ns` nanoseconds.
     pub fn time_ns(self, tick_ns: u64) -> u64 {
         self.0 * tick_ns
     }

@@ -1,7 +1,8 @@
-//! The beam of the seeds' bending test under vacuum: 18 500 grains of 50 MPa in a closed bar of latex.
+//! The beam of the source's bending test under vacuum: 18 500 grains of 50 MPa in a closed bar of
+//! latex.
 //!
-//! Grains grow smoothly inside the held membrane up to their size; then the membrane is let go, the
-//! air is drawn out, and all comes to rest.
+//! Grains grow inside the held membrane up to their final size; then the membrane is released and
+//! evacuated, and everything comes to rest.
 
 use crate::{
     base::{
@@ -16,7 +17,7 @@ use crate::{
         membrane::{
             CARRIER_ID, FREE, MembraneMaterial, MembraneModel,
             bar::Bar,
-            mesh::{Mesh, MeshFault},
+            mesh::{Mesh, MeshError},
             pressure,
         },
         model::ChamberModel,
@@ -29,9 +30,9 @@ use crate::{
     scene::Material,
 };
 
-/// Size and net of the membrane; the source gives 8 cm, 40 cm, rounded edges and 1792 vertices.
+/// Size and mesh of the membrane; the source gives 8 cm, 40 cm, rounded edges and 1792 vertices.
 const BAR: Bar = Bar { width: 0.08, length: 0.4, edge_radius: 0.01, n_side: 8, n_rows: 53 };
-/// Grains; the source leaves their number out, this is a solid fraction of 0.6.
+/// Number of grains, for a solid fraction of 0.6; the source does not give it.
 const N_GRAINS: usize = 18_500;
 /// Smallest and largest radius (m).
 const RADII: [Real; 2] = [2.5e-3, 2.9e-3];
@@ -44,7 +45,7 @@ const LATEX: Material = Material { youngs_modulus: 1e7, poisson_ratio: 1.0 / 3.0
 const BETWEEN_GRAINS: Surface =
     Surface { friction: 0.25, dissipation_time: 4.3e-6, tangential_damping: 0.3 };
 const ON_LATEX: Surface = Surface { friction: 1.2, ..BETWEEN_GRAINS };
-/// Bending constants of the seeds' other membranes, which the source leaves out here.
+/// Bending constants of the source's other membranes; those of the beam are not given.
 const MEMBRANE: MembraneMaterial = MembraneMaterial {
     thickness: 3e-4,
     youngs_modulus: LATEX.youngs_modulus,
@@ -55,41 +56,41 @@ const MEMBRANE: MembraneMaterial = MembraneMaterial {
 };
 /// Vacuum (Pa), from the middle of the source's range.
 const VACUUM: Real = 50e3;
-/// Pressure at which nothing more would fit (Pa).
+/// Pressure at which growth ends (Pa).
 const PRESSURE: Real = 10e3;
 /// Solid fraction of the scattered grains.
 const THIN: Real = 0.25;
 /// Share of the longest stable substep.
 const SAFETY: Real = 0.8;
-/// Neighbours are listed this share of the largest radius beyond contact.
+/// Skin of the neighbor lists, as a share of the largest radius.
 const SKIN_SHARE: Real = 0.2;
-/// Substeps in which the air is drawn out.
+/// Substeps of the evacuation.
 const N_DRAWN: Real = 1000.0;
-/// Substeps from the release on, and share of its velocity that a grain keeps in each: while all gives
-/// way, and while it comes to rest.
+/// Substeps after the release, and the share of the velocities that remains after each: first while
+/// the packing collapses, then while it comes to rest.
 const N_REST: [(u64, Real); 2] = [(2000, 0.99), (1000, 0.999)];
 
-/// Names the state in the cache.
+/// Key of the state in the cache.
 pub(super) const KEY: &str = "beam 1";
 
-/// Why there is no beam.
+/// Why the beam cannot be prepared.
 #[derive(Debug, thiserror::Error)]
 pub enum BeamError {
-    /// The grains find no place to grow from.
+    /// There is no room for the grains.
     #[error(transparent)]
     NoRoom(#[from] NoRoom),
     /// The parts do not fit each other.
     #[error(transparent)]
     Build(#[from] BuildError),
-    /// The membrane is none.
+    /// The membrane cannot be meshed.
     #[error(transparent)]
-    Mesh(#[from] MeshFault),
+    Mesh(#[from] MeshError),
 }
 
 /// The beam from its saved state, under vacuum.
 ///
 /// # Errors
-/// None that `grow` did not have.
+/// Those of `grow`.
 pub(super) fn system(state: State) -> Result<System, BeamError> {
     let mut system = held(membrane()?, state.grains.clone())?;
     system.model.membrane.holders.fill(FREE);
@@ -98,10 +99,10 @@ pub(super) fn system(state: State) -> Result<System, BeamError> {
     Ok(system)
 }
 
-/// The beam at rest under vacuum, from nothing.
+/// Prepares the beam at rest under vacuum.
 ///
 /// # Errors
-/// If the grains find no room.
+/// If there is no room for the grains, or the membrane cannot be meshed.
 pub(super) fn grow() -> Result<State, BeamError> {
     let membrane = membrane()?;
     let volume = pressure::volume(&membrane.mesh, &membrane.mesh.positions);
@@ -112,7 +113,7 @@ pub(super) fn grow() -> Result<State, BeamError> {
     let scale = first_scale(&last, THIN, volume);
     let small: Vec<Real> = last.iter().map(|r| scale * r).collect();
     let mut random = Random::new(1, Stream::Position);
-    // A corner of a square with this margin is inside the rounded edge as well.
+    // With this margin, corners of the square section are inside the rounded edges.
     let places = scatter(&small, None, &mut random, |it| room.place(1.5 * RADII[1], it))?;
     let order = along_curve(&places, 2.0 * RADII[1]);
     let ordered = |radii: &[Real]| order.iter().map(|&i| radii[i]).collect::<Vec<_>>();
@@ -138,7 +139,7 @@ pub(super) fn grow() -> Result<State, BeamError> {
     Ok(system.state)
 }
 
-fn membrane() -> Result<MembraneModel, MeshFault> {
+fn membrane() -> Result<MembraneModel, MeshError> {
     Ok(MembraneModel::new(Mesh::bar(&BAR)?, MEMBRANE))
 }
 
@@ -160,7 +161,7 @@ fn held(mut membrane: MembraneModel, grains: Grains) -> Result<System, BuildErro
     builder.build()
 }
 
-/// Lets everything keep a share of its velocities.
+/// Reduces all velocities to a share.
 fn drag(system: &mut System, share: Real) {
     let State { grains, membrane, .. } = &mut system.state;
     let all = grains

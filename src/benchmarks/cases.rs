@@ -1,8 +1,8 @@
-//! What is measured. A closed list: a new case adds its line here.
+//! The list of cases.
 
 use super::{
     packing::{Boxed, Phase},
-    prepare::{Moment, Spot},
+    prepare::{ExperimentMoment, Moment},
     repetitions::Work,
     sanity::Limits,
 };
@@ -10,19 +10,19 @@ use super::{
 /// One case.
 #[derive(Debug)]
 pub struct Case {
-    /// Its name on the command line.
+    /// Name on the command line.
     pub name: &'static str,
-    /// One line: what it is.
+    /// One-line description.
     pub about: &'static str,
-    /// How much is done in a lap.
+    /// Work of a repetition.
     pub(super) work: Work,
-    /// What must be true of it.
+    /// Limits of its state.
     pub(super) limits: Limits,
-    /// How its first state is made.
+    /// How its start state is prepared.
     pub(super) kind: Kind,
 }
 
-/// How the first state of a case is made.
+/// How the start state of a case is prepared.
 #[derive(Debug)]
 pub(super) enum Kind {
     /// A box of grains.
@@ -30,15 +30,15 @@ pub(super) enum Kind {
     /// The beam under vacuum.
     Beam,
     /// An experiment at some moment.
-    Experiment(Spot),
-    /// The whole session that picks and lifts.
+    Experiment(ExperimentMoment),
+    /// A complete pick-and-lift session.
     Lift,
     /// The loop in real time.
     #[cfg(all(feature = "ros", feature = "shm"))]
     Latency,
 }
 
-/// Grains that lie in a closed box under pressure, or slide down in an opened, tilted one.
+/// Grains at rest in a closed box under pressure, or sliding down in an opened, tilted one.
 const fn grains(
     name: &'static str,
     about: &'static str,
@@ -63,13 +63,13 @@ const fn gripper(
     moment: Moment,
     limits: Limits,
 ) -> Case {
-    let spot = Spot { experiment: "gripper", case, overrides: GRIPPER, moment };
+    let spot = ExperimentMoment { experiment: "gripper", case, overrides: GRIPPER, moment };
     let work = Work { n_warm: 200, n_steps: 1000 };
     Case { name, about, work, limits, kind: Kind::Experiment(spot) }
 }
 
-/// The thesis' gripper with three of its moduli, the first filling of each. The way in is fast: where
-/// the grains end is not what is measured.
+/// The gripper of Götz (2024) with three of its moduli, and the first filling of each. Insertion is
+/// fast: the final positions of the grains do not matter here.
 const GRIPPER: &[&str] = &[
     "grains.youngs_modulus=100 MPa",
     "sweep.moduli=[5 MPa, 100 MPa, 10 GPa]",
@@ -82,7 +82,7 @@ const FIRM: &str = "modulus_100MPa_filling_0";
 const HARD: &str = "modulus_10GPa_filling_0";
 
 const fn triaxial(name: &'static str, about: &'static str, case: &'static str) -> Case {
-    let spot = Spot {
+    let spot = ExperimentMoment {
         experiment: "triaxial",
         case,
         overrides: &["runs.case2=true", "time.rayleigh_share=0.4"],
@@ -127,10 +127,10 @@ pub static CASES: &[Case] = &[
     grains("grains_1m_rest", "27 x 37 500 grains", Phase::Rest, (37_500, [3, 3, 3]), (3, 10)),
     gripper(
         "gripper_5mpa_free",
-        "4200 grains of 5 MPa, bag vented",
+        "4200 grains of 5 MPa, gripper vented",
         SOFT,
         Moment::Free,
-        Limits::BAG,
+        Limits::VENTED,
     ),
     gripper(
         "gripper_5mpa_jamming",
@@ -148,10 +148,10 @@ pub static CASES: &[Case] = &[
     ),
     gripper(
         "gripper_100mpa_free",
-        "4200 grains of 100 MPa, bag vented",
+        "4200 grains of 100 MPa, gripper vented",
         FIRM,
         Moment::Free,
-        Limits::BAG,
+        Limits::VENTED,
     ),
     gripper(
         "gripper_100mpa_jamming",
@@ -169,10 +169,10 @@ pub static CASES: &[Case] = &[
     ),
     gripper(
         "gripper_10gpa_free",
-        "4200 grains of 10 GPa, bag vented",
+        "4200 grains of 10 GPa, gripper vented",
         HARD,
         Moment::Free,
-        Limits::BAG,
+        Limits::VENTED,
     ),
     gripper(
         "gripper_10gpa_jamming",
@@ -199,7 +199,7 @@ pub static CASES: &[Case] = &[
     },
     Case {
         name: "pick_and_lift",
-        about: "the default scene from the first tick to the last, without ROS and recordings",
+        about: "the default scene from the first tick to the last, without ROS 2 and recordings",
         work: Work { n_warm: 0, n_steps: 0 },
         limits: Limits::LIFTED,
         kind: Kind::Lift,
@@ -209,7 +209,7 @@ pub static CASES: &[Case] = &[
         name: "latency",
         about: "commands and samples through ROS 2 and shared memory at 1 kHz beside a busy solver",
         work: Work { n_warm: 0, n_steps: 0 },
-        limits: Limits::BAG,
+        limits: Limits::VENTED,
         kind: Kind::Latency,
     },
 ];

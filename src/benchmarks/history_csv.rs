@@ -1,4 +1,4 @@
-//! Figures kept over time: a CSV file for each machine, a row for each case.
+//! History of results: a CSV file for each machine, with a row for each case.
 
 use std::{
     fs::{self, OpenOptions},
@@ -9,31 +9,31 @@ use std::{
 
 use serde::Serialize;
 
-use super::Figures;
+use super::BenchResult;
 use crate::{base::Real, host::clock::utc_stamp, runner::outcome::Machine};
 
-/// The sheet cannot be written.
+/// The file cannot be written.
 #[derive(Debug, thiserror::Error)]
-pub enum SheetError {
-    /// The operating system refuses.
+pub enum HistoryError {
+    /// The operating system reports an error.
     #[error("{}: cannot be written: {reason}; name a writable file with --out", path.display())]
     Unwritable {
-        /// Which.
+        /// The file.
         path: PathBuf,
-        /// What the operating system said.
+        /// The error of the operating system.
         reason: io::Error,
     },
-    /// It has other columns.
+    /// The file has other columns.
     #[error("{}: has other columns, `{found}`; name a new file with --out", path.display())]
     OtherColumns {
-        /// Which.
+        /// The file.
         path: PathBuf,
         /// Its first line.
         found: String,
     },
 }
 
-/// A row; its fields are the columns.
+/// A row, whose fields are the columns.
 #[derive(Serialize)]
 struct Row<'a> {
     date_utc: &'a str,
@@ -60,17 +60,17 @@ struct Row<'a> {
     yade: Option<Real>,
 }
 
-/// Columns of the peers hold their contact-steps per second and thread.
-fn row<'a>(here: &'a Here, it: &'a Figures) -> Row<'a> {
+/// The columns of the reference codes hold their contact-steps per second and thread.
+fn row<'a>(origin: &'a Origin, it: &'a BenchResult) -> Row<'a> {
     let peer = |name: &str| {
         let found = it.peers.iter().find(|it| it.peer == name);
         found.map(|it| it.contact_steps_per_s_per_core)
     };
     Row {
-        date_utc: &here.date,
-        commit: &here.commit,
-        cpu: &here.machine.cpu,
-        n_processors: here.machine.n_processors,
+        date_utc: &origin.date,
+        commit: &origin.commit,
+        cpu: &origin.machine.cpu,
+        n_processors: origin.machine.n_processors,
         case: &it.case,
         n_grains: it.n_grains,
         n_vertices: it.n_vertices,
@@ -92,27 +92,27 @@ fn row<'a>(here: &'a Here, it: &'a Figures) -> Row<'a> {
     }
 }
 
-/// Where and when rows are written.
-struct Here {
+/// When and worigin the rows were measured.
+struct Origin {
     date: String,
     commit: String,
     machine: Machine,
 }
 
-/// Adds a row for each of `figures` to the file at `path`, which is made if it does not exist.
+/// Adds a row for each result to the file at `path`, which is created if it does not exist.
 ///
 /// # Errors
-/// If it cannot be written, or has other columns.
-pub fn add(path: &Path, figures: &[Figures]) -> Result<(), SheetError> {
-    let here = Here { date: utc_stamp(), commit: commit(), machine: Machine::here() };
-    let unwritable = |reason| SheetError::Unwritable { path: path.to_owned(), reason };
+/// If the file cannot be written, or has other columns.
+pub fn add(path: &Path, results: &[BenchResult]) -> Result<(), HistoryError> {
+    let origin = Origin { date: utc_stamp(), commit: commit(), machine: Machine::here() };
+    let unwritable = |reason| HistoryError::Unwritable { path: path.to_owned(), reason };
     let old = match fs::read_to_string(path) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => String::new(),
         text => text.map_err(unwritable)?,
     };
     let mut writer = csv::Writer::from_writer(Vec::new());
-    for it in figures {
-        writer.serialize(row(&here, it)).map_err(|error| unwritable(error.into()))?;
+    for it in results {
+        writer.serialize(row(&origin, it)).map_err(|error| unwritable(error.into()))?;
     }
     let bytes = writer.into_inner().map_err(|error| unwritable(error.into_error()))?;
     let text = String::from_utf8_lossy(&bytes);
@@ -121,7 +121,7 @@ pub fn add(path: &Path, figures: &[Figures]) -> Result<(), SheetError> {
         None => &*text,
         Some(first) if first == head => rows,
         Some(first) => {
-            return Err(SheetError::OtherColumns {
+            return Err(HistoryError::OtherColumns {
                 path: path.to_owned(),
                 found: first.to_owned(),
             });
@@ -134,8 +134,7 @@ pub fn add(path: &Path, figures: &[Figures]) -> Result<(), SheetError> {
     file.and_then(|mut file| io::Write::write_all(&mut file, added.as_bytes())).map_err(unwritable)
 }
 
-/// The commit of the sources that the program was built from, as they are now; with `-dirty` if they
-/// differ from it.
+/// The commit of the current sources of the program, with `-dirty` if they differ from it.
 fn commit() -> String {
     if let Some(commit) = option_env!("JAMGRIP_COMMIT") {
         return commit.to_owned();
@@ -153,18 +152,18 @@ mod tests {
 
     /// Oracle: one header, one row for each case, in the order they were added.
     #[test]
-    fn rows_are_added_and_other_sheets_are_left_alone() {
+    fn rows_are_appended_and_files_with_other_columns_are_rejected() {
         let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("new/sheet.csv");
-        let figures = |case: &str| Figures { case: case.to_owned(), ..Figures::default() };
-        add(&path, &[figures("a"), figures("b")]).unwrap();
-        add(&path, &[figures("c")]).unwrap();
+        let path = folder.path().join("new/history.csv");
+        let results = |case: &str| BenchResult { case: case.to_owned(), ..BenchResult::default() };
+        add(&path, &[results("a"), results("b")]).unwrap();
+        add(&path, &[results("c")]).unwrap();
         let mut reader = csv::Reader::from_path(&path).unwrap();
-        let place = reader.headers().unwrap().iter().position(|it| it == "case").unwrap();
-        let cases: Vec<String> = reader.records().map(|it| it.unwrap()[place].to_owned()).collect();
+        let index = reader.headers().unwrap().iter().position(|it| it == "case").unwrap();
+        let cases: Vec<String> = reader.records().map(|it| it.unwrap()[index].to_owned()).collect();
         assert_eq!(cases, ["a", "b", "c"]);
         fs::write(&path, "something,else\n1,2\n").unwrap();
-        let error = add(&path, &[figures("d")]).unwrap_err();
+        let error = add(&path, &[results("d")]).unwrap_err();
         assert!(error.to_string().contains("something,else"), "{error}");
         assert_eq!(fs::read_to_string(&path).unwrap(), "something,else\n1,2\n");
     }

@@ -1,11 +1,11 @@
-//! A whole session: the default scene, commanded by its own controller, without anyone who listens.
+//! A complete session: the default scene with the built-in controller, without outputs.
 
 use std::{collections::BTreeMap, path::Path};
 
 use super::{
-    BenchError, Case, Figures, Options, process,
+    BenchError, BenchResult, Case, Options, process,
     result::{Stage, median, processor_share as share},
-    sanity::{Seen, check_lift},
+    sanity::{StateSummary, check_lift},
 };
 use crate::{
     base::{
@@ -32,22 +32,22 @@ const SCENE: (&str, &str) =
 /// One session from its first tick to its last.
 struct Repetition {
     session: Session,
-    /// Time on the clock (s).
+    /// Wall-clock time (s).
     wall_s: Real,
-    /// Processor time for it (s), if the system tells it.
+    /// Processor time (s), if the system provides it.
     processor_s: Option<Real>,
-    /// Of commands, ticks and snapshots (s).
+    /// Times of commands, ticks and snapshots (s).
     parts: [Real; 3],
-    /// Wall and simulated time of each phase (s).
+    /// Wall-clock and simulated time of each phase (s).
     phases: BTreeMap<String, [Real; 2]>,
-    /// What came of it.
+    /// Outcome of the lift.
     lift_monitor: LiftMonitor,
     /// Sum over all ticks of the contacts between grains.
     n_contact_ticks: Real,
 }
 
-/// Runs whole sessions, one at least.
-pub(super) fn run(case: &Case, options: &Options) -> Result<Figures, BenchError> {
+/// Runs complete sessions, at least one.
+pub(super) fn run(case: &Case, options: &Options) -> Result<BenchResult, BenchError> {
     let scene = scene(&[])?;
     let mut repetitions: Vec<Repetition> = Vec::new();
     let mut start_digest = 0;
@@ -56,7 +56,7 @@ pub(super) fn run(case: &Case, options: &Options) -> Result<Figures, BenchError>
     {
         let session = session(&scene, options)?;
         start_digest = session.digest();
-        process::forget_peak();
+        process::reset_peak();
         let repetition = repetition(case, &scene, session)?;
         let digests =
             (repetitions.first().map(|first| first.session.digest()), repetition.session.digest());
@@ -68,15 +68,15 @@ pub(super) fn run(case: &Case, options: &Options) -> Result<Figures, BenchError>
         }
         repetitions.push(repetition);
     }
-    figures(case, options, &repetitions, start_digest)
+    result(case, options, &repetitions, start_digest)
 }
 
-/// The default scene with these changes.
+/// The default scene with these overrides.
 pub(super) fn scene(overrides: &[String]) -> Result<Scene, SceneError> {
     scene::parse(SCENE.1, SCENE.0, Path::new("launch_configs"), overrides)
 }
 
-/// A session at its first tick.
+/// A session before its first tick.
 pub(super) fn session(scene: &Scene, options: &Options) -> Result<Session, BenchError> {
     let pool = parallel::ThreadPool::new(options.n_threads)?;
     let compiled = Compiled::new(scene, &pool).map_err(start::StartError::from)?;
@@ -87,27 +87,27 @@ pub(super) fn session(scene: &Scene, options: &Options) -> Result<Session, Bench
     Ok(session)
 }
 
-/// The loop of `node::run`, with nobody outside.
+/// The loop of `node::run`, without ROS 2 and recordings.
 fn repetition(case: &Case, scene: &Scene, mut session: Session) -> Result<Repetition, BenchError> {
     let mut command_sources = CommandSources::new(scene, Vec::new());
     let schedule = Schedule::new(&scene.outputs, scene.time.tick_ns);
     let tick_s = std::time::Duration::from_nanos(scene.time.tick_ns).as_secs_f64();
-    let mut seen = session.snapshot(schedule.parts(0));
+    let mut snapshot = session.snapshot(schedule.parts(0));
     let (mut parts, mut phases) = ([0.0; 3], BTreeMap::<String, [Real; 2]>::new());
     let (mut lift_monitor, mut n_contact_ticks) = (LiftMonitor::default(), 0.0);
     let processor = process::processor_s();
-    let whole = Stopwatch::start();
+    let total = Stopwatch::start();
     let mut watch = Stopwatch::start();
     while !command_sources.is_done() {
-        let commands = command_sources.drain(&seen);
+        let commands = command_sources.drain(&snapshot);
         let drained = watch.lap_s();
         session
             .tick(&commands)
-            .map_err(|fault| BenchError::Diverged { case: case.name.to_owned(), fault })?;
+            .map_err(|error| BenchError::Diverged { case: case.name.to_owned(), error })?;
         let ticked = watch.lap_s();
-        seen = session.snapshot(schedule.parts(seen.time_ns + scene.time.tick_ns));
-        lift_monitor.update(&seen, tick_s);
-        n_contact_ticks += real(seen.jamming.n_grain_contacts);
+        snapshot = session.snapshot(schedule.parts(snapshot.time_ns + scene.time.tick_ns));
+        lift_monitor.update(&snapshot, tick_s);
+        n_contact_ticks += real(snapshot.jamming.n_grain_contacts);
         let taken = watch.lap_s();
         for (sum, time) in parts.iter_mut().zip([drained, ticked, taken]) {
             *sum += time;
@@ -120,7 +120,7 @@ fn repetition(case: &Case, scene: &Scene, mut session: Session) -> Result<Repeti
     let processor_s = process::processor_s().zip(processor).map(|(after, before)| after - before);
     Ok(Repetition {
         session,
-        wall_s: whole.total_s(),
+        wall_s: total.total_s(),
         processor_s,
         parts,
         phases,
@@ -129,18 +129,20 @@ fn repetition(case: &Case, scene: &Scene, mut session: Session) -> Result<Repeti
     })
 }
 
-fn figures(
+fn result(
     case: &Case,
     options: &Options,
     repetitions: &[Repetition],
     start_digest: u64,
-) -> Result<Figures, BenchError> {
-    let last = repetitions.last().expect("there is one lap at least");
+) -> Result<BenchResult, BenchError> {
+    let last = repetitions.last().expect("there is at least one repetition");
     let coupled = last.session.coupled();
-    let seen = Seen::of(&coupled.system.model, &coupled.system.state, &coupled.system.scratch);
-    seen.check(&case.limits)
+    let summary =
+        StateSummary::of(&coupled.system.model, &coupled.system.state, &coupled.system.scratch);
+    summary
+        .check(&case.limits)
         .and_then(|()| check_lift(&last.lift_monitor.metrics()))
-        .map_err(|fault| BenchError::Unsound { case: case.name.to_owned(), fault })?;
+        .map_err(|error| BenchError::InvalidState { case: case.name.to_owned(), error })?;
     let mut times: Vec<Real> = repetitions.iter().map(|repetition| repetition.wall_s).collect();
     times.sort_by(Real::total_cmp);
     let n_ticks = last.session.now().0;
@@ -148,14 +150,14 @@ fn figures(
     let steps_per_s = real_of(n_steps) / median(&times);
     let n_contacts = last.n_contact_ticks / real_of(n_ticks);
     let contact_steps = n_contacts * steps_per_s / real(options.n_threads);
-    let whole: Real = last.parts.iter().sum();
+    let total: Real = last.parts.iter().sum();
     let stage = |(name, time): (&str, &Real)| Stage {
         name: name.to_owned(),
-        share: time / whole,
+        share: time / total,
         ns_per_step: 1e9 * time / real_of(n_steps),
     };
     let mesh: &Mesh = &coupled.system.model.membrane.mesh;
-    Ok(Figures {
+    Ok(BenchResult {
         case: case.name.to_owned(),
         n_grains: coupled.system.state.grains.len(),
         n_vertices: mesh.n_vertices(),
@@ -176,7 +178,7 @@ fn figures(
         start_digest: format!("{start_digest:016x}"),
         n_lap_steps: n_steps,
         n_laps: repetitions.len(),
-        n_builds_per_lap: coupled.system.scratch.neighbours.n_builds,
+        n_builds_per_lap: coupled.system.scratch.neighbors.n_builds,
         peak_rss_bytes: process::peak(),
         stages: ["commands", "ticks", "snapshots"]
             .into_iter()
@@ -184,8 +186,8 @@ fn figures(
             .map(stage)
             .collect(),
         phases: last.phases.iter().map(|(name, it)| (name.clone(), it[1] / it[0])).collect(),
-        ..Figures::default()
+        ..BenchResult::default()
     }
-    .with_speed_of_time()
-    .seeing(&seen))
+    .with_real_time_factor()
+    .with_state(&summary))
 }

@@ -1,17 +1,18 @@
-//! How fast it is: cases that anyone can repeat, measured in laps of the same work.
+//! Benchmarks: reproducible cases, measured in repetitions of the same work.
 //!
-//! A case starts from a state that was made ready before (and is kept in the cache of start states).
-//! Each lap steps a copy of it: first unmeasured, until lists and caches are warm, then measured. All
-//! laps of a case end in the same state, whatever the threads and however many laps there are, so
-//! the digest of that state stands beside the speed. Before a case is reported its contacts, overlaps and
-//! speeds are looked at: an empty, exploded or frozen system would look fast.
+//! A case starts from a prepared state, which is kept in the cache of start states. Each repetition
+//! steps a copy of it, first unmeasured, until lists and caches are warm, then measured. All
+//! repetitions of a case end in the same state, independent of the number of threads and
+//! repetitions, so the digest of that state is reported with the speed. Contacts, overlaps and
+//! speeds are checked before a case is reported: an empty, exploded or frozen system would seem
+//! fast.
 
 mod beam; // grains in a closed bar
 mod cases; // the list of cases
 pub mod history_csv; // results kept over time
 #[cfg(all(feature = "ros", feature = "shm"))]
 mod latency; // latency of the loop
-mod lift; // a whole session
+mod lift; // a complete session
 mod packing; // grains in a box
 mod prepare; // initial states
 mod process; // resource use of the process
@@ -23,10 +24,10 @@ mod sanity; // checks of the system that is measured
 pub use beam::BeamError;
 pub use cases::{CASES, Case};
 #[cfg(all(feature = "ros", feature = "shm"))]
-pub use latency::{Latency, LatencyError, PrivateError, listen};
-pub use reference_codes::{PeerError, PeerFigures};
-pub use result::Figures;
-pub use sanity::Unsound;
+pub use latency::{Latency, LatencyError, PrivateNetworkError, listen};
+pub use reference_codes::{ReferenceError, ReferenceResult};
+pub use result::BenchResult;
+pub use sanity::InvalidState;
 
 use crate::{
     experiments, host::cache::Cache, node, physics::health::Diverged, runner::error::RunnerError,
@@ -38,58 +39,58 @@ use crate::{
 pub struct Options {
     /// Solver threads.
     pub n_threads: usize,
-    /// Time on the clock for which laps are repeated (s); there are always a few.
+    /// Minimum wall-clock time of all repetitions (s); there are at least three.
     pub seconds: f64,
-    /// Where states to start from are kept.
+    /// Cache of the start states.
     pub cache: Cache,
     /// True runs other codes on the same packings, if they are installed.
     pub with_peers: bool,
-    /// True tells nothing on standard error while a state is made ready.
+    /// True prints nothing to standard error while a start state is prepared.
     pub is_quiet: bool,
 }
 
-/// Why there are no figures.
+/// Why a case has no result.
 #[derive(Debug, thiserror::Error)]
 pub enum BenchError {
     /// There is no such case.
     #[error("no case `{name}`; there are: {}", known())]
     NoSuchCase {
-        /// What was asked for.
+        /// The unknown name.
         name: String,
     },
-    /// The state is not worth measuring.
-    #[error("{case}: {fault}")]
-    Unsound {
+    /// The state is not valid for a benchmark.
+    #[error("{case}: {error}")]
+    InvalidState {
         /// The case.
         case: String,
         /// What is wrong.
-        fault: Unsound,
+        error: InvalidState,
     },
-    /// Two laps did not end in the same state.
+    /// Two repetitions did not end in the same state.
     #[error(
-        "{case}: lap {repetition} ended with digest {found:016x}, the first with {expected:016x}; the same work \
-         must give the same bits"
+        "{case}: repetition {repetition} ended with digest {found:016x}, the first one with \
+         {expected:016x}; the same work must give the same bits"
     )]
     Unequal {
         /// The case.
         case: String,
-        /// Number of the lap.
+        /// Number of the repetition.
         repetition: usize,
         /// Its digest.
         found: u64,
-        /// That of the first.
+        /// Digest of the first one.
         expected: u64,
     },
-    /// The system cannot go on.
-    #[error("{case}: {fault}")]
+    /// The simulation diverged.
+    #[error("{case}: {error}")]
     Diverged {
         /// The case.
         case: String,
         /// Why.
-        fault: Diverged,
+        error: Diverged,
     },
-    /// The experiment ended before the state that is to be measured.
-    #[error("{case}: the experiment came to its end before there was anything to measure")]
+    /// The experiment ended before the state to be measured.
+    #[error("{case}: the experiment ended before the state to be measured")]
     NoMoment {
         /// The case.
         case: String,
@@ -99,41 +100,41 @@ pub enum BenchError {
     Experiment(#[from] experiments::StartError),
     /// There is no such experiment.
     #[error(transparent)]
-    Lab(#[from] RunnerError),
-    /// Its scene is wrong.
+    Runner(#[from] RunnerError),
+    /// The scene is invalid.
     #[error(transparent)]
     Scene(#[from] SceneError),
     /// The session cannot be started.
     #[error(transparent)]
     Session(#[from] node::start::StartError),
-    /// The beam cannot be made.
+    /// The beam cannot be prepared.
     #[error("beam: {0}")]
     Beam(#[from] BeamError),
-    /// The grains find no place to grow from.
+    /// There is no room for the grains.
     #[error("packing: {0}")]
     NoRoom(#[from] crate::physics::packing::scatter::NoRoom),
-    /// Another code does not do what it should.
-    #[error("{case}: {fault}")]
+    /// A reference code failed.
+    #[error("{case}: {error}")]
     Peer {
         /// The case.
         case: String,
         /// What is wrong.
-        fault: PeerError,
+        error: ReferenceError,
     },
-    /// The loop's latencies cannot be measured.
+    /// The latencies of the loop cannot be measured.
     #[cfg(all(feature = "ros", feature = "shm"))]
-    #[error("latency: {fault}")]
+    #[error("latency: {error}")]
     Latency {
         /// Why.
-        fault: LatencyError,
+        error: LatencyError,
     },
-    /// The operating system gives no threads.
+    /// The threads cannot be started.
     #[error("solver threads: {0}; use fewer with --threads")]
     Threads(#[from] crate::base::parallel::ThreadPoolError),
 }
 
 impl BenchError {
-    /// True if the command line asks for what there is not.
+    /// True if the command line is wrong.
     pub fn is_of_command_line(&self) -> bool {
         matches!(self, Self::NoSuchCase { .. })
     }
@@ -144,10 +145,10 @@ fn known() -> String {
     names.join(", ")
 }
 
-/// The cases of these names; all that are run by default if there are none.
+/// The cases with these names, or all cases if there are none.
 ///
 /// # Errors
-/// If there is no case of a name.
+/// If there is no case with one of the names.
 pub fn chosen(names: &[String]) -> Result<Vec<&'static Case>, BenchError> {
     if names.is_empty() {
         return Ok(CASES.iter().collect());
@@ -162,26 +163,26 @@ pub fn chosen(names: &[String]) -> Result<Vec<&'static Case>, BenchError> {
 /// Measures one case.
 ///
 /// # Errors
-/// If it cannot be started, or is not worth measuring.
-pub fn run(case: &Case, options: &Options) -> Result<Figures, BenchError> {
-    process::forget_peak();
+/// If it cannot be started, or its state is not valid for a benchmark.
+pub fn run(case: &Case, options: &Options) -> Result<BenchResult, BenchError> {
+    process::reset_peak();
     match &case.kind {
         cases::Kind::Lift => lift::run(case, options),
         #[cfg(all(feature = "ros", feature = "shm"))]
         cases::Kind::Latency => latency::run(case, options),
         cases::Kind::Grains(..) | cases::Kind::Beam | cases::Kind::Experiment(..) => {
-            let mut course = repetitions::Course::new(case, options)?;
-            let mut peers = course.peers()?;
-            while !course.is_over() {
-                course.repetition()?;
-                // In turns, so that a busy minute of the machine hits both.
+            let mut measurement = repetitions::Measurement::new(case, options)?;
+            let mut peers = measurement.peers()?;
+            while !measurement.is_over() {
+                measurement.repetition()?;
+                // Alternating, so that other load of the machine affects both.
                 if let Some(peers) = &mut peers {
                     peers
                         .repetition()
-                        .map_err(|fault| BenchError::Peer { case: case.name.to_owned(), fault })?;
+                        .map_err(|error| BenchError::Peer { case: case.name.to_owned(), error })?;
                 }
             }
-            course.figures(peers.as_ref())
+            measurement.result(peers.as_ref())
         }
     }
 }

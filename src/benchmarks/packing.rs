@@ -1,10 +1,10 @@
-//! Grains in a box of six walls, the common ground with other codes: frictional Hertz–Mindlin spheres,
-//! E = 100 MPa, ν = 0.25, μ = 0.5, ρ = 2500 kg/m³, R = 1.8–2.2 mm, grown under 50 kPa.
+//! Grains in a box of six walls, a case that other codes can run too: frictional Hertz–Mindlin
+//! spheres, E = 100 MPa, ν = 0.25, μ = 0.5, ρ = 2500 kg/m³, R = 1.8–2.2 mm, grown under 50 kPa.
 //!
-//! Large boxes are put together of mirrored copies of a small one. A grain that touches a smooth wall
-//! with overlap ξ meets its own mirror image, of half the effective modulus and radius, with 2 ξ: the
-//! force is the same, 4/3 E*/2 √(R/2 · 2ξ) 2ξ = 4/3 E* √(R ξ) ξ. So the copies hold each other as
-//! the walls did, and only weight and friction have to settle.
+//! Large boxes are assembled from mirrored copies of a small one. A grain that touches a smooth
+//! wall with overlap ξ meets its own mirror image, of half the effective modulus and radius, with 2
+//! ξ: the force is the same, 4/3 E*/2 √(R/2 · 2ξ) 2ξ = 4/3 E* √(R ξ) ξ. So the copies support each
+//! other like the walls did, and only weight and friction have to settle.
 
 use crate::{
     base::{
@@ -15,7 +15,7 @@ use crate::{
         System, SystemBuilder,
         builder::Wall,
         law::Surface,
-        neighbours::update_pair_masses,
+        neighbors::update_pair_masses,
         packing::{
             Grown, Growth, Recipe, Room, first_scale, numbering::along_curve, scatter,
             scatter::NoRoom, sphere_volume,
@@ -28,50 +28,50 @@ use crate::{
 /// The grains' material.
 pub(super) const MATERIAL: Material =
     Material { youngs_modulus: 1e8, poisson_ratio: 0.25, density: 2500.0 };
-/// What the other codes call the dissipation.
+/// Dissipation in the terms of other codes.
 pub(super) const RESTITUTION: Real = 0.5;
-/// Dissipation as of a restitution of about one half.
+/// Surface with a dissipation that gives a restitution of about one half.
 pub(super) const SURFACE: Surface =
     Surface { friction: 0.5, dissipation_time: 3e-5, tangential_damping: 0.3 };
 /// Smallest and largest radius (m).
 const RADII: [Real; 2] = [1.8e-3, 2.2e-3];
-/// Solid fraction of the box at these radii; grains grow a little beyond or stay a little below.
+/// Solid fraction of the box with these radii; grains end slightly above or below.
 const SOLID_FRACTION: Real = 0.61;
-/// Of grains while they grow: with none they would be denser than any that are poured, with their own
-/// looser.
+/// Friction of growing grains: without friction they would be denser than poured grains, with their
+/// own friction looser.
 const GROWTH_FRICTION: Real = 0.1;
 /// Pressure of the grown grains (Pa).
 const PRESSURE: Real = 5e4;
 /// Solid fraction of the scattered grains.
 const THIN: Real = 0.25;
-/// Substep that is measured (s): a tenth of the Rayleigh time.
+/// Measured substep (s), a tenth of the Rayleigh time.
 pub(super) const SUBSTEP: Real = 5e-6;
-/// Substep until then (s).
+/// Substep of the preparation (s).
 const COARSE_SUBSTEP: Real = 1e-5;
-/// Neighbours are listed this share of the largest radius beyond contact.
+/// Skin of the neighbor lists, as a share of the largest radius.
 const SKIN_SHARE: Real = 0.25;
-/// Share of its velocity that a grain keeps in a substep while it comes to rest: first what pushes each
-/// other, then what is loose and falls on its neighbours.
+/// Share of the velocities that remains after a substep while grains come to rest: first for grains
+/// that push each other, then for loose grains that fall on their neighbors.
 const DRAG: [Real; 2] = [0.98, 0.998];
-/// Substeps with each drag: of a grown box, of a box of copies, of an opened one.
+/// Substeps with each drag: for a grown box, a box of copies, and an opened box.
 const N_REST: [[u64; 2]; 3] = [[1000, 3000], [200, 400], [500, 4000]];
-/// Substeps of 10 us from tilting to the state that is measured.
+/// Substeps of 10 us from tilting to the measured state.
 const N_FLOW: u64 = 2000;
-/// Height of the opened box over that of the closed one.
+/// Height of the opened box divided by that of the closed one.
 const OPENED: Real = 1.5;
 /// Standard gravity (m/s²).
 const GRAVITY: Real = 9.81;
-/// Changes whenever the same box would be filled otherwise.
+/// To be increased when the preparation of a box changes.
 const VERSION: u64 = 5;
 
 /// Grains in a box.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Boxed {
-    /// Grains of one copy.
+    /// Number of grains of one copy.
     pub(super) n_grains: usize,
-    /// Copies along each edge.
+    /// Number of copies along each axis.
     pub(super) n_tiles: [usize; 3],
-    /// What they do.
+    /// What the grains do.
     pub(super) phase: Phase,
 }
 
@@ -85,12 +85,12 @@ pub(super) enum Phase {
 }
 
 impl Boxed {
-    /// Names the state in the cache.
+    /// Key of the state in the cache.
     pub(super) fn key(&self) -> String {
         format!("box {VERSION} {} {:?} {:?}", self.n_grains, self.n_tiles, self.phase)
     }
 
-    /// Names the closed box of one copy, of which the others are made.
+    /// Key of the closed box of one copy, which the others are made of.
     pub(super) fn tile_key(&self) -> String {
         self.closed_tile().key()
     }
@@ -100,18 +100,18 @@ impl Boxed {
         Self { n_tiles: [1; 3], phase: Phase::Rest, ..*self }
     }
 
-    /// True if it is such a box.
+    /// True if this is the closed box of one copy.
     pub(super) fn is_tile(&self) -> bool {
         self.n_tiles == [1; 3] && self.phase == Phase::Rest
     }
 
-    /// Edge of the box of one copy (m).
+    /// Edge length of the box of one copy (m).
     fn edge(&self) -> Real {
         let solid: Real = self.final_radii().iter().map(|&r| sphere_volume(r)).sum();
         (solid / SOLID_FRACTION).cbrt()
     }
 
-    /// Edges of the box (m); it goes from the origin to there.
+    /// Edge lengths of the box (m), which starts at the origin.
     pub(super) fn size(&self) -> Vec3 {
         let edge = self.edge();
         let lid = if self.phase == Phase::Flow { OPENED } else { 1.0 };
@@ -124,7 +124,7 @@ impl Boxed {
         (0..self.n_grains).map(|_| random.between(RADII[0], RADII[1])).collect()
     }
 
-    /// The system that is measured, from its saved state.
+    /// The measured system, from its saved state.
     pub(super) fn system(&self, state: State) -> System {
         let mut system = system(state.grains.clone(), &self.size());
         system.model.substep = SUBSTEP;
@@ -142,7 +142,7 @@ impl Boxed {
         }
     }
 
-    /// One copy in its closed box, at rest, from nothing.
+    /// Prepares one copy at rest in its closed box.
     pub(super) fn grow(&self) -> Result<State, NoRoom> {
         let (last, size) = (self.final_radii(), self.size());
         let room = Room::Box { low: Vec3::zeros(), high: size };
@@ -166,12 +166,12 @@ impl Boxed {
             drag(&mut system, DRAG[0]);
         }
         system.state.grains.masses = masses_of(&system.state.grains);
-        update_pair_masses(&system.state, &mut system.scratch.neighbours);
+        update_pair_masses(&system.state, &mut system.scratch.neighbors);
         come_to_rest(&mut system, N_REST[0]);
         Ok(system.state)
     }
 
-    /// This box, made of a closed one of one copy.
+    /// This box, made from the closed box of one copy.
     pub(super) fn of_tile(&self, tile: &State) -> State {
         let closed = Self { phase: Phase::Rest, ..*self };
         let mut state = if self.n_tiles == [1; 3] {
@@ -183,7 +183,7 @@ impl Boxed {
             system.state
         };
         if self.phase == Phase::Flow {
-            // The lid goes up at once, and its springs go with it.
+            // The lid is moved up at once, and its friction springs are dropped.
             let mut system = system(state.grains.clone(), &self.size());
             system.state.pair_ids.clone_from(&state.pair_ids);
             system.state.springs.pairs.clone_from(&state.springs.pairs);
@@ -195,7 +195,7 @@ impl Boxed {
         state
     }
 
-    /// Copies side by side, each the mirror image of its neighbours.
+    /// Copies side by side, each the mirror image of its neighbors.
     fn mirrored(&self, tile: &Grains) -> Grains {
         let (edge, [nx, ny, nz]) = (self.edge(), self.n_tiles);
         let along = |k: usize, x: Real| {
@@ -216,7 +216,7 @@ impl Boxed {
     }
 }
 
-/// Grains in the box from the origin to `size` (m), gravity downwards.
+/// Grains in the box from the origin to `size` (m), gravity downward.
 fn system(grains: Grains, size: &Vec3) -> System {
     let largest = grains.radii.iter().copied().fold(RADII[1], Real::max);
     let mut builder = SystemBuilder::of_material(&MATERIAL, SURFACE);
@@ -247,7 +247,7 @@ fn come_to_rest(system: &mut System, n_steps: [u64; 2]) {
     }
 }
 
-/// Lets each grain keep a share of its velocities.
+/// Reduces all velocities to a share.
 fn drag(system: &mut System, share: Real) {
     let grains = &mut system.state.grains;
     grains.velocities.iter_mut().chain(&mut grains.angular_velocities).for_each(|it| *it *= share);
@@ -258,8 +258,8 @@ mod tests {
     use super::*;
     use crate::measure::{normal_forces, rest::unbalanced_force};
 
-    /// Oracle: the head of this file. Tolerance 1e-9: the overlap, a hundredth of the radius, is a
-    /// difference of coordinates of 0.5 m, known to 1e-16 of that.
+    /// Oracle: the module documentation. Tolerance 1e-9: the overlap, a hundredth of the radius, is
+    /// a difference of coordinates of 0.5 m, known to 1e-16 of that.
     #[test]
     fn a_grain_meets_its_mirror_image_as_it_met_the_wall() {
         let (radius, overlap) = (2e-3, 2e-5);
@@ -276,9 +276,9 @@ mod tests {
         assert!(wall > 0.0 && (image / wall - 1.0).abs() < 1e-9, "{image} {wall}");
     }
 
-    /// Oracles: the symmetry: forces on the grains of a copy are those of the original, here both without the
-    /// friction they had; 5 %, since a force on a wall counts once and between two images for both. And then
-    /// they settle: less than a quarter is left.
+    /// Oracle: symmetry. Forces on the grains of a copy equal those of the original, both without
+    /// friction; tolerance 5 %, since a force on a wall counts once and one between two images for
+    /// both. Then they settle: less than a quarter remains.
     #[test]
     fn copies_hold_each_other() {
         let two = Boxed { n_grains: 300, n_tiles: [2, 1, 1], phase: Phase::Rest };

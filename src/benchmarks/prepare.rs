@@ -1,58 +1,58 @@
-//! States to start from: made once, then kept in the cache of start states.
+//! Start states: prepared once, then kept in the cache of start states.
 
 use super::{BenchError, Case, Options, beam, cases::Kind, packing::Boxed};
 use crate::{
     base::{Real, digest::Digest, parallel},
     cosim::saved_state,
     experiments::{Run, SceneText, Size, StartError},
-    host::{cache::Found, progress_bar::Progress},
+    host::{cache::Lookup, progress_bar::Progress},
     physics::{State, System, health::Diverged},
     runner::experiment::by_name,
 };
 
-/// A system that can be stepped, and what is done to it after each substep.
-pub(super) struct Subject {
+/// A system to be stepped, and what is done after each substep.
+pub(super) struct PreparedSystem {
     /// The system.
     pub(super) system: System,
-    /// What its experiment does to it.
+    /// Called after each substep.
     pub(super) after: fn(&mut System),
 }
 
 /// An experiment at some moment.
 #[derive(Debug)]
-pub(super) struct Spot {
-    /// Its name.
+pub(super) struct ExperimentMoment {
+    /// Name of the experiment.
     pub(super) experiment: &'static str,
-    /// Which of its cases.
+    /// Name of the case.
     pub(super) case: &'static str,
-    /// What is changed in its scene.
+    /// Overrides of the scene.
     pub(super) overrides: &'static [&'static str],
-    /// When.
+    /// The moment.
     pub(super) moment: Moment,
 }
 
 /// A moment of an experiment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Moment {
-    /// The bag is filled and vented, and nothing touches it.
+    /// The gripper is filled and vented, and nothing touches it.
     Free,
-    /// Half the vacuum is reached.
+    /// Half of the vacuum is reached.
     Jamming,
-    /// All of it is, and nothing moves.
+    /// The full vacuum is reached, and nothing moves.
     Holding,
-    /// The plates have come to their speed.
+    /// The plates have reached their speed.
     Shearing,
 }
 
 /// Half of the grip's pressure (Pa).
 const HALF_VACUUM: Real = -45e3;
-/// Slices of shearing until the plates have come to their speed.
+/// Slices of shearing until the plates have reached their speed.
 const N_SHEARING: usize = 20;
-/// Changes whenever the same moment would be another state.
+/// To be increased when the state of a moment changes.
 const VERSION: u64 = 1;
 
 impl Moment {
-    /// The moments of the same experiment, from the first to this one.
+    /// The moments of the same experiment up to this one.
     fn until(self) -> &'static [Self] {
         const GRIP: [Moment; 3] = [Moment::Free, Moment::Jamming, Moment::Holding];
         match self {
@@ -63,39 +63,39 @@ impl Moment {
         }
     }
 
-    /// True if a run has come to it; its last `n_slices` had this stage.
-    fn is_reached(self, run: &dyn Run, stage: &str, n_slices: usize) -> bool {
+    /// True if a run has reached this moment; its last `n_slices` were in this phase.
+    fn is_reached(self, run: &dyn Run, phase: &str, n_slices: usize) -> bool {
         let Some(stepped) = run.stepped() else { return false };
         match self {
             Self::Free => true,
             Self::Jamming => stepped.system.state.gauge <= HALF_VACUUM,
-            Self::Holding => stage == "holding",
-            Self::Shearing => stage == "shearing" && N_SHEARING <= n_slices,
+            Self::Holding => phase == "holding",
+            Self::Shearing => phase == "shearing" && N_SHEARING <= n_slices,
         }
     }
 }
 
-/// The state that is measured in `case`.
+/// The system to be measured in `case`.
 ///
 /// # Errors
-/// If it cannot be made.
+/// If it cannot be prepared.
 pub(super) fn subject(
     case: &Case,
     options: &Options,
     pool: &parallel::ThreadPool,
-) -> Result<Subject, BenchError> {
+) -> Result<PreparedSystem, BenchError> {
     let maker = Maker { case, options, pool };
     match &case.kind {
         Kind::Grains(boxed) => {
-            Ok(Subject { system: boxed.system(maker.boxed(boxed)?), after: |_| {} })
+            Ok(PreparedSystem { system: boxed.system(maker.boxed(boxed)?), after: |_| {} })
         }
-        Kind::Beam => Ok(Subject { system: beam::system(maker.beam()?)?, after: |_| {} }),
+        Kind::Beam => Ok(PreparedSystem { system: beam::system(maker.beam()?)?, after: |_| {} }),
         Kind::Experiment(spot) => maker.experiment(spot),
         _ => Err(maker.no_moment()),
     }
 }
 
-/// Makes what is not in the cache.
+/// Prepares states that are not in the cache.
 struct Maker<'a> {
     case: &'a Case,
     options: &'a Options,
@@ -107,7 +107,7 @@ impl Maker<'_> {
         if let Some(state) = self.load_state(&boxed.key()) {
             return Ok(state);
         }
-        self.tell();
+        self.announce();
         let tile = match self.load_state(&boxed.tile_key()) {
             Some(tile) => tile,
             None => {
@@ -128,7 +128,7 @@ impl Maker<'_> {
         if let Some(state) = self.load_state(beam::KEY) {
             return Ok(state);
         }
-        self.tell();
+        self.announce();
         let state = parallel::lead(self.pool, beam::grow)?;
         self.store(beam::KEY, &saved_state::write(&state));
         Ok(state)
@@ -138,7 +138,7 @@ impl Maker<'_> {
         saved_state::read(&self.load(key)?).ok()
     }
 
-    fn experiment(&self, spot: &Spot) -> Result<Subject, BenchError> {
+    fn experiment(&self, spot: &ExperimentMoment) -> Result<PreparedSystem, BenchError> {
         let experiment = by_name(spot.experiment)?;
         let (source, text) = experiment.scene();
         let overrides: Vec<String> = spot.overrides.iter().map(|&it| it.to_owned()).collect();
@@ -150,52 +150,52 @@ impl Maker<'_> {
         let start = || -> Result<Box<dyn Run>, StartError> { plan.start(spot.case) };
         let moments = spot.moment.until();
         let mut run = start()?;
-        let mut n_kept = 0;
+        let mut n_cached = 0;
         for (k, &moment) in moments.iter().enumerate().rev() {
             if let Some(bytes) = self.load(&key(moment)) {
                 if run.resume(&bytes).is_ok() {
-                    n_kept = k + 1;
+                    n_cached = k + 1;
                     break;
                 }
                 run = start()?;
             }
         }
-        if n_kept < moments.len() {
-            self.tell();
+        if n_cached < moments.len() {
+            self.announce();
         }
-        for &moment in &moments[n_kept..] {
+        for &moment in &moments[n_cached..] {
             let is_reached = parallel::lead(self.pool, || advance(run.as_mut(), moment));
-            if !is_reached.map_err(|fault| self.diverged(fault))? {
+            if !is_reached.map_err(|error| self.diverged(error))? {
                 return Err(self.no_moment());
             }
             let bytes = run.save();
             self.store(&key(moment), &bytes);
-            // A resumed run and one that went through must be the same.
+            // Always continue from a resumed run, so that cached and new states are the same.
             run = start()?;
             run.resume(&bytes).map_err(|_| self.no_moment())?;
         }
         self.at(run.as_mut(), spot.moment)
     }
 
-    /// The system of a run that has just been resumed.
-    fn at(&self, run: &mut dyn Run, moment: Moment) -> Result<Subject, BenchError> {
+    /// The system of a run that was just resumed.
+    fn at(&self, run: &mut dyn Run, moment: Moment) -> Result<PreparedSystem, BenchError> {
         if moment != Moment::Free {
-            // The run's own controls hold from its next slice on.
-            parallel::lead(self.pool, || run.advance()).map_err(|fault| self.diverged(fault))?;
+            // The run sets its controls in its next slice.
+            parallel::lead(self.pool, || run.advance()).map_err(|error| self.diverged(error))?;
         }
         let stepped = run.stepped().ok_or_else(|| self.no_moment())?;
         let mut system = stepped.system.clone();
         if moment == Moment::Free {
             for body in &mut system.controls.bodies {
-                // Far below the bag.
+                // Far below the gripper.
                 body.pose.translation.z = -1.0;
             }
         }
-        Ok(Subject { system, after: stepped.after })
+        Ok(PreparedSystem { system, after: stepped.after })
     }
 
-    fn diverged(&self, fault: Diverged) -> BenchError {
-        BenchError::Diverged { case: self.case.name.to_owned(), fault }
+    fn diverged(&self, error: Diverged) -> BenchError {
+        BenchError::Diverged { case: self.case.name.to_owned(), error }
     }
 
     fn no_moment(&self) -> BenchError {
@@ -204,9 +204,9 @@ impl Maker<'_> {
 
     fn load(&self, key: &str) -> Option<Vec<u8>> {
         match self.options.cache.load(number(key)) {
-            Found::State(bytes) => Some(bytes),
-            // What is damaged is made anew, as what is missing.
-            Found::Nothing | Found::Damaged(_) => None,
+            Lookup::State(bytes) => Some(bytes),
+            // A damaged state is prepared again, like a missing one.
+            Lookup::Missing | Lookup::Damaged(_) => None,
         }
     }
 
@@ -216,25 +216,25 @@ impl Maker<'_> {
         }
     }
 
-    fn tell(&self) {
+    fn announce(&self) {
         if !self.options.is_quiet {
             let name = self.case.name;
             let text = format!(
-                "{name}: the state to start from is made ready, once; this may take minutes"
+                "{name}: preparing the start state; this happens once and may take minutes"
             );
             Progress::new(false).say(&text);
         }
     }
 }
 
-/// Goes on until `moment`; false if the end comes before.
+/// Advances until `moment`; returns false if the run ends before.
 fn advance(run: &mut dyn Run, moment: Moment) -> Result<bool, Diverged> {
-    let (mut stage, mut n_slices) = ("", 0);
+    let (mut phase, mut n_slices) = ("", 0);
     loop {
         let progress = run.advance()?;
-        n_slices = if progress.stage == stage { n_slices + 1 } else { 1 };
-        stage = progress.stage;
-        if moment.is_reached(run, stage, n_slices) {
+        n_slices = if progress.phase == phase { n_slices + 1 } else { 1 };
+        phase = progress.phase;
+        if moment.is_reached(run, phase, n_slices) {
             return Ok(true);
         }
         if progress.is_done {

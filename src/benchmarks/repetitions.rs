@@ -1,15 +1,15 @@
-//! Laps: each steps a copy of the same state by the same number of substeps.
+//! Repetitions: each steps a copy of the same state by the same number of substeps.
 
 use std::collections::BTreeMap;
 
 use super::{
-    BenchError, Case, Figures, Options,
+    BenchError, BenchResult, Case, Options,
     cases::Kind,
-    prepare::{self, Subject},
+    prepare::{self, PreparedSystem},
     process,
-    reference_codes::Peers,
+    reference_codes::ReferenceCodes,
     result::Stage,
-    sanity::Seen,
+    sanity::StateSummary,
 };
 use crate::{
     base::{
@@ -22,10 +22,10 @@ use crate::{
     physics::{System, substep::STAGES},
 };
 
-/// Laps that are run however long they take: a median needs three.
-const N_LAPS_MIN: usize = 3;
+/// Minimum number of repetitions: a median needs three.
+const N_REPETITIONS_MIN: usize = 3;
 
-/// How much is done in a lap.
+/// Work of a repetition.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Work {
     /// Substeps until lists and caches are warm.
@@ -34,60 +34,61 @@ pub(super) struct Work {
     pub(super) n_steps: u64,
 }
 
-/// One lap.
+/// One repetition.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Repetition {
-    /// Time on the clock for the measured substeps (s).
+    /// Wall-clock time of the measured substeps (s).
     pub(super) wall_s: Real,
-    /// Processor time of all threads for them (s), if the system tells it.
+    /// Processor time of all threads for them (s), if the system provides it.
     pub(super) processor_s: Option<Real>,
-    /// Contacts between grains, the mean of before and after.
+    /// Contacts between grains, the mean of those before and after.
     pub(super) n_contacts: Real,
-    /// How often the lists were built.
+    /// Number of times the neighbor lists were built.
     pub(super) n_builds: u64,
     /// Digest of the state at the end.
     digest: u64,
-    /// The state at the end.
-    seen: Seen,
+    /// Summary of the state at the end.
+    summary: StateSummary,
 }
 
 /// A case that is being measured.
-pub(super) struct Course<'a> {
+pub(super) struct Measurement<'a> {
     case: &'a Case,
     options: &'a Options,
-    pub(super) subject: Subject,
+    pub(super) subject: PreparedSystem,
     pool: parallel::ThreadPool,
     repetitions: Vec<Repetition>,
 }
 
-impl<'a> Course<'a> {
-    /// Makes the state of `case` ready.
+impl<'a> Measurement<'a> {
+    /// Prepares the start state of `case`.
     pub(super) fn new(case: &'a Case, options: &'a Options) -> Result<Self, BenchError> {
         let pool = parallel::ThreadPool::new(options.n_threads)?;
         let subject = prepare::subject(case, options, &pool)?;
-        process::forget_peak();
+        process::reset_peak();
         Ok(Self { case, options, subject, pool, repetitions: Vec::new() })
     }
 
-    /// The other codes on the same packing, if they are wanted and it is one.
-    pub(super) fn peers(&self) -> Result<Option<Peers>, BenchError> {
+    /// The reference codes with the same packing, if they are requested and the case is a packing.
+    pub(super) fn peers(&self) -> Result<Option<ReferenceCodes>, BenchError> {
         let Kind::Grains(boxed) = &self.case.kind else { return Ok(None) };
         if !self.options.with_peers {
             return Ok(None);
         }
         let of_case = (self.case.work, &self.case.limits);
-        let peers = Peers::new(boxed, &self.subject.system, of_case, self.options.n_threads);
-        let fault = |fault| BenchError::Peer { case: self.case.name.to_owned(), fault };
-        peers.map(Some).map_err(fault)
+        let peers =
+            ReferenceCodes::new(boxed, &self.subject.system, of_case, self.options.n_threads);
+        let error = |error| BenchError::Peer { case: self.case.name.to_owned(), error };
+        peers.map(Some).map_err(error)
     }
 
-    /// True when there are enough laps.
+    /// True if there are enough repetitions.
     pub(super) fn is_over(&self) -> bool {
         let measured: Real = self.repetitions.iter().map(|repetition| repetition.wall_s).sum();
-        N_LAPS_MIN <= self.repetitions.len() && self.options.seconds <= measured
+        N_REPETITIONS_MIN <= self.repetitions.len() && self.options.seconds <= measured
     }
 
-    /// One more lap, which must end as the first did.
+    /// One more repetition, which must end in the same state as the first one.
     pub(super) fn repetition(&mut self) -> Result<Repetition, BenchError> {
         let Self { case, subject, pool, .. } = &*self;
         let (repetition, end) = parallel::lead(pool, || repetition(subject, case.work, None));
@@ -96,15 +97,15 @@ impl<'a> Course<'a> {
         Ok(repetition)
     }
 
-    /// Sound, and the same as the first.
+    /// Checks that the end state is valid and the same as that of the first repetition.
     fn accept(&self, repetition: &Repetition, end: &System) -> Result<(), BenchError> {
         let case = || self.case.name.to_owned();
         end.check(self.case.work.n_warm + self.case.work.n_steps)
-            .map_err(|fault| BenchError::Diverged { case: case(), fault })?;
+            .map_err(|error| BenchError::Diverged { case: case(), error })?;
         repetition
-            .seen
+            .summary
             .check(&self.case.limits)
-            .map_err(|fault| BenchError::Unsound { case: case(), fault })?;
+            .map_err(|error| BenchError::InvalidState { case: case(), error })?;
         match self.repetitions.first() {
             Some(first) if first.digest != repetition.digest => Err(BenchError::Unequal {
                 case: case(),
@@ -116,25 +117,25 @@ impl<'a> Course<'a> {
         }
     }
 
-    /// What came out, with one more lap for the shares of the stages.
-    pub(super) fn figures(self, peers: Option<&Peers>) -> Result<Figures, BenchError> {
+    /// The result, after one more repetition for the shares of the stages.
+    pub(super) fn result(self, peers: Option<&ReferenceCodes>) -> Result<BenchResult, BenchError> {
         let work = self.case.work;
         let mut times = vec![0.0; STAGES.len()];
         let (by_stages, end) =
             parallel::lead(&self.pool, || repetition(&self.subject, work, Some(&mut times)));
         self.accept(&by_stages, &end)?;
-        let whole: Real = times.iter().sum();
+        let total: Real = times.iter().sum();
         let stages: Vec<Stage> = (STAGES.iter().zip(&times))
             .map(|((name, _), time)| Stage {
                 name: (*name).to_owned(),
-                share: time / whole,
+                share: time / total,
                 ns_per_step: 1e9 * time / real_of(work.n_steps),
             })
             .collect();
         let system = &self.subject.system;
-        let speeds = Figures::of_laps(&self.repetitions, work, self.options.n_threads);
+        let speeds = BenchResult::of_repetitions(&self.repetitions, work, self.options.n_threads);
         let ours = speeds.contact_steps_per_s_per_core;
-        Ok(Figures {
+        Ok(BenchResult {
             case: self.case.name.to_owned(),
             n_grains: system.state.grains.len(),
             n_vertices: system.state.membrane.positions.len(),
@@ -149,18 +150,18 @@ impl<'a> Course<'a> {
             stages,
             phases: BTreeMap::new(),
             peak_rss_bytes: process::peak(),
-            peers: peers.map_or_else(Vec::new, |it| it.figures(ours)),
+            peers: peers.map_or_else(Vec::new, |it| it.results(ours)),
             peers_missing: peers.map_or_else(Vec::new, |it| it.missing.clone()),
             ..speeds
         }
-        .with_speed_of_time()
-        .seeing(&by_stages.seen))
+        .with_real_time_factor()
+        .with_state(&by_stages.summary))
     }
 }
 
-/// A lap from the start; into `times` goes the time of each stage, if that is wanted.
+/// A repetition from the start; adds the time of each stage to `times`, if given.
 fn repetition(
-    subject: &Subject,
+    subject: &PreparedSystem,
     work: Work,
     times: Option<&mut Vec<Real>>,
 ) -> (Repetition, System) {
@@ -170,8 +171,8 @@ fn repetition(
         system.step();
         after(&mut system);
     }
-    let before = look(&system);
-    let n_builds = system.scratch.neighbours.n_builds;
+    let before = summary(&system);
+    let n_builds = system.scratch.neighbors.n_builds;
     let processor = process::processor_s();
     let mut watch = Stopwatch::start();
     if let Some(times) = times {
@@ -188,20 +189,20 @@ fn repetition(
     }
     let wall_s = watch.total_s();
     let processor_s = process::processor_s().zip(processor).map(|(after, before)| after - before);
-    let seen = look(&system);
+    let after = summary(&system);
     let repetition = Repetition {
         wall_s,
         processor_s,
-        n_contacts: 0.5 * (real(before.n_grain_contacts) + real(seen.n_grain_contacts)),
-        n_builds: system.scratch.neighbours.n_builds - n_builds,
+        n_contacts: 0.5 * (real(before.n_grain_contacts) + real(after.n_grain_contacts)),
+        n_builds: system.scratch.neighbors.n_builds - n_builds,
         digest: digest(&system),
-        seen,
+        summary: after,
     };
     (repetition, system)
 }
 
-fn look(system: &System) -> Seen {
-    Seen::of(&system.model, &system.state, &system.scratch)
+fn summary(system: &System) -> StateSummary {
+    StateSummary::of(&system.model, &system.state, &system.scratch)
 }
 
 /// Digest of a state.

@@ -1,4 +1,4 @@
-//! What is told of a case: for machines, and for people.
+//! The result of a case, for machines and for people.
 
 use std::{collections::BTreeMap, fmt::Write};
 
@@ -7,108 +7,108 @@ use serde::{Deserialize, Serialize};
 #[cfg(all(feature = "ros", feature = "shm"))]
 use super::Latency;
 use super::{
-    PeerFigures,
+    ReferenceResult,
     repetitions::{Repetition, Work},
-    sanity::Seen,
+    sanity::StateSummary,
 };
 use crate::base::{
     Real,
     real::{real, real_of},
 };
 
-/// Stages below this share are not shown to people.
+/// Stages below this share are not shown in the text.
 const SHARE_SHOWN: Real = 5e-4;
 
-/// Share of the processors below which others were at work.
-const SHARE_OWN: Real = 0.9;
+/// Processor share below which other processes used the CPU.
+const SHARE_MIN: Real = 0.9;
 
-/// One case, measured.
+/// The result of a case.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Figures {
-    /// The case.
+pub struct BenchResult {
+    /// Name of the case.
     pub case: String,
-    /// Grains.
+    /// Number of grains.
     pub n_grains: usize,
-    /// Vertices of the membrane.
+    /// Number of vertices of the membrane.
     pub n_vertices: usize,
-    /// Solver threads.
+    /// Number of solver threads.
     pub threads: usize,
-    /// Numbers computed side by side, at most.
+    /// Maximum SIMD width.
     pub lanes: u8,
     /// Length of a substep (s).
     pub substep_s: Real,
-    /// Substeps per second, the median of all laps.
+    /// Substeps per second, the median of all repetitions.
     pub steps_per_s: Real,
-    /// The fastest lap's.
+    /// Substeps per second of the fastest repetition.
     pub steps_per_s_best: Real,
-    /// Slowest over fastest lap, less one.
+    /// Time of the slowest repetition divided by that of the fastest, minus one.
     pub spread: Real,
-    /// Processor time over wall time and threads: below one, others had the processors; null where the
-    /// system does not tell.
+    /// Processor time divided by wall-clock time and threads; below one, other processes used the
+    /// processors. Null if unknown.
     pub processor_share: Option<Real>,
     /// Contacts between grains times substeps per second and thread.
     pub contact_steps_per_s_per_core: Real,
     /// Its inverse (ns).
     pub ns_per_contact_step: Real,
-    /// Simulated over wall time.
+    /// Simulated time divided by wall-clock time.
     pub real_time_factor: Real,
-    /// Digest of the state after so many steps from the start.
+    /// Digest of the state after `digest_after_steps` steps.
     pub digest: String,
-    /// After how many steps.
+    /// Steps from the start to the state of the digest.
     pub digest_after_steps: u64,
-    /// Digest of the state at the start: digests of runs with other starts say nothing.
+    /// Digest of the start state; only digests of runs with the same start are comparable.
     pub start_digest: String,
-    /// Steps of a lap before the clock starts.
+    /// Unmeasured steps at the start of a repetition.
     pub n_warm_steps: u64,
-    /// Steps of a lap that are measured.
+    /// Measured steps of a repetition.
     pub n_lap_steps: u64,
-    /// Laps.
+    /// Number of repetitions.
     pub n_laps: usize,
-    /// How often a lap built the lists of neighbours.
+    /// Number of times that a repetition built the neighbor lists.
     pub n_builds_per_lap: u64,
-    /// Contacts between grains; all contacts are counted at the end of a lap.
+    /// Contacts between grains, counted at the end of a repetition, as all contacts.
     pub n_contacts: usize,
-    /// Of grains with walls.
+    /// Contacts of grains with walls.
     pub n_wall_contacts: usize,
-    /// Of grains with the membrane.
+    /// Contacts of grains with the membrane.
     pub n_membrane_contacts: usize,
-    /// Of the membrane with bodies.
+    /// Contacts of the membrane with bodies.
     pub n_body_contacts: usize,
     /// Largest overlap of two grains (m).
     pub overlap_max_m: Real,
-    /// The same over the mean radius.
+    /// Largest overlap divided by the mean radius.
     pub overlap_ratio_max: Real,
     /// Kinetic energy (J).
     pub kinetic_energy_j: Real,
-    /// Largest resident set while the laps were run (bytes); null where the system does not tell.
+    /// Largest resident set during the repetitions (bytes); null if unknown.
     pub peak_rss_bytes: Option<u64>,
-    /// Where the time of a substep goes.
+    /// Time of each stage of a substep.
     pub stages: Vec<Stage>,
     /// Real-time factor of each phase of a session.
     pub phases: BTreeMap<String, Real>,
     /// Latencies of the loop.
     #[cfg(all(feature = "ros", feature = "shm"))]
     pub latencies: Vec<Latency>,
-    /// Other codes on the same packing.
-    pub peers: Vec<PeerFigures>,
-    /// Other codes that are not installed, with the remedy.
+    /// Results of the reference codes with the same packing.
+    pub peers: Vec<ReferenceResult>,
+    /// Reference codes that are not installed, with the remedy.
     pub peers_missing: Vec<String>,
 }
 
 /// The time of one stage.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Stage {
-    /// Its name.
+    /// Name of the stage.
     pub name: String,
-    /// Share of the whole.
+    /// Share of the total time.
     pub share: Real,
-    /// Time in each substep (ns).
+    /// Time per substep (ns).
     pub ns_per_step: Real,
 }
 
-impl Figures {
-    /// Speeds, from laps.
-    pub(super) fn of_laps(repetitions: &[Repetition], work: Work, n_threads: usize) -> Self {
+impl BenchResult {
+    /// Speeds from repetitions.
+    pub(super) fn of_repetitions(repetitions: &[Repetition], work: Work, n_threads: usize) -> Self {
         let mut times: Vec<Real> = repetitions.iter().map(|repetition| repetition.wall_s).collect();
         times.sort_by(Real::total_cmp);
         let (Some(best), Some(worst)) = (times.first(), times.last()) else {
@@ -135,28 +135,28 @@ impl Figures {
         }
     }
 
-    /// With the real-time factor that follows from the speed.
-    pub(super) fn with_speed_of_time(mut self) -> Self {
+    /// Adds the real-time factor that follows from the speed.
+    pub(super) fn with_real_time_factor(mut self) -> Self {
         self.real_time_factor = self.steps_per_s * self.substep_s;
         self
     }
 
-    /// With what was seen of the state.
-    pub(super) fn seeing(mut self, seen: &Seen) -> Self {
-        self.n_contacts = seen.n_grain_contacts;
-        self.n_wall_contacts = seen.n_wall_contacts;
-        self.n_membrane_contacts = seen.n_membrane_contacts;
-        self.n_body_contacts = seen.n_body_contacts;
-        self.overlap_max_m = seen.overlap_max;
-        self.overlap_ratio_max = seen.overlap_ratio_max;
-        self.kinetic_energy_j = seen.kinetic_energy;
+    /// Adds a summary of the end state.
+    pub(super) fn with_state(mut self, state: &StateSummary) -> Self {
+        self.n_contacts = state.n_grain_contacts;
+        self.n_wall_contacts = state.n_wall_contacts;
+        self.n_membrane_contacts = state.n_membrane_contacts;
+        self.n_body_contacts = state.n_body_contacts;
+        self.overlap_max_m = state.overlap_max;
+        self.overlap_ratio_max = state.overlap_ratio_max;
+        self.kinetic_energy_j = state.kinetic_energy;
         self
     }
 
-    /// For people, several lines.
+    /// The result as text of several lines.
     pub fn to_text(&self) -> String {
         let mut text = String::new();
-        self.write(&mut text).expect("a String takes everything");
+        self.write(&mut text).expect("writing to a String cannot fail");
         text
     }
 
@@ -178,7 +178,7 @@ impl Figures {
             let Self { case, threads, real_time_factor, .. } = self;
             writeln!(
                 text,
-                "{case}: a loop of 1 kHz, {threads} solver threads, real-time factor {real_time_factor:.4}"
+                "{case}: loop at 1 kHz, {threads} solver threads, real-time factor {real_time_factor:.4}"
             )?;
             return self.write_latencies(text);
         }
@@ -190,7 +190,7 @@ impl Figures {
         let processors = or_unknown(self.processor_share, |it| format!("{:.0} %", 100.0 * it));
         writeln!(
             text,
-            "  {:.1} steps/s (best {:.1}, spread {:.1} %, {n_laps} laps of {n_lap_steps} steps, processors \
+            "  {:.1} steps/s (best {:.1}, spread {:.1} %, {n_laps} repetitions of {n_lap_steps} steps, processors \
              {processors}), step {:.3e} s, real-time factor {:.4}",
             self.steps_per_s,
             self.steps_per_s_best,
@@ -201,7 +201,7 @@ impl Figures {
         writeln!(
             text,
             "  {:.2} M contact-steps/s per core ({:.1} ns), contacts: {} grains, {} walls, {} membrane, \
-             {} bodies; lists built {} times a lap",
+             {} bodies; lists built {} times per repetition",
             self.contact_steps_per_s_per_core / 1e6,
             self.ns_per_contact_step,
             self.n_contacts,
@@ -212,16 +212,16 @@ impl Figures {
         )?;
         self.write_shares(text)?;
         self.write_peers(text)?;
-        if self.processor_share.is_some_and(|it| it < SHARE_OWN) {
+        if self.processor_share.is_some_and(|it| it < SHARE_MIN) {
             writeln!(
                 text,
-                "  others had the processors: speeds and ratios say little; measure on a quiet machine"
+                "  other processes used the processors: speeds and ratios are unreliable; use an idle machine"
             )?;
         }
         let memory = |bytes| format!("{:.0} MiB", real_of(bytes) / 1_048_576.0);
         writeln!(
             text,
-            "  digest {} after {} steps from {}; overlap at most {:.4} radii, kinetic energy {:.3e} J; \
+            "  digest {} after {} steps from {}; largest overlap {:.4} radii, kinetic energy {:.3e} J; \
              memory {}",
             self.digest,
             self.digest_after_steps,
@@ -273,7 +273,7 @@ fn or_unknown<T>(value: Option<T>, text: impl FnOnce(T) -> String) -> String {
     value.map_or_else(|| "unknown".to_owned(), text)
 }
 
-/// Processor time over wall time (s) and threads.
+/// Processor time divided by wall-clock time (s) and threads.
 pub(super) fn processor_share(
     repetitions: impl Iterator<Item = (Real, Option<Real>)>,
     n_threads: usize,
@@ -286,7 +286,7 @@ pub(super) fn processor_share(
     Some(processor / (wall * real(n_threads)))
 }
 
-/// The middle of sorted values.
+/// The median of sorted values.
 pub(super) fn median(sorted: &[Real]) -> Real {
     let n = sorted.len();
     if n % 2 == 1 { sorted[n / 2] } else { 0.5 * (sorted[n / 2 - 1] + sorted[n / 2]) }

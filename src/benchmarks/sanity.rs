@@ -1,5 +1,5 @@
-//! Is it worth measuring? A box whose grains have flown out, or whose list of contacts is empty, is
-//! very fast.
+//! Checks of the measured state: a box whose grains have escaped, or whose contact list is empty,
+//! would be very fast.
 
 use crate::{
     base::{Real, real::real},
@@ -8,9 +8,9 @@ use crate::{
     physics::{Model, Scratch, State},
 };
 
-/// What a state is like.
+/// Summary of a state.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Seen {
+pub(super) struct StateSummary {
     pub(super) n_grains: usize,
     pub(super) n_grain_contacts: usize,
     pub(super) n_wall_contacts: usize,
@@ -18,53 +18,54 @@ pub(super) struct Seen {
     pub(super) n_body_contacts: usize,
     /// Largest overlap between grains (m).
     pub(super) overlap_max: Real,
-    /// The same over the mean radius.
+    /// Largest overlap divided by the mean radius.
     pub(super) overlap_ratio_max: Real,
-    /// Of grains and membrane (J).
+    /// Kinetic energy of grains and membrane (J).
     pub(super) kinetic_energy: Real,
-    /// Root of the mean of the grains' v² by mass, from the kinetic energy (m/s).
+    /// Mass-weighted root-mean-square speed of the grains, from the kinetic energy (m/s).
     pub(super) speed: Real,
 }
 
-/// What must be true of a state.
+/// Limits of a valid state.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Limits {
-    /// Contacts between grains, per grain, at least.
+    /// Minimum number of contacts between grains per grain.
     pub(super) contacts_per_grain: Real,
-    /// Largest overlap over the mean radius.
+    /// Maximum overlap divided by the mean radius.
     overlap_ratio: Real,
-    /// Speed of the grains, from and to (m/s).
+    /// Minimum and maximum speed of the grains (m/s).
     speed: [Real; 2],
-    /// Contacts with walls, with the membrane and of the membrane with bodies, at least.
+    /// Minimum numbers of contacts with walls, with the membrane, and of the membrane with bodies.
     others: [usize; 3],
 }
 
 impl Limits {
-    /// Under 50 kPa each of 3000 grains has 5.8 partners, so 2.9 contacts; their overlaps stay below
-    /// a tenth of the radius. At rest only a few loose grains still fall on their neighbours.
+    /// Under 50 kPa each of 3000 grains touches 5.8 others, which is 2.9 contacts per grain;
+    /// overlaps stay below a tenth of the radius. At rest only a few loose grains still fall on
+    /// their neighbors.
     pub(super) const PACKED_AT_REST: Self = Self {
         contacts_per_grain: 2.5,
         overlap_ratio: 0.15,
         speed: [0.0, 5e-3],
         others: [100, 0, 0],
     };
-    /// Most partners are kept while the grains shear along each other; 0.02 to 0.2 s after the box was tilted
-    /// they have fallen for no longer than that, at half the gravity or less.
+    /// Most contacts persist while the grains shear; 0.02 to 0.2 s after tilting the box, grains
+    /// have accelerated no longer than that, with at most half of gravity.
     pub(super) const FLOWING: Self = Self {
         contacts_per_grain: 1.2,
         overlap_ratio: 0.1,
         speed: [0.02, 1.0],
         others: [100, 0, 0],
     };
-    /// The vented bag is full; its grains bear their own weight.
-    pub(super) const BAG: Self = Self {
+    /// The vented gripper is full; its grains carry their own weight.
+    pub(super) const VENTED: Self = Self {
         contacts_per_grain: 1.5,
         overlap_ratio: 0.15,
         speed: [0.0, 0.05],
         others: [1, 100, 0],
     };
-    /// The same on its way, under vacuum or vented after the object was set down.
-    pub(super) const LIFTED: Self = Self { overlap_ratio: 0.2, speed: [0.0, 0.5], ..Self::BAG };
+    /// The moving gripper, under vacuum, or vented after the object was set down.
+    pub(super) const LIFTED: Self = Self { overlap_ratio: 0.2, speed: [0.0, 0.5], ..Self::VENTED };
     /// Under vacuum, around an object.
     pub(super) const GRIPPING: Self = Self {
         contacts_per_grain: 2.0,
@@ -72,10 +73,10 @@ impl Limits {
         speed: [0.0, 0.2],
         others: [1, 500, 10],
     };
-    /// By Hertz overlaps grow as (p/E)^(2/3): those of the softest grains are seven times as deep as those
-    /// of 100 MPa.
+    /// By Hertz' law overlaps grow as (p/E)^(2/3): those of the softest grains are seven times
+    /// those of grains of 100 MPa.
     pub(super) const GRIPPING_SOFT: Self = Self { overlap_ratio: 0.6, ..Self::GRIPPING };
-    /// At rest under vacuum in a closed membrane, whose triangles each have a grain or so.
+    /// At rest under vacuum in a closed membrane, with about one grain at each triangle.
     pub(super) const CLOSED: Self = Self {
         contacts_per_grain: 2.0,
         overlap_ratio: 0.1,
@@ -91,20 +92,20 @@ impl Limits {
     };
 }
 
-/// Why a state is not worth measuring.
+/// Why a state is not valid for a benchmark.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("the state is not worth measuring: {what} {found:.4e}, expected {expected}")]
-pub struct Unsound {
-    /// What was looked at, with its unit.
+#[error("the state is not valid for a benchmark: {what} {found:.4e}, expected {expected}")]
+pub struct InvalidState {
+    /// The checked quantity, with its unit.
     pub what: &'static str,
-    /// What was found.
+    /// Its value.
     pub found: Real,
-    /// What it should be.
+    /// The expected values.
     pub expected: String,
 }
 
-impl Seen {
-    /// Looks at the contacts of the last substep.
+impl StateSummary {
+    /// Summarizes the state after the last substep.
     pub(super) fn of(model: &Model, state: &State, scratch: &Scratch) -> Self {
         let packing = packing(state, scratch);
         let kinetic_energy = kinetic_energy(model, state);
@@ -125,16 +126,16 @@ impl Seen {
     /// Compares with `limits`.
     ///
     /// # Errors
-    /// The first that is not kept.
-    pub(super) fn check(&self, limits: &Limits) -> Result<(), Unsound> {
+    /// The first limit that is not met.
+    pub(super) fn check(&self, limits: &Limits) -> Result<(), InvalidState> {
         let at_least = |what, found: Real, least: Real| {
             // Written so that NaN fails.
-            let is_kept = found >= least;
-            if is_kept { Ok(()) } else { unsound(what, found, format!("{least} at least")) }
+            let is_met = found >= least;
+            if is_met { Ok(()) } else { invalid(what, found, format!("at least {least}")) }
         };
         let at_most = |what, found: Real, most: Real| {
-            let is_kept = found <= most;
-            if is_kept { Ok(()) } else { unsound(what, found, format!("{most} at most")) }
+            let is_met = found <= most;
+            if is_met { Ok(()) } else { invalid(what, found, format!("at most {most}")) }
         };
         let n_grains = real(self.n_grains.max(1));
         let per_grain = real(self.n_grain_contacts) / n_grains;
@@ -149,20 +150,24 @@ impl Seen {
     }
 }
 
-/// Whether the object was held while the flange was.
+/// Checks that the object was held while it was lifted.
 ///
 /// # Errors
 /// If it was not.
-pub(super) fn check_lift(verdict: &LiftMetrics) -> Result<(), Unsound> {
+pub(super) fn check_lift(verdict: &LiftMetrics) -> Result<(), InvalidState> {
     if verdict.is_held() {
         return Ok(());
     }
     let found = verdict.hold_share_min;
-    unsound("share of the flange's rise that the object had", found, "a held object".to_owned())
+    invalid(
+        "share of the flange's rise that the object followed",
+        found,
+        "a held object".to_owned(),
+    )
 }
 
-fn unsound(what: &'static str, found: Real, expected: String) -> Result<(), Unsound> {
-    Err(Unsound { what, found, expected })
+fn invalid(what: &'static str, found: Real, expected: String) -> Result<(), InvalidState> {
+    Err(InvalidState { what, found, expected })
 }
 
 #[cfg(test)]
@@ -173,7 +178,7 @@ mod tests {
         physics::{System, boundary::wall::WallShape},
     };
 
-    /// A small box like those that are measured, after a substep.
+    /// A small box like the measured ones, after a substep.
     fn packed() -> System {
         let boxed = Boxed { n_grains: 300, n_tiles: [1; 3], phase: Phase::Rest };
         let mut system = boxed.system(boxed.grow().unwrap());
@@ -181,26 +186,26 @@ mod tests {
         system
     }
 
-    fn fault(system: &System) -> Option<&'static str> {
-        let seen = Seen::of(&system.model, &system.state, &system.scratch);
-        // Of 300 grains a third lies at a wall: they have fewer partners than in larger boxes.
+    fn violation(system: &System) -> Option<&'static str> {
+        let summary = StateSummary::of(&system.model, &system.state, &system.scratch);
+        // A third of 300 grains is at a wall: they have fewer contacts than in larger boxes.
         let limits = Limits { contacts_per_grain: 2.0, ..Limits::PACKED_AT_REST };
-        seen.check(&limits).err().map(|it| it.what)
+        summary.check(&limits).err().map(|it| it.what)
     }
 
-    /// Oracle: what was done to the box. A state that would be fast for the wrong reason is refused.
+    /// Oracle: what was done to the box. A state that is fast for the wrong reason is rejected.
     #[test]
-    fn only_a_box_that_is_what_it_says_is_measured() {
+    fn invalid_boxes_are_rejected() {
         let packed = packed();
-        assert_eq!(fault(&packed), None);
+        assert_eq!(violation(&packed), None);
 
-        // All grains far apart: no list, no contact.
+        // All grains are far apart: no contacts.
         let mut emptied = packed.clone();
         emptied.state.grains.positions.iter_mut().for_each(|it| *it *= 3.0);
         emptied.step();
-        assert_eq!(fault(&emptied), Some("contacts between grains per grain"));
+        assert_eq!(violation(&emptied), Some("contacts between grains per grain"));
 
-        // The walls are gone.
+        // The walls have moved away.
         let mut open = packed.clone();
         for (wall, model) in open.controls.walls.iter_mut().zip(&open.model.walls) {
             let WallShape::Plane { normal } = &model.shape else { panic!("a box has planes") };
@@ -208,21 +213,21 @@ mod tests {
         }
         open.state.walls.clone_from(&open.controls.walls);
         open.step();
-        assert_eq!(fault(&open), Some("contacts with walls"));
+        assert_eq!(violation(&open), Some("contacts with walls"));
 
-        // Grains larger by a fifth in the same places.
+        // Grains are larger by a fifth at the same positions.
         let mut crowded = packed.clone();
         crowded.state.grains.radii.iter_mut().for_each(|it| *it *= 1.2);
         crowded.model.radius_max *= 1.2;
-        crowded.scratch.neighbours.is_built = false;
+        crowded.scratch.neighbors.is_built = false;
         crowded.step();
-        assert_eq!(fault(&crowded), Some("largest overlap over radius"));
+        assert_eq!(violation(&crowded), Some("largest overlap over radius"));
 
-        // It has exploded, and then there are no numbers any more.
+        // It has exploded, and then become NaN.
         let mut hot = packed.clone();
         hot.state.grains.velocities[7].z = 100.0;
-        assert_eq!(fault(&hot), Some("speed of the grains [m/s]"));
+        assert_eq!(violation(&hot), Some("speed of the grains [m/s]"));
         hot.state.grains.velocities[7].z = f64::NAN;
-        assert_eq!(fault(&hot), Some("speed of the grains [m/s]"));
+        assert_eq!(violation(&hot), Some("speed of the grains [m/s]"));
     }
 }

@@ -8,7 +8,7 @@ use super::{
 };
 use crate::{
     base::Real,
-    cosim::saved_state::{SavedStateError, pose, pose_row, same_counts},
+    cosim::saved_state::{SavedStateError, check_counts, pose, pose_row},
 };
 
 /// A pose and when it was commanded (ns).
@@ -44,7 +44,7 @@ impl CommandProcessor {
     pub fn restore(&mut self, bytes: &[u8]) -> Result<(), SavedStateError> {
         let corrupt = SavedStateError::Corrupt { n_bytes: bytes.len() };
         let numbers: Numbers = postcard::from_bytes(bytes).map_err(|_| corrupt)?;
-        same_counts(&[("driven objects", numbers.drives.len(), self.drives.len())])?;
+        check_counts(&[("driven objects", numbers.drives.len(), self.drives.len())])?;
         let target = |(row, time_ns): &SavedTarget| Target { pose: pose(row), time_ns: *time_ns };
         let [n_applied, n_limited, n_refused] = numbers.counts;
         self.gauge_setpoint = numbers.gauge_setpoint;

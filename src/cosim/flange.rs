@@ -6,8 +6,8 @@
 //!        √(2 a (e − a τ²/2)) beyond,        a = 0.8 a_max
 //! ```
 //!
-//! e is the way left to the target and τ = 50 ms smooths a target that arrives in steps of a
-//! controller's period. Further away the body brakes at a, a little less than it could, so that it
+//! e is the remaining distance vector to the target; τ = 50 ms smooths targets that arrive in steps of a
+//! controller's period. Farther away the body brakes at a, slightly less than the limit, so that it
 //! arrives without overshoot. The same holds for rotations, with the rotation vector as e.
 
 use crate::{
@@ -18,7 +18,7 @@ use crate::{
 
 /// Time constant of the approach (s).
 const FOLLOW_TIME: Real = 0.05;
-/// Share of the acceleration limit that braking is planned with.
+/// Fraction of the acceleration limit used for braking.
 const BRAKING: Real = 0.8;
 
 /// Velocity and acceleration limits of a kinematic body.
@@ -35,7 +35,7 @@ pub struct Limits {
 }
 
 impl Limits {
-    /// The limits of a scene's flange; driven objects keep to them too.
+    /// The limits of the flange in a scene; they also apply to driven objects.
     pub fn new(flange: &scene::Flange) -> Self {
         Self {
             speed_max: flange.speed_max,
@@ -45,31 +45,31 @@ impl Limits {
         }
     }
 
-    /// Velocity after `dt` (s) of a body on its way to `target`.
+    /// Velocity after `dt` (s) of a body that moves to `target`.
     pub fn follow(&self, target: &Pose, motion: &BodyMotion, dt: Real) -> Twist {
-        let way = target.translation.vector - motion.pose.translation.vector;
+        let offset = target.translation.vector - motion.pose.translation.vector;
         let turn = (target.rotation * motion.pose.rotation.inverse()).scaled_axis();
         let linear = (self.speed_max, self.acceleration_max);
         let angular = (self.angular_speed_max, self.angular_acceleration_max);
         Twist {
-            linear: approach(way, motion.twist.linear, linear, dt),
+            linear: approach(offset, motion.twist.linear, linear, dt),
             angular: approach(turn, motion.twist.angular, angular, dt),
         }
     }
 }
 
-fn approach(way: Vec3, velocity: Vec3, (fastest, acceleration): (Real, Real), dt: Real) -> Vec3 {
-    let left = way.norm();
+fn approach(offset: Vec3, velocity: Vec3, (fastest, acceleration): (Real, Real), dt: Real) -> Vec3 {
+    let distance = offset.norm();
     let braking = BRAKING * acceleration;
     let near = braking * FOLLOW_TIME * FOLLOW_TIME;
-    let approach = if left <= near {
-        left / FOLLOW_TIME
+    let approach = if distance <= near {
+        distance / FOLLOW_TIME
     } else {
-        (2.0 * braking * (left - near / 2.0)).sqrt()
+        (2.0 * braking * (distance - near / 2.0)).sqrt()
     };
     let speed = fastest.min(approach);
-    // Closer than any motion that matters: standing still keeps the bits of the pose.
-    let wanted = if left > 1e-12 { way * (speed / left) } else { Vec3::zeros() };
+    // Below any distance that matters, standing still keeps the bits of the pose.
+    let wanted = if distance > 1e-12 { offset * (speed / distance) } else { Vec3::zeros() };
     let change = wanted - velocity;
     let size = change.norm();
     let allowed = acceleration * dt;
@@ -89,7 +89,7 @@ mod tests {
 
     #[test]
     fn a_far_target_is_reached_within_the_limits_and_without_overshoot() {
-        // Oracle: the limits themselves; the end is the target to a micrometre.
+        // Oracle: the limits themselves; the final pose equals the target to a micrometer.
         let target = Pose::new(Vec3::new(0.0, 0.0, 0.3), Vec3::new(0.0, 0.5, 0.0));
         let mut motion = BodyMotion { pose: Pose::identity(), twist: Twist::zero() };
         let dt = 1e-3;

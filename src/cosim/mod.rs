@@ -1,17 +1,17 @@
-//! One tick of the coupled system: motion in, substeps, wrench out, rigid step.
+//! One tick of the coupled system: body motion in, substeps, wrenches out, rigid-body step.
 //!
 //! Grains and membrane take many substeps per tick. Every few of them (an exchange, at most
-//! 0.1 ms) the rigid world takes one step under the membrane's mean wrench; in between the bodies
-//! move on with their last velocity. A staggered exchange at the tick itself would be unstable:
-//! a light body between stiff contacts swings faster than 1 kHz.
+//! 0.1 ms) the rigid world takes one step under the membrane's mean wrench; in between, bodies
+//! keep their velocity. A staggered exchange once per tick would be unstable: a light body between
+//! stiff contacts oscillates faster than 1 kHz.
 
-mod change; // what no body could do by moving
+mod change; // discontinuous changes between ticks
 pub mod compile;
 pub mod flange;
 pub mod rapier_world;
-pub mod refused; // why a change is rejected
+pub mod change_error; // why a change is rejected
 pub mod saved_state;
-pub mod volume; // whether places overlap
+pub mod volume; // overlap of simple volumes
 
 use crate::{
     base::{
@@ -29,7 +29,7 @@ use rapier_world::RapierWorld;
 /// The wall that is the gripper's flange.
 pub const FLANGE: usize = CARRIER;
 
-/// How a tick is cut.
+/// How a tick is divided.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plan {
     /// Length of a tick (s).
@@ -40,24 +40,24 @@ pub struct Plan {
     pub n_per_exchange: usize,
 }
 
-/// What the outside wants during a tick.
+/// Setpoints during a tick.
 #[derive(Clone, Debug)]
 pub struct Inputs {
-    /// Set-point of the chamber (Pa).
+    /// Gauge pressure setpoint of the chamber (Pa).
     pub gauge_setpoint: Real,
-    /// Where the flange shall be.
+    /// Target pose of the flange.
     pub flange_target: Pose,
-    /// Where driven objects shall be.
+    /// Target pose of each driven object.
     pub drives: Vec<Option<Pose>>,
 }
 
-/// Means over a tick. World axes.
+/// Wrenches averaged over a tick, in world axes.
 #[derive(Clone, Debug)]
 pub struct Means {
-    /// Wrench of the membrane on each object about its centre of mass.
+    /// Wrench of the membrane on each object about its center of mass.
     pub membrane_on_objects: Vec<Wrench>,
-    /// Wrench of all contacts on each object about its centre of mass, from its momentum; of a
-    /// driven object the membrane's alone, because its momentum is the drive's.
+    /// Wrench of all contacts on each object about its center of mass, computed from its change of
+    /// momentum; for a driven object only that of the membrane, because the drive sets its momentum.
     pub contacts_on_objects: Vec<Wrench>,
     /// Wrench of all objects on the gripper about the flange's origin.
     pub objects_on_gripper: Wrench,
@@ -65,11 +65,11 @@ pub struct Means {
     pub gripper_on_mount: Wrench,
 }
 
-/// Grains, membrane and chamber together with the rigid world.
+/// Grains, membrane and chamber coupled with the rigid-body world.
 pub struct Coupled {
     /// Grains, membrane and chamber.
     pub system: System,
-    /// How a tick is cut.
+    /// How a tick is divided.
     pub plan: Plan,
     /// Objects and table.
     pub world: RapierWorld,
@@ -78,7 +78,7 @@ pub struct Coupled {
 }
 
 impl Coupled {
-    /// Couples a settled state with the rigid world. The last body of `model` is the table; the
+    /// Couples a settled state with the rigid-body world. The last body of `model` is the table; the
     /// motion of the flange is `WallMotion::External`.
     pub fn new(model: Model, plan: Plan, state: State, world: RapierWorld, limits: Limits) -> Self {
         let controls = controls(&model, &state, &world);
@@ -86,11 +86,11 @@ impl Coupled {
         Self { system: System::new(model, controls, state), plan, world, limits, n_objects }
     }
 
-    /// Goes on from another state and another rigid world of the same model.
+    /// Continues from another state and another rigid-body world of the same model.
     fn restart(&mut self, state: State, world: RapierWorld) {
         self.system.restart(state);
         self.world = world;
-        self.start_over_lists();
+        self.rebuild_scratch();
     }
 
     /// Number of objects.
@@ -134,7 +134,7 @@ impl Coupled {
         }
     }
 
-    /// The flange's velocity goes evenly from its value at the tick's start to that at its end.
+    /// Interpolates the velocity of the flange linearly between the start and the end of the tick.
     fn set_flange_twist(&mut self, start: &Twist, end: &Twist, s: usize) {
         let share = real(s + 1) / real(self.plan.n_substeps);
         let twist = Twist {
@@ -148,16 +148,16 @@ impl Coupled {
         let origin = self.system.state.walls[FLANGE].pose.translation.vector;
         for i in 0..self.n_objects {
             let wrench = &self.system.scratch.body_wrenches[i];
-            let centre = self.system.controls.bodies[i].pose.translation.vector;
+            let center = self.system.controls.bodies[i].pose.translation.vector;
             add(&mut exchange[i], wrench);
             add(&mut sums.on_objects[i], wrench);
             sums.on_gripper.force -= wrench.force;
-            sums.on_gripper.torque -= wrench.torque + (centre - origin).cross(&wrench.force);
+            sums.on_gripper.torque -= wrench.torque + (center - origin).cross(&wrench.force);
         }
         add(&mut sums.on_mount, &self.system.scratch.wall_wrenches[FLANGE]);
     }
 
-    /// One step of the rigid world under the mean of the wrenches summed up.
+    /// One step of the rigid-body world under the mean of the summed wrenches.
     fn exchange(&mut self, sums: &mut [Wrench]) {
         for sum in sums.iter_mut() {
             *sum = scaled(sum, 1.0 / real(self.plan.n_per_exchange));

@@ -1,7 +1,7 @@
-//! The rigid world: objects on a table. The only file that knows rapier.
+//! The rigid-body world: objects on a table, simulated by rapier.
 //!
-//! Rapier's defaults are made for bodies of metres: contacts are not recycled here and the length
-//! unit is that of the objects. Bodies never sleep, because a sleeping body would ignore the
+//! The defaults of rapier are made for bodies of meters: here contacts are not recycled, and the length
+//! unit is the size of the objects. Bodies never sleep, because a sleeping body would ignore the
 //! membrane.
 
 use nalgebra::Isometry3;
@@ -14,7 +14,7 @@ use rapier3d_f64::{
     },
 };
 
-use super::saved_state::{SavedStateError, same_counts};
+use super::saved_state::{SavedStateError, check_counts};
 use crate::{
     base::{
         Pose, Real, Vec3,
@@ -32,9 +32,9 @@ use crate::{
     scene::{Object, Scene},
 };
 
-/// Half the edge of the table's slab, and half its thickness (m).
+/// Half the edge and half the thickness of the table's slab (m).
 pub const TABLE_HALF: [Real; 2] = [2.0, 0.1];
-/// Length that rapier takes as typical of the bodies (m).
+/// Typical size of a body, for rapier (m).
 const LENGTH_UNIT: Real = 0.02;
 
 /// Natural frequency of contacts with the table (Hz): an object of 30 g under 40 N sinks by
@@ -51,7 +51,8 @@ pub struct RapierWorld {
 }
 
 impl RapierWorld {
-    /// Puts the objects of `scene` into a fresh world; `model` and `bulks` are in their order.
+    /// A world with the objects of `scene`; `model` and `bulks` have the same order. `step` (s) is the
+    /// time step.
     pub fn new(scene: &Scene, model: &Model, bulks: Vec<Bulk>, step: Real) -> Self {
         let mut world = PhysicsWorld { gravity: vector(&scene.gravity), ..Default::default() };
         let parameters = &mut world.integration_parameters;
@@ -61,11 +62,11 @@ impl RapierWorld {
         let stiff = SpringCoefficients::new(TABLE_FREQUENCY, TABLE_DAMPING);
         parameters.static_contact_softness = stiff;
         let [edge, thickness] = TABLE_HALF;
-        let middle = Vector::new(0.0, 0.0, scene.table.height - thickness);
+        let center = Vector::new(0.0, 0.0, scene.table.height - thickness);
         let slab = ColliderBuilder::cuboid(edge, edge, thickness)
             .friction(scene.table.friction)
             .friction_combine_rule(CoefficientCombineRule::Max);
-        world.insert(RigidBodyBuilder::fixed().translation(middle), slab);
+        world.insert(RigidBodyBuilder::fixed().translation(center), slab);
         let mut this = Self { world, bodies: Vec::new(), bulks: Vec::new() };
         for ((object, body), bulk) in scene.objects.iter().zip(&model.bodies).zip(bulks) {
             this.insert(object, body, bulk);
@@ -73,7 +74,7 @@ impl RapierWorld {
         this
     }
 
-    /// Adds an object behind all others, at rest in its own pose.
+    /// Adds an object after all others, at rest in its initial pose.
     pub fn insert(&mut self, object: &Object, body: &BodyModel, bulk: Bulk) {
         let BodySurface::Shape(surface) = &body.surface else { return };
         let properties = MassProperties::with_principal_inertia_frame(
@@ -83,7 +84,7 @@ impl RapierWorld {
             bulk.principal_axes.into(),
         );
         let rigid = RigidBodyBuilder::dynamic()
-            .pose(RapierPose::from(centre_pose(object, &bulk)))
+            .pose(RapierPose::from(center_pose(object, &bulk)))
             .additional_mass_properties(properties)
             .can_sleep(false);
         let collider = collider(surface)
@@ -94,13 +95,13 @@ impl RapierWorld {
         self.bulks.push(bulk);
     }
 
-    /// Takes object `i` away.
+    /// Removes object `i`.
     pub fn remove(&mut self, i: usize) {
         self.world.remove_body(self.bodies.remove(i));
         self.bulks.remove(i);
     }
 
-    /// Puts object `i` elsewhere and gives it back to dynamics.
+    /// Sets the motion of object `i`, which is no longer driven.
     pub fn place(&mut self, i: usize, motion: &BodyMotion) {
         let body = &mut self.world.bodies[self.bodies[i]];
         body.set_body_type(RigidBodyType::Dynamic, true);
@@ -109,35 +110,35 @@ impl RapierWorld {
         body.set_angvel(vector(&motion.twist.angular), true);
     }
 
-    /// Whether a body of this surface at `pose` would overlap the table or an object other than
-    /// `except` by more than `grace` (m): the object's index, or `None` for the table.
+    /// Finds an obstacle that a body with this surface at `pose` would overlap by more than `tolerance`
+    /// (m): `Some(None)` for the table, `Some(Some(i))` for object `i`. Ignores object `except`.
     pub fn overlap(
         &self,
         surface: &Surface,
         pose: &Pose,
         except: Option<usize>,
-        grace: Real,
+        tolerance: Real,
     ) -> Option<Option<usize>> {
         let shape = collider(surface).build();
         let offset: Isometry3<Real> = shape.position_wrt_parent().map_or_else(
             Isometry3::identity, // no offset
             |it| (*it).into(),
         );
-        let here = RapierPose::from(pose * offset);
+        let placed = RapierPose::from(pose * offset);
         for (_, other) in self.world.colliders.iter() {
-            let whose = other.parent().and_then(|it| self.bodies.iter().position(|b| *b == it));
-            if whose.is_some() && whose == except {
+            let owner = other.parent().and_then(|it| self.bodies.iter().position(|b| *b == it));
+            if owner.is_some() && owner == except {
                 continue;
             }
-            let found = contact(&here, shape.shape(), other.position(), other.shape(), 0.0);
-            if found.is_ok_and(|it| it.is_some_and(|it| it.dist < -grace)) {
-                return Some(whose);
+            let found = contact(&placed, shape.shape(), other.position(), other.shape(), 0.0);
+            if found.is_ok_and(|it| it.is_some_and(|it| it.dist < -tolerance)) {
+                return Some(owner);
             }
         }
         None
     }
 
-    /// How object `i` moves now.
+    /// Current pose and velocity of object `i`.
     pub fn motion(&self, i: usize) -> BodyMotion {
         let body = &self.world.bodies[self.bodies[i]];
         let pose: Isometry3<Real> = (*body.position()).into();
@@ -150,17 +151,17 @@ impl RapierWorld {
         self.bulks[i].mass
     }
 
-    /// Momentum (kg m/s) and angular momentum about the centre of mass (kg m²/s) of object `i`.
+    /// Momentum (kg m/s) and angular momentum about the center of mass (kg m²/s) of object `i`.
     pub fn momentum(&self, i: usize) -> (Vec3, Vec3) {
         let motion = self.motion(i);
         let bulk = &self.bulks[i];
         let axes = motion.pose.rotation * bulk.principal_axes;
         let spin = axes.inverse_transform_vector(&motion.twist.angular);
-        let turning = axes * bulk.principal_inertia.component_mul(&spin);
-        (motion.twist.linear * bulk.mass, turning)
+        let angular_momentum = axes * bulk.principal_inertia.component_mul(&spin);
+        (motion.twist.linear * bulk.mass, angular_momentum)
     }
 
-    /// Drives object `i` with `twist`, or gives it back to dynamics with its present velocity.
+    /// Drives object `i` with `twist`; with `None` it moves freely from its current velocity.
     pub fn drive(&mut self, i: usize, twist: Option<&Twist>) {
         let body = &mut self.world.bodies[self.bodies[i]];
         let kind = match twist {
@@ -179,7 +180,7 @@ impl RapierWorld {
         }
     }
 
-    /// One step of the rigid world under the membrane's mean wrenches, about centres of mass.
+    /// One step under the mean wrenches of the membrane about the centers of mass.
     pub fn step(&mut self, wrenches: &[Wrench]) {
         for (&handle, wrench) in self.bodies.iter().zip(wrenches) {
             let body = &mut self.world.bodies[handle];
@@ -191,34 +192,34 @@ impl RapierWorld {
         self.world.step();
     }
 
-    /// The bytes of the whole world: bodies, contacts with what was learnt in them, and the trees
-    /// of neighbours. A world restored from poses and velocities alone would continue with other bits.
+    /// Serializes the whole world: bodies, contacts with their cached impulses, and the broad-phase
+    /// trees. A world restored from poses and velocities alone would not continue bit for bit.
     pub fn save(&self) -> Vec<u8> {
-        postcard::to_stdvec(&self.world).expect("rapier's world serialises as a whole")
+        postcard::to_stdvec(&self.world).expect("the world of rapier can always be serialized")
     }
 
-    /// Puts a saved world in the place of this one, which was made for the scene that continues:
-    /// gravity, masses and friction are this scene's, what has come of them is the saved world's.
+    /// Replaces this world, which was built for the current scene, by a saved one. Gravity, masses and
+    /// friction stay those of the current scene; everything else is from the saved world.
     ///
     /// # Errors
-    /// If the bytes are no world, or one with other objects.
+    /// If the bytes are not a world, or one with other objects.
     pub fn restore(&mut self, bytes: &[u8]) -> Result<(), SavedStateError> {
         let corrupt = SavedStateError::Corrupt { n_bytes: bytes.len() };
         let mut saved: PhysicsWorld = postcard::from_bytes(bytes).map_err(|_| corrupt)?;
-        same_counts(&[("rigid bodies", saved.bodies.len(), self.world.bodies.len())])?;
+        check_counts(&[("rigid bodies", saved.bodies.len(), self.world.bodies.len())])?;
         saved.gravity = self.world.gravity;
         saved.integration_parameters = self.world.integration_parameters;
-        // Only what differs is touched: even to ask for a body to write to it marks it as changed.
+        // Only change what differs: mutable access to a body alone marks it as modified.
         for (handle, body) in self.world.bodies.iter() {
             let Some(kept) = saved.bodies.get(handle) else {
-                let what = "rigid bodies in their places";
+                let what = "rigid bodies with the same handle";
                 return Err(SavedStateError::OtherScene { what, found: 0, expected: 1 });
             };
-            let wanted = &body.mass_properties().additional_local_mprops;
-            if kept.mass_properties().additional_local_mprops != *wanted
-                && let Some(RigidBodyAdditionalMassProps::MassProps(wanted)) = wanted.as_deref()
+            let expected = &body.mass_properties().additional_local_mprops;
+            if kept.mass_properties().additional_local_mprops != *expected
+                && let Some(RigidBodyAdditionalMassProps::MassProps(expected)) = expected.as_deref()
             {
-                saved.bodies[handle].set_additional_mass_properties(*wanted, true);
+                saved.bodies[handle].set_additional_mass_properties(*expected, true);
             }
         }
         for (handle, collider) in self.world.colliders.iter() {
@@ -232,7 +233,7 @@ impl RapierWorld {
         Ok(())
     }
 
-    /// Adds poses and velocities of all objects.
+    /// Adds poses and velocities of all objects to `digest`.
     pub fn digest(&self, digest: &mut Digest) {
         for i in 0..self.bodies.len() {
             let motion = self.motion(i);
@@ -243,16 +244,16 @@ impl RapierWorld {
     }
 }
 
-/// Pose of an object's centre of mass where its scene puts it.
-pub fn centre_pose(object: &Object, bulk: &Bulk) -> Pose {
+/// Initial pose of an object, with its center of mass as origin.
+pub fn center_pose(object: &Object, bulk: &Bulk) -> Pose {
     let mut pose = object.pose;
-    pose.translation.vector += object.pose.rotation * bulk.centre_of_mass;
+    pose.translation.vector += object.pose.rotation * bulk.center_of_mass;
     pose
 }
 
-/// The shape for contacts with the table, about the centre of mass.
+/// The shape for contacts with the table, about the center of mass.
 fn collider(surface: &Surface) -> ColliderBuilder {
-    // Rapier's cylinders stand along y, ours along z.
+    // The axis of a cylinder is y in rapier, z here.
     let upright = Pose::rotation(Vec3::x() * std::f64::consts::FRAC_PI_2);
     match surface {
         Surface::Sphere { radius } => ColliderBuilder::ball(*radius),

@@ -1,4 +1,4 @@
-//! A state as bytes: what is kept between two starts of a scene, or between two halves of a run.
+//! Serialized states: the settled start state of a scene, and checkpoints of a run.
 
 use serde::{Deserialize, Serialize};
 use xxhash_rust::xxh3::xxh3_64;
@@ -9,32 +9,35 @@ use crate::{
         State,
         boundary::{body::BodyMotion, motion::WallMemory},
         membrane::MembraneState,
-        state::{Grains, ListedSprings, N_PATCHES, Patch, Patches, Springs},
+        state::{
+            Grains, ListedSprings, N_PATCHES, Patch, Patches, Springs, SurfaceHistories,
+            SurfaceHistory,
+        },
     },
 };
 
-/// Why bytes are not a state that can be used.
+/// Why a saved state cannot be used.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SavedStateError {
     /// The digest at the end does not match the bytes before it.
-    #[error("saved state: {n_bytes} bytes are truncated or corrupt; it is computed anew")]
+    #[error("saved state: {n_bytes} bytes are truncated or corrupt; the state is recomputed")]
     Corrupt {
-        /// How many bytes there are.
+        /// Number of bytes.
         n_bytes: usize,
     },
-    /// The bytes are whole, but of another scene.
-    #[error("saved state: {found} {what}, the scene has {expected}; it is computed anew")]
+    /// The state belongs to another scene.
+    #[error("saved state: {found} {what}, but the scene has {expected}; the state is recomputed")]
     OtherScene {
         /// What differs.
         what: &'static str,
-        /// In the bytes.
+        /// Number in the saved state.
         found: usize,
-        /// In the scene.
+        /// Number in the scene.
         expected: usize,
     },
 }
 
-/// The numbers of a state in the order they are written.
+/// The numbers of a state, in the order in which they are written.
 #[derive(Serialize, Deserialize)]
 struct Numbers {
     grain_positions: Vec<[Real; 3]>,
@@ -55,18 +58,27 @@ struct Numbers {
     sphere_springs: Vec<[Real; 3]>,
 }
 
-/// What contacts remember besides their springs. It follows the other numbers where there is any.
+/// History variables of contacts besides their springs. Written after the numbers, if there are any.
 #[derive(Default, Serialize, Deserialize)]
 struct Memories {
     pairs: Vec<Real>,
-    /// Contacts of walls with grains that are listed.
+    /// Listed contacts of walls with grains.
     wall_ids: Vec<[u32; 2]>,
     walls: Vec<Real>,
 }
 
+/// History of contacts of grains with walls of triangles and with bodies. It follows the memories of walls.
+#[derive(Default, Serialize, Deserialize)]
+struct Surfaces {
+    ids: Vec<[u32; 2]>,
+    /// Springs and normals.
+    histories: Vec<[Real; 6]>,
+    memories: Vec<Vec<Real>>,
+}
+
 const DIGEST_BYTES: usize = 8;
 
-/// The bytes of `state`, all of it.
+/// Serializes the complete `state`.
 pub fn write(state: &State) -> Vec<u8> {
     let numbers = Numbers {
         grain_positions: arrays(&state.grains.positions),
@@ -86,44 +98,84 @@ pub fn write(state: &State) -> Vec<u8> {
         sphere_ids: state.springs.spheres.ids.clone(),
         sphere_springs: arrays(&state.springs.spheres.springs),
     };
-    let mut bytes = postcard::to_stdvec(&numbers).expect("a list of numbers always serialises");
+    let mut bytes =
+        postcard::to_stdvec(&numbers).expect("a list of numbers can always be serialized");
     let memories = Memories {
         pairs: state.springs.pair_memories.clone(),
         wall_ids: state.springs.walls.ids.clone(),
         walls: state.springs.walls.memories.clone(),
     };
     let is_cohesive = !memories.pairs.is_empty() || !memories.walls.is_empty();
-    let moves_by_itself = !state.wall_memory.is_empty();
-    // Only cohesive laws and walls that move by time or load have any: without them the bytes are
-    // those of earlier versions.
-    if is_cohesive || moves_by_itself {
+    let has_wall_memory = !state.wall_memory.is_empty();
+    let has_surfaces = !state.springs.surfaces.ids.is_empty();
+    // Only cohesive laws, walls whose motion depends on time or load, walls of triangles and bodies that
+    // grains touch have history variables. Without them, the bytes equal those of earlier versions.
+    if is_cohesive || has_wall_memory || has_surfaces {
         let memories = if is_cohesive { memories } else { Memories::default() };
-        bytes = postcard::to_extend(&memories, bytes).expect("a list of numbers always serialises");
+        bytes = postcard::to_extend(&memories, bytes)
+            .expect("a list of numbers can always be serialized");
     }
-    if moves_by_itself {
+    if has_wall_memory || has_surfaces {
         let walls: Vec<[Real; 2]> =
             state.wall_memory.iter().map(|it| [it.time, it.force]).collect();
-        bytes = postcard::to_extend(&walls, bytes).expect("a list of numbers always serialises");
+        bytes =
+            postcard::to_extend(&walls, bytes).expect("a list of numbers can always be serialized");
     }
-    sealed(bytes)
+    if has_surfaces {
+        let surfaces = Surfaces::of(&state.springs.surfaces);
+        bytes = postcard::to_extend(&surfaces, bytes)
+            .expect("a list of numbers can always be serialized");
+    }
+    with_digest(bytes)
 }
 
-/// What follows the numbers of a state: memories of contacts, then those of walls, if there are any.
-fn read_memories(rest: &[u8]) -> Result<(Memories, Vec<WallMemory>), postcard::Error> {
-    if rest.is_empty() {
-        return Ok((Memories::default(), Vec::new()));
-    }
-    let (memories, rest) = postcard::take_from_bytes(rest)?;
-    if rest.is_empty() {
-        return Ok((memories, Vec::new()));
-    }
-    let walls: Vec<[Real; 2]> = postcard::from_bytes(rest)?;
+/// The data after a state: history variables of contacts, of walls, and of contacts with surfaces.
+type Rest = (Memories, Vec<WallMemory>, Surfaces);
+
+/// Reads the history variables. Data missing at the end is empty.
+fn read_rest(rest: &[u8]) -> Result<Rest, postcard::Error> {
+    let (memories, rest) = take_or_default(rest)?;
+    let (walls, rest): (Vec<[Real; 2]>, _) = take_or_default(rest)?;
+    let (surfaces, _) = take_or_default(rest)?;
     let walls = walls.into_iter().map(|[time, force]| WallMemory { time, force }).collect();
-    Ok((memories, walls))
+    Ok((memories, walls, surfaces))
 }
 
-/// True if both are the same to the bit. As in the digest, only loaded springs count: which empty
-/// pairs are listed depends on when the lists were made.
+fn take_or_default<'a, T: Default + Deserialize<'a>>(
+    rest: &'a [u8],
+) -> Result<(T, &'a [u8]), postcard::Error> {
+    if rest.is_empty() { Ok((T::default(), rest)) } else { postcard::take_from_bytes(rest) }
+}
+
+impl Surfaces {
+    fn of(springs: &SurfaceHistories) -> Self {
+        let row = |it: &SurfaceHistory| {
+            let (spring, normal) = (it.spring, it.normal);
+            [spring.x, spring.y, spring.z, normal.x, normal.y, normal.z]
+        };
+        Self {
+            ids: springs.ids.clone(),
+            histories: springs.histories.iter().map(row).collect(),
+            memories: springs.histories.iter().map(|it| it.memory.clone()).collect(),
+        }
+    }
+
+    fn springs(self) -> Result<SurfaceHistories, SavedStateError> {
+        check_counts(&[
+            ("springs on surfaces", self.histories.len(), self.ids.len()),
+            ("memories on surfaces", self.memories.len(), self.ids.len()),
+        ])?;
+        let history = |(row, memory): (&[Real; 6], Vec<Real>)| {
+            let &[sx, sy, sz, nx, ny, nz] = row;
+            SurfaceHistory { spring: Vec3::new(sx, sy, sz), normal: Vec3::new(nx, ny, nz), memory }
+        };
+        let histories = self.histories.iter().zip(self.memories).map(history).collect();
+        Ok(SurfaceHistories { ids: self.ids, histories })
+    }
+}
+
+/// True if both states are equal to the bit. As in the digest, only loaded springs count: which
+/// unloaded pairs are listed depends on when the neighbor lists were built.
 pub(crate) fn is_same(one: State, other: State) -> bool {
     let bytes = |mut state: State| {
         let Springs { pairs, pair_memories, spheres, walls, .. } = &mut state.springs;
@@ -135,6 +187,7 @@ pub(crate) fn is_same(one: State, other: State) -> bool {
     bytes(one) == bytes(other)
 }
 
+/// Drops entries without load and without history.
 fn keep_loaded(ids: &mut Vec<[u32; 2]>, springs: &mut Vec<Vec3>, memories: &mut Vec<Real>) {
     let width = memories.len() / ids.len().max(1);
     let remembers = |k: usize| memories[k * width..(k + 1) * width].iter().any(|it| *it != 0.0);
@@ -149,14 +202,14 @@ fn keep_loaded(ids: &mut Vec<[u32; 2]>, springs: &mut Vec<Vec3>, memories: &mut 
     memories.retain(|_| of_memories.next() == Some(true));
 }
 
-/// Springs of all walls with all grains, wall by wall, zero for those that are not listed.
+/// Springs of all walls with all grains, wall by wall; zero if not listed.
 fn wall_springs(state: &State) -> Vec<[Real; 3]> {
     let springs = state.springs.walls.dense(state.walls.len(), state.grains.len());
     springs.map(Into::into).collect()
 }
 
-/// The contacts of walls with grains, `ids` with their `memories` if those are given, or else those whose
-/// springs are not zero to the bit.
+/// The listed contacts of walls with grains: `ids` with their `memories` if given, otherwise all contacts
+/// whose springs are not zero to the bit.
 fn listed_walls(numbers: &Numbers, ids: Vec<[u32; 2]>, memories: Vec<Real>) -> ListedSprings {
     let n_grains = numbers.grain_positions.len();
     let at = |[wall, grain]: [u32; 2]| {
@@ -173,23 +226,23 @@ fn listed_walls(numbers: &Numbers, ids: Vec<[u32; 2]>, memories: Vec<Real>) -> L
     ListedSprings { springs: ids.iter().map(|&ids| at(ids)).collect(), ids, memories }
 }
 
-/// An index as an id.
+/// An index as a 32-bit id.
 #[expect(clippy::cast_possible_truncation, reason = "the scene allows far fewer grains than 2^32")]
 fn id(index: usize) -> u32 {
     index as u32
 }
 
-/// Bytes followed by their digest.
-pub(crate) fn sealed(mut bytes: Vec<u8>) -> Vec<u8> {
+/// Appends a digest to bytes.
+pub(crate) fn with_digest(mut bytes: Vec<u8>) -> Vec<u8> {
     bytes.extend_from_slice(&xxh3_64(&bytes).to_le_bytes());
     bytes
 }
 
-/// What was sealed.
+/// Verifies the digest at the end of `bytes` and returns the bytes before it.
 ///
 /// # Errors
-/// If the bytes are cut off or changed.
-pub(crate) fn unsealed(bytes: &[u8]) -> Result<&[u8], SavedStateError> {
+/// If the bytes are truncated or corrupt.
+pub(crate) fn verify_digest(bytes: &[u8]) -> Result<&[u8], SavedStateError> {
     let corrupt = SavedStateError::Corrupt { n_bytes: bytes.len() };
     let Some((body, digest)) = bytes.split_last_chunk::<DIGEST_BYTES>() else {
         return Err(corrupt);
@@ -197,19 +250,19 @@ pub(crate) fn unsealed(bytes: &[u8]) -> Result<&[u8], SavedStateError> {
     if xxh3_64(body).to_le_bytes() == *digest { Ok(body) } else { Err(corrupt) }
 }
 
-/// The state in `bytes`, with the same bits.
+/// Reads a state, bit for bit.
 ///
 /// # Errors
-/// If they are damaged, or their lists do not fit each other.
+/// If the bytes are corrupt, or the lengths of their lists are inconsistent.
 pub fn read(bytes: &[u8]) -> Result<State, SavedStateError> {
     let corrupt = SavedStateError::Corrupt { n_bytes: bytes.len() };
     let (numbers, rest): (Numbers, _) =
-        postcard::take_from_bytes(unsealed(bytes)?).map_err(|_| corrupt.clone())?;
+        postcard::take_from_bytes(verify_digest(bytes)?).map_err(|_| corrupt.clone())?;
     numbers.check()?;
-    let (memories, wall_memory) = read_memories(rest).map_err(|_| corrupt)?;
+    let (memories, wall_memory, surfaces) = read_rest(rest).map_err(|_| corrupt)?;
     let walls = listed_walls(&numbers, memories.wall_ids, memories.walls);
     if !wall_memory.is_empty() {
-        same_counts(&[("walls' motions", wall_memory.len(), numbers.walls.len())])?;
+        check_counts(&[("walls' motions", wall_memory.len(), numbers.walls.len())])?;
     }
     Ok(State {
         grains: Grains {
@@ -233,6 +286,7 @@ pub fn read(bytes: &[u8]) -> Result<State, SavedStateError> {
                 memories: Vec::new(),
             },
             walls,
+            surfaces: surfaces.springs()?,
             bodies: vectors(&numbers.body_springs),
         },
         pair_ids: numbers.pair_ids,
@@ -242,11 +296,11 @@ pub fn read(bytes: &[u8]) -> Result<State, SavedStateError> {
     })
 }
 
-/// Refuses counts that differ: what, found, expected.
+/// Checks that counts are equal: name, found, expected.
 ///
 /// # Errors
-/// The first that differs.
-pub(crate) fn same_counts(counts: &[(&'static str, usize, usize)]) -> Result<(), SavedStateError> {
+/// If a count differs; the first one is reported.
+pub(crate) fn check_counts(counts: &[(&'static str, usize, usize)]) -> Result<(), SavedStateError> {
     match counts.iter().find(|(_, found, expected)| found != expected) {
         Some(&(what, found, expected)) => {
             Err(SavedStateError::OtherScene { what, found, expected })
@@ -259,7 +313,7 @@ impl Numbers {
     fn check(&self) -> Result<(), SavedStateError> {
         let n_grains = self.grain_positions.len();
         let n_vertices = self.vertex_positions.len();
-        same_counts(&[
+        check_counts(&[
             ("velocities", self.grain_velocities.len(), n_grains),
             ("spins", self.grain_spins.len(), n_grains),
             ("radii", self.radii.len(), n_grains),
@@ -296,20 +350,20 @@ fn patches(rows: &[[Real; 6]]) -> Patches {
     patches
 }
 
-/// Position and quaternion x y z w.
+/// Position and quaternion x, y, z, w.
 pub(crate) fn pose_row(pose: &Pose) -> [Real; 7] {
     let (p, q) = (pose.translation.vector, pose.rotation.coords);
     [p.x, p.y, p.z, q.x, q.y, q.z, q.w]
 }
 
-/// The pose of a row.
+/// The pose of such a row.
 pub(crate) fn pose(&[px, py, pz, qx, qy, qz, qw]: &[Real; 7]) -> Pose {
-    // Not normalised again: the bits must come back.
+    // Not normalized again, so that the bits are the same.
     let rotation = Quat::new_unchecked(nalgebra::Quaternion::new(qw, qx, qy, qz));
     Pose::from_parts(Vec3::new(px, py, pz).into(), rotation)
 }
 
-/// Position, quaternion x y z w, velocity, angular velocity.
+/// Position, quaternion x, y, z, w, velocity, angular velocity.
 fn motion_row(motion: &BodyMotion) -> [Real; 13] {
     let [px, py, pz, qx, qy, qz, qw] = pose_row(&motion.pose);
     let (v, w) = (motion.twist.linear, motion.twist.angular);
@@ -328,7 +382,8 @@ fn motion(row: &[Real; 13]) -> BodyMotion {
 mod tests {
     use super::*;
 
-    /// Three grains and two walls at which some contacts are listed, with `width` memories each.
+    /// A state with three grains and two walls with some listed contacts, each with `width` history
+    /// variables.
     fn state(width: usize) -> State {
         let at_rest = Grains::at_rest(vec![Vec3::zeros(); 3], vec![1e-3; 3], vec![1e-5; 3]);
         let motion = BodyMotion { pose: Pose::identity(), twist: Twist::zero() };
@@ -359,8 +414,8 @@ mod tests {
     }
 
     #[test]
-    fn contacts_come_back_with_what_they_remember() {
-        // Oracle: the state that was written.
+    fn contacts_are_restored_with_their_history() {
+        // Oracle: the original state.
         for width in [0, 1, 2] {
             let before = state(width);
             let after = read(&write(&before)).unwrap();
@@ -372,8 +427,18 @@ mod tests {
     }
 
     #[test]
+    fn the_memory_of_moving_walls_is_restored() {
+        // Oracle: the state that was written.
+        let mut before = state(0);
+        before.wall_memory = vec![WallMemory::default(), WallMemory { time: 0.25, force: -1.5 }];
+        let after = read(&write(&before)).unwrap();
+        assert_eq!(after.wall_memory, before.wall_memory);
+        assert_eq!(digest(&after), digest(&before));
+    }
+
+    #[test]
     fn springs_at_walls_are_written_and_digested_as_if_all_were_listed() {
-        // Oracle: the array of all walls with all grains that earlier versions kept.
+        // Oracle: the array of all walls with all grains, as earlier versions wrote it.
         let state = state(0);
         let mut expected = vec![[0.0; 3]; 6];
         expected[1] = [0.0, 2e-6, 0.0];

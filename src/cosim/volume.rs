@@ -1,4 +1,4 @@
-//! Plain volumes, and whether they overlap: for questions about places.
+//! Overlap of simple volumes, for requests about regions of space.
 
 use std::panic::catch_unwind;
 
@@ -15,18 +15,18 @@ use crate::base::{Pose, Real, Vec3};
 /// A volume in the world.
 #[derive(Clone, Debug)]
 pub enum Volume {
-    /// All points near one.
+    /// A ball.
     Ball {
-        /// The middle (m).
-        centre: Vec3,
-        /// Its radius (m).
+        /// The center (m).
+        center: Vec3,
+        /// The radius (m).
         radius: Real,
     },
-    /// A turned box.
+    /// An oriented box.
     Box {
-        /// Pose of its middle.
+        /// Pose of the center.
         pose: Pose,
-        /// Half of its edges (m).
+        /// Half of the edges (m).
         half: Vec3,
     },
     /// The convex hull of points.
@@ -37,10 +37,10 @@ pub enum Volume {
 }
 
 impl Volume {
-    /// True if the two have a point in common.
+    /// True if the volumes intersect.
     ///
     /// # Errors
-    /// If one of them is no volume.
+    /// If the points of a hull do not span a volume.
     pub fn overlaps(&self, other: &Self) -> Result<bool, String> {
         let ((a, pose_a), (b, pose_b)) = (self.shape()?, other.shape()?);
         let found = intersection_test(&pose_a, &*a, &pose_b, &*b);
@@ -49,8 +49,8 @@ impl Volume {
 
     fn shape(&self) -> Result<(Box<dyn Shape>, ParryPose), String> {
         Ok(match self {
-            Self::Ball { centre, radius } => {
-                let pose = Pose::translation(centre.x, centre.y, centre.z);
+            Self::Ball { center, radius } => {
+                let pose = Pose::translation(center.x, center.y, center.z);
                 (Box::new(Ball::new(*radius)), pose.into())
             }
             Self::Box { pose, half } => {
@@ -61,32 +61,32 @@ impl Volume {
     }
 }
 
-/// The corners of the convex hull of some points.
+/// The vertices of the convex hull of some points.
 ///
 /// # Errors
-/// If they span none.
+/// If the points do not span a volume.
 pub fn hull_corners(points: &[Vec3]) -> Result<Vec<Vec3>, String> {
     let hull = hull(points)?;
     Ok(hull.points().iter().map(|p| Vec3::new(p.x, p.y, p.z)).collect())
 }
 
 fn hull(points: &[Vec3]) -> Result<ConvexPolyhedron, String> {
-    // What spans nothing is noticed here: the hull's algorithm is made for solids.
-    if !spans(points) {
-        return Err("these points lie on a line: give at least three that do not".into());
+    // Checked here, because the hull algorithm expects points that span a volume.
+    if !are_not_collinear(points) {
+        return Err("the points are collinear: give at least four that span a volume".into());
     }
     let points: Vec<Vector> = points.iter().map(|p| Vector::new(p.x, p.y, p.z)).collect();
-    // Its inner checks panic on some points that are nearly one; a caller may be wrong
-    // without ending the run. Flat ones may pass as a hull without a volume.
-    let made = catch_unwind(|| ConvexPolyhedron::from_convex_hull(&points));
-    let hull = made.ok().flatten().filter(|hull| hull.mass_properties(1.0).mass() > 0.0);
+    // The algorithm panics on some nearly coincident points; invalid input must not end the run. Coplanar
+    // points may give a hull without volume.
+    let result = catch_unwind(|| ConvexPolyhedron::from_convex_hull(&points));
+    let hull = result.ok().flatten().filter(|hull| hull.mass_properties(1.0).mass() > 0.0);
     hull.ok_or_else(|| {
-        "these points span no convex hull: give at least four that are not flat".into()
+        "the points do not span a convex hull: give at least four that are not coplanar".into()
     })
 }
 
 /// True if the points do not lie on a line.
-fn spans(points: &[Vec3]) -> bool {
+fn are_not_collinear(points: &[Vec3]) -> bool {
     let Some(first) = points.first() else { return false };
     let by_length = |a: &Vec3, b: &Vec3| a.norm_squared().total_cmp(&b.norm_squared());
     let longest = points.iter().map(|it| it - first).max_by(by_length).unwrap_or_default();
@@ -98,31 +98,31 @@ fn spans(points: &[Vec3]) -> bool {
 mod tests {
     use super::*;
 
-    /// Oracle: elementary geometry, 1 mm on either side of touch.
+    /// Oracle: elementary geometry, 1 mm on either side of contact.
     #[test]
     fn overlap_begins_where_surfaces_touch() {
         let turned = Pose::rotation(Vec3::z() * std::f64::consts::FRAC_PI_4);
         let cube = Volume::Box { pose: turned, half: Vec3::repeat(0.1) };
         let reach = 0.1 * 2.0_f64.sqrt();
         for (gap, expected) in [(-1e-3, true), (1e-3, false)] {
-            let centre = Vec3::x() * (reach + 0.05 + gap);
-            let ball = Volume::Ball { centre, radius: 0.05 };
+            let center = Vec3::x() * (reach + 0.05 + gap);
+            let ball = Volume::Ball { center, radius: 0.05 };
             assert_eq!(cube.overlaps(&ball), Ok(expected), "ball, {gap}");
             let tip = Vec3::x() * (reach + gap);
             let corners = [Vec3::zeros(), Vec3::y(), Vec3::z(), Vec3::x()].map(|it| tip + it * 0.1);
-            // The tip itself reaches the edge of the turned cube first.
+            // The tip of the hull reaches the edge of the rotated cube first.
             let hull = Volume::Hull { points: corners.to_vec() };
             assert_eq!(cube.overlaps(&hull), Ok(expected), "hull, {gap}");
         }
         for points in [vec![], vec![Vec3::x(); 5], vec![Vec3::zeros(), Vec3::x(), Vec3::x() * 2.0]]
         {
-            assert!(cube.overlaps(&Volume::Hull { points }).is_err(), "a line spans nothing");
+            assert!(cube.overlaps(&Volume::Hull { points }).is_err(), "a line has no volume");
         }
         let corners =
             [0.0, 1.0].map(|x| [0.0, 1.0].map(|y| [0.0, 1.0].map(|z| Vec3::new(x, y, z))));
         let inside = [Vec3::repeat(0.5), Vec3::new(0.2, 0.4, 0.9)];
         let points: Vec<Vec3> = corners.into_iter().flatten().flatten().chain(inside).collect();
-        assert_eq!(hull_corners(&points).map(|it| it.len()), Ok(8), "only corners are left");
+        assert_eq!(hull_corners(&points).map(|it| it.len()), Ok(8), "only vertices are left");
         let flat = Volume::Hull { points: vec![Vec3::zeros(), Vec3::x(), Vec3::y()] };
         assert!(cube.overlaps(&flat).is_err(), "a triangle has no volume");
     }

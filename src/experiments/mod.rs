@@ -1,20 +1,33 @@
-//! Validated experiments: a scene, the cases it is cut into, and what their records must show.
+//! Validation experiments: reproductions of published tests, compared with their results.
 //!
-//! An experiment reads its scene into a plan. The plan names its cases; each case is a run that goes
-//! on slice by slice, can be saved and resumed, and leaves a record. From the records alone, and
-//! without any clock or file, the plan makes its findings: quantities, curves, plots, and rows in
-//! which a measured value stands beside its oracle. Tests, reports and benches run the same cases.
+//! An experiment is a folder with the same files in each; the roles are
+//!
+//! | file | holds |
+//! |---|---|
+//! | `scene.rs` | the keys of its scene, one line each (`scene_keys!`), and the rules that join them |
+//! | `cases.rs` | the list of cases: independent runs, which may go side by side, and their names |
+//! | `build.rs` | the physical system of a case at its start |
+//! | `measure.rs` | what is read from a system while it runs, and from records afterwards |
+//! | `run.rs` | a `Run`: the phases of a case, slice by slice, how it is saved and resumed |
+//! | `plots.rs` | plots and tables of the report |
+//! | `evaluate.rs` | rows that compare measured values with their oracles, and notes |
+//! | `mod.rs` | the `Experiment` and its `Plan`, which tie these together |
+//!
+//! A file may use those above it. To add an experiment, write
+//! `launch_configs/experiments/NAME.yaml`, these files, and a line in `EXPERIMENTS`. Findings are
+//! computed from records alone, without clock or files; tests, reports and benchmarks run the same
+//! cases.
 
 pub mod findings; // results and verdicts
-pub mod gripper; // the force that holds an object
-pub mod hollow_sphere; // how much vacuum reaches an object
-pub mod laws; // closed forms, equation by equation
-mod number_format; // numbers in text
+pub mod gripper; // holding force of the gripper
+pub mod hollow_sphere; // pressure on an object inside a shell of grains
+pub mod laws; // every equation against its closed form
+mod number_format; // numbers in text formats
 pub mod oracles; // closed forms to compare with
-pub mod packing; // dense packings and what they bear
+pub mod packing; // dense packings: jamming, moduli, stress
 pub mod record; // the record of a case
 mod saved_run; // a run as bytes
-pub mod slide; // a ball drawn over a membrane
+pub mod slide; // a ball pulled over a membrane
 pub mod triaxial; // grains under confining pressure
 
 use serde::{Deserialize, Serialize};
@@ -36,31 +49,31 @@ pub static EXPERIMENTS: &[&dyn Experiment] = &[
     &hollow_sphere::HollowSphere,
 ];
 
-/// How much of an experiment is run.
+/// Which size of an experiment is run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Size {
-    /// Smaller or faster, within minutes: for everyday checks.
+    /// Smaller or faster, for everyday checks within minutes.
     Quick,
-    /// As in the source.
+    /// The size of the source.
     Full,
 }
 
-/// Where the text of an experiment's scene comes from.
+/// The scene text of an experiment.
 #[derive(Clone, Debug)]
 pub struct SceneText<'a> {
     /// The YAML.
     pub text: &'a str,
-    /// Names it in messages.
+    /// Name of the text in messages.
     pub source: &'a str,
-    /// Changes of the form `key=value`.
+    /// Overrides of the form `key=value`.
     pub overrides: &'a [String],
-    /// Which of the sections `quick` and `full` is laid over the rest.
+    /// Which of the sections `quick` and `full` overrides the rest.
     pub size: Size,
 }
 
 impl SceneText<'_> {
-    /// The layers of the scene; `on_defaults` if the gripper's defaults lie below.
+    /// The layers of the scene; with `on_defaults` they override the gripper's defaults.
     pub(crate) fn layers(&self, on_defaults: bool) -> Layers<'_> {
         let chosen = match self.size {
             Size::Quick => "quick",
@@ -73,86 +86,85 @@ impl SceneText<'_> {
 
 /// One experiment.
 pub trait Experiment: Sync {
-    /// Its name on the command line.
+    /// Name on the command line.
     fn name(&self) -> &'static str;
 
-    /// One line: what is done, and whose experiment it is.
+    /// One line: what is tested, and the source.
     fn about(&self) -> &'static str;
 
-    /// The scene that comes with the program: its path in the repository, and its text.
+    /// The built-in scene: its path in the repository and its text.
     fn scene(&self) -> (&'static str, &'static str);
 
     /// Reads and checks a scene.
     ///
     /// # Errors
-    /// All faults of the scene at once.
+    /// All errors of the scene at once.
     fn read(&self, scene: &SceneText<'_>) -> Result<Box<dyn Plan>, SceneError>;
 }
 
-/// A scene that has been read: what is to be run, and what must come out.
+/// A checked scene: the cases to run, and the evaluation of their records.
 pub trait Plan: Send + Sync {
-    /// Names of the cases, usable as file names; they are independent of each other.
+    /// Names of the cases, usable as file names. Cases are independent of each other.
     fn cases(&self) -> Vec<String>;
 
-    /// Seconds that a case is expected to take on one thread, if that is known: the longest are
-    /// begun first. Nothing else depends on it.
+    /// Expected run time of a case on one thread (s), if known. The longest cases start first;
+    /// nothing else depends on it.
     fn expected_s(&self, _case: &str) -> Option<f64> {
         None
     }
 
-    /// A case at its start.
+    /// Sets a case up.
     ///
     /// # Errors
-    /// If the case cannot be set up.
+    /// If there is no such case, or it cannot be set up.
     fn start(&self, case: &str) -> Result<Box<dyn Run>, StartError>;
 
-    /// What the records show. Cases that failed have none; rows that need them are left out and
-    /// named in the notes.
+    /// Evaluates the records. Cases that failed have none; rows that need them are left out, and a
+    /// note says so.
     fn evaluate(&self, records: &[Record]) -> Findings;
 }
 
-/// A case on its way.
+/// A running case.
 pub trait Run: Send {
-    /// Goes on by a slice of work, some tenths of a second at most.
+    /// Advances by a slice of work of at most some tenths of a second.
     ///
     /// # Errors
-    /// If the system cannot go on.
+    /// If the simulation diverges.
     fn advance(&mut self) -> Result<Progress, Diverged>;
 
-    /// All that is needed to go on, as bytes.
+    /// Encodes everything needed to resume.
     fn save(&self) -> Vec<u8>;
 
-    /// Goes on from where a run of the same case was saved: the same bits as without the break.
+    /// Resumes from a saved run of the same case, with the same bits as without the interruption.
     ///
     /// # Errors
-    /// If the bytes are damaged or of another case.
+    /// If the bytes are damaged or belong to another case.
     fn resume(&mut self, bytes: &[u8]) -> Result<(), ResumeError>;
 
-    /// What was recorded so far; complete once `advance` has said so.
+    /// The record so far; complete once `advance` returned `is_done`.
     fn record(&self) -> Record;
 
-    /// What is being stepped, for those who measure how fast that goes; `None` where it is no single
-    /// system.
+    /// The system that is being stepped, for benchmarks; `None` if there is no single one.
     fn stepped(&self) -> Option<Stepped<'_>> {
         None
     }
 }
 
-/// A system and what its case does to it.
+/// A system, and what its case does after each substep.
 #[derive(Clone, Copy)]
 pub struct Stepped<'a> {
     /// The system.
     pub system: &'a System,
-    /// What is done to it after each substep.
+    /// Called after each substep.
     pub after: fn(&mut System),
 }
 
-/// How far a case is.
+/// Progress of a case.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Progress {
-    /// What the last slice did; its time is counted under this name.
-    pub stage: &'static str,
-    /// Share of the whole work that is done, as far as it can be told.
+    /// Phase of the last slice; its wall-clock time is counted under this name.
+    pub phase: &'static str,
+    /// Estimated share of the whole work that is done.
     pub share: f64,
     /// True at the end.
     pub is_done: bool,
@@ -164,9 +176,9 @@ pub enum StartError {
     /// There is no such case.
     #[error("no case `{name}`; there are: {}", known.join(", "))]
     NoSuchCase {
-        /// What was asked for.
+        /// The unknown name.
         name: String,
-        /// What there is.
+        /// Names of all cases.
         known: Vec<String>,
     },
     /// The scene cannot be compiled.
@@ -174,19 +186,39 @@ pub enum StartError {
     Compile(#[from] crate::cosim::compile::CompileError),
     /// The membrane cannot be meshed.
     #[error("membrane: {0}")]
-    Mesh(#[from] crate::physics::membrane::mesh::MeshFault),
+    Mesh(#[from] crate::physics::membrane::mesh::MeshError),
     /// The parts of the system do not fit each other.
     #[error("system: {0}")]
     Build(#[from] crate::physics::builder::BuildError),
-    /// The grains find no place to grow from.
+    /// There is no room for the grains.
     #[error("packing: {0}")]
     NoRoom(#[from] crate::physics::packing::scatter::NoRoom),
 }
 
 /// Why a saved run cannot be resumed.
 #[derive(Debug, PartialEq, Eq, thiserror::Error)]
-#[error("saved state: {reason}; the case starts anew")]
+#[error("saved state: {reason}; the case restarts from its beginning")]
 pub struct ResumeError {
     /// What is wrong with it.
     pub reason: String,
+}
+
+/// The case with this name.
+///
+/// # Errors
+/// If there is none.
+fn find_case<C>(
+    cases: impl IntoIterator<Item = C>,
+    name: &str,
+    name_of: impl Fn(&C) -> String,
+) -> Result<C, StartError> {
+    let mut known = Vec::new();
+    for case in cases {
+        let own = name_of(&case);
+        if own == name {
+            return Ok(case);
+        }
+        known.push(own);
+    }
+    Err(StartError::NoSuchCase { name: name.to_owned(), known })
 }

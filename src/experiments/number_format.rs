@@ -1,12 +1,12 @@
-//! Numbers in text: JSON knows no NaN and no infinity, so the one is `null` and the other a word.
-//! In binary formats numbers stay what they are.
+//! Numbers in text formats: JSON has no NaN and no infinity, so NaN is written as `null` and
+//! infinity as a string. Binary formats keep all numbers as they are.
 
 use serde::{
     Deserialize, Deserializer, Serialize, Serializer,
     de::{self, Visitor},
 };
 
-/// A number that text formats can carry.
+/// A number that text formats can represent.
 #[derive(Clone, Copy)]
 struct Number(f64);
 

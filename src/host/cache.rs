@@ -1,9 +1,9 @@
-//! Settled start states on disk, by digest of what they depend on. What is missing, cut off or
-//! changed is settled anew.
+//! Settled start states on disk, by a digest of what they depend on. A missing or damaged state is
+//! settled again.
 
 use std::{fs, io, path::PathBuf};
 
-use crate::host::atomic_file::{self, Opened};
+use crate::host::atomic_file::{self, Loaded};
 
 /// A folder of start states.
 #[derive(Clone, Debug)]
@@ -11,18 +11,18 @@ pub struct Cache {
     folder: PathBuf,
 }
 
-/// What was found under a key.
+/// The result of looking up a key.
 #[derive(Debug, PartialEq, Eq)]
-pub enum Found {
-    /// The bytes that were stored.
+pub enum Lookup {
+    /// The stored bytes.
     State(Vec<u8>),
-    /// Nothing.
-    Nothing,
-    /// A file that is cut off or changed.
+    /// No state is stored.
+    Missing,
+    /// The file is truncated or changed.
     Damaged(PathBuf),
 }
 
-/// The cache cannot be written. The run goes on; the next start takes as long as this one.
+/// The cache cannot be written. The run continues; the next start takes as long as this one.
 #[derive(Debug, thiserror::Error)]
 #[error(
     "start state cache {}: cannot be written: {reason}; choose a writable folder",
@@ -31,18 +31,18 @@ pub enum Found {
 pub struct CacheError {
     /// The file or folder.
     pub path: PathBuf,
-    /// What the operating system said.
+    /// Reason given by the operating system.
     pub reason: io::Error,
 }
 
 impl Cache {
-    /// A cache in `folder`.
+    /// Creates a cache in `folder`.
     pub fn new(folder: PathBuf) -> Self {
         Self { folder }
     }
 
-    /// The user's cache: `$XDG_CACHE_HOME/jamgrip`, else `~/.cache/jamgrip`, else a folder of the
-    /// system's for temporary files.
+    /// The user's cache: `$XDG_CACHE_HOME/jamgrip`, else `~/.cache/jamgrip`, else a folder for
+    /// temporary files.
     pub fn of_user() -> Self {
         let absolute = |name: &str| {
             std::env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute())
@@ -53,30 +53,30 @@ impl Cache {
         Self::new(base.join("jamgrip"))
     }
 
-    /// Its folder.
+    /// The folder of the cache.
     pub fn folder(&self) -> &std::path::Path {
         &self.folder
     }
 
     /// Looks up `key`.
-    pub fn load(&self, key: u64) -> Found {
+    pub fn load(&self, key: u64) -> Lookup {
         let path = self.path(key);
-        match atomic_file::open(&path, key) {
-            Opened::Whole(bytes) => Found::State(bytes),
-            Opened::Nothing => Found::Nothing,
-            Opened::Damaged => Found::Damaged(path),
+        match atomic_file::load(&path, key) {
+            Loaded::Complete(bytes) => Lookup::State(bytes),
+            Loaded::Missing => Lookup::Missing,
+            Loaded::Damaged => Lookup::Damaged(path),
         }
     }
 
-    /// Keeps `bytes` under `key`.
+    /// Stores `bytes` under `key`.
     ///
     /// # Errors
-    /// If folder or file cannot be written; what was there before stays.
+    /// If the folder or the file cannot be written; the old file is kept then.
     pub fn store(&self, key: u64, bytes: &[u8]) -> Result<(), CacheError> {
         let path = self.path(key);
-        let fault = |reason| CacheError { path: path.clone(), reason };
-        fs::create_dir_all(&self.folder).map_err(fault)?;
-        atomic_file::seal(&path, key, bytes).map_err(fault)
+        let to_error = |reason| CacheError { path: path.clone(), reason };
+        fs::create_dir_all(&self.folder).map_err(to_error)?;
+        atomic_file::store(&path, key, bytes).map_err(to_error)
     }
 
     fn path(&self, key: u64) -> PathBuf {
@@ -89,42 +89,43 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_was_stored_is_found_and_nothing_else() {
+    fn only_stored_states_are_found() {
         let folder = tempfile::tempdir().unwrap();
         let cache = Cache::new(folder.path().join("new"));
-        assert_eq!(cache.load(7), Found::Nothing);
+        assert_eq!(cache.load(7), Lookup::Missing);
         cache.store(7, b"state").unwrap();
-        assert_eq!(cache.load(7), Found::State(b"state".to_vec()));
-        assert_eq!(cache.load(8), Found::Nothing);
+        assert_eq!(cache.load(7), Lookup::State(b"state".to_vec()));
+        assert_eq!(cache.load(8), Lookup::Missing);
         fs::copy(cache.path(7), cache.path(8)).unwrap();
-        assert_eq!(cache.load(8), Found::Damaged(cache.path(8)), "a file under another's name");
+        assert_eq!(cache.load(8), Lookup::Damaged(cache.path(8)), "a file of another key");
         let names = fs::read_dir(folder.path().join("new")).unwrap().count();
         assert_eq!(names, 2, "no drafts are left");
     }
 
-    /// Every cut and every flipped byte is noticed, and storing again mends it.
+    /// Oracle: every truncation and every flipped byte is detected, and storing again repairs the
+    /// file.
     #[test]
-    fn damage_is_noticed_and_mended() {
+    fn damage_is_detected_and_repaired() {
         let folder = tempfile::tempdir().unwrap();
         let cache = Cache::new(folder.path().to_owned());
         cache.store(7, b"a settled state").unwrap();
-        let whole = fs::read(cache.path(7)).unwrap();
-        for cut in 0..whole.len() {
-            fs::write(cache.path(7), &whole[..cut]).unwrap();
-            assert_eq!(cache.load(7), Found::Damaged(cache.path(7)), "cut to {cut} bytes");
+        let stored = fs::read(cache.path(7)).unwrap();
+        for cut in 0..stored.len() {
+            fs::write(cache.path(7), &stored[..cut]).unwrap();
+            assert_eq!(cache.load(7), Lookup::Damaged(cache.path(7)), "cut to {cut} bytes");
         }
-        for flipped in 0..whole.len() {
-            let mut bytes = whole.clone();
+        for flipped in 0..stored.len() {
+            let mut bytes = stored.clone();
             bytes[flipped] ^= 1;
             fs::write(cache.path(7), &bytes).unwrap();
-            assert_eq!(cache.load(7), Found::Damaged(cache.path(7)), "byte {flipped} flipped");
+            assert_eq!(cache.load(7), Lookup::Damaged(cache.path(7)), "byte {flipped} flipped");
         }
         cache.store(7, b"a settled state").unwrap();
-        assert_eq!(cache.load(7), Found::State(b"a settled state".to_vec()));
+        assert_eq!(cache.load(7), Lookup::State(b"a settled state".to_vec()));
     }
 
     #[test]
-    fn a_folder_that_cannot_be_made_is_an_error_with_a_remedy() {
+    fn a_folder_that_cannot_be_created_is_an_error_with_a_remedy() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("file");
         fs::write(&file, b"").unwrap();

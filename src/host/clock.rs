@@ -1,4 +1,4 @@
-//! The only file that reads a clock: how fast the run goes, and waiting where it is too fast.
+//! The only file that reads a clock: the speed of the run, and waiting in real time.
 
 #![expect(clippy::disallowed_methods, reason = "this is the one file that may read clocks")]
 
@@ -8,33 +8,34 @@ use std::{
     time::{Duration, Instant, SystemTime, UNIX_EPOCH},
 };
 
-/// Wall time over which the present real-time factor is taken.
+/// Wall-clock time over which the current real-time factor is averaged.
 const WINDOW: Duration = Duration::from_secs(1);
 
-/// Measures wall time against the time of the run, which counts on when simulated time is reset.
+/// Measures wall-clock time against the time of the run, which continues when simulation time is
+/// reset.
 pub struct Pacer {
     start: Instant,
-    /// Simulated time at the start (ns).
+    /// Time of the run at the start (ns).
     origin_ns: u64,
-    /// When time last went on.
+    /// The last time the run advanced.
     last: Instant,
-    /// How long time has stood still.
-    stood: Duration,
-    /// When something was last shown while time stood still.
-    shown: Option<Instant>,
+    /// Wall-clock time since the run last advanced.
+    paused: Duration,
+    /// The last time that `is_due` returned true.
+    last_due: Option<Instant>,
     is_real_time: bool,
     time_ns: u64,
-    /// Wall and simulated time now and then in the last second.
+    /// Wall-clock times and times of the run during the last second.
     marks: VecDeque<(Instant, u64)>,
 }
 
 impl Pacer {
-    /// A pacer whose wall time starts now. In real time, the run waits when it is ahead.
+    /// Starts a pacer. In real time, the run waits when it is ahead.
     pub fn start(is_real_time: bool) -> Self {
         Self::start_at(0, is_real_time)
     }
 
-    /// The same for a run that begins at a simulated time of `origin_ns`.
+    /// Starts a pacer for a run that begins at the time `origin_ns`.
     pub fn start_at(origin_ns: u64, is_real_time: bool) -> Self {
         let start = Instant::now();
         let marks = VecDeque::from([(start, origin_ns)]);
@@ -42,38 +43,38 @@ impl Pacer {
             start,
             origin_ns,
             last: start,
-            stood: Duration::ZERO,
-            shown: None,
+            paused: Duration::ZERO,
+            last_due: None,
             is_real_time,
             time_ns: origin_ns,
             marks,
         }
     }
 
-    /// Time stands still: the wall time since it last went on does not count.
+    /// Excludes the wall-clock time since the run last advanced, because the run is paused.
     pub fn wait_paused(&mut self) {
         let now = Instant::now();
-        let stood = now - self.last;
-        self.start += stood;
-        self.marks.iter_mut().for_each(|(mark, _)| *mark += stood);
+        let paused = now - self.last;
+        self.start += paused;
+        self.marks.iter_mut().for_each(|(mark, _)| *mark += paused);
         self.last = now;
-        self.stood += stood;
+        self.paused += paused;
     }
 
-    /// Wall time for which time has stood still since it last went on (s).
-    pub fn stood_s(&self) -> f64 {
-        self.stood.as_secs_f64()
+    /// Wall-clock time since the run last advanced (s).
+    pub fn paused_s(&self) -> f64 {
+        self.paused.as_secs_f64()
     }
 
-    /// True `rate` times a second of wall time.
+    /// Returns true `rate` times per second of wall-clock time.
     pub fn is_due(&mut self, rate: u32) -> bool {
         let now = Instant::now();
-        let is_due = self.shown.is_none_or(|then| Duration::from_secs(1) / rate <= now - then);
-        self.shown = if is_due { Some(now) } else { self.shown };
+        let is_due = self.last_due.is_none_or(|then| Duration::from_secs(1) / rate <= now - then);
+        self.last_due = if is_due { Some(now) } else { self.last_due };
         is_due
     }
 
-    /// Notes that the run has come to `time_ns`, and waits for it in real time.
+    /// Records that the run has reached `time_ns`, and waits for that time in real time.
     pub fn wait_until(&mut self, time_ns: u64) {
         self.time_ns = time_ns;
         if self.is_real_time {
@@ -81,7 +82,7 @@ impl Pacer {
             thread::sleep(due.saturating_duration_since(Instant::now()));
         }
         self.last = Instant::now();
-        self.stood = Duration::ZERO;
+        self.paused = Duration::ZERO;
         self.mark(self.last);
     }
 
@@ -95,24 +96,24 @@ impl Pacer {
         }
     }
 
-    /// Wall time since the start (s).
+    /// Wall-clock time since the start, without pauses (s).
     pub fn wall_time_s(&self) -> f64 {
         self.start.elapsed().as_secs_f64()
     }
 
-    /// Simulated over wall time since the start.
+    /// Simulation time over wall-clock time since the start.
     pub fn real_time_factor_mean(&self) -> f64 {
         ratio(self.time_ns - self.origin_ns, self.start.elapsed())
     }
 
-    /// Simulated over wall time, over the last second of wall time.
+    /// Simulation time over wall-clock time, during the last second.
     pub fn real_time_factor(&self) -> f64 {
         let (wall, time_ns) = self.marks[0];
         ratio(self.time_ns - time_ns, wall.elapsed())
     }
 }
 
-/// Where the playing of a recording is: recorded time that passes with wall time.
+/// The position of a player: recorded time that advances with wall-clock time.
 pub struct Playhead {
     anchor: Instant,
     time_ns: u64,
@@ -121,12 +122,12 @@ pub struct Playhead {
 }
 
 impl Playhead {
-    /// Begins at `time_ns` now, `rate` times as fast as it was recorded.
+    /// Starts at `time_ns`, at `rate` times the recorded speed.
     pub fn start(time_ns: u64, rate: f64) -> Self {
         Self { anchor: Instant::now(), time_ns, rate, is_paused: false }
     }
 
-    /// Recorded time now (ns).
+    /// The current position in recorded time (ns).
     pub fn now_ns(&self) -> u64 {
         if self.is_paused {
             return self.time_ns;
@@ -135,65 +136,66 @@ impl Playhead {
         self.time_ns.saturating_add(u64::try_from(passed).unwrap_or(u64::MAX))
     }
 
-    /// Goes on from `time_ns`.
+    /// Continues from `time_ns`.
     pub fn jump(&mut self, time_ns: u64) {
         (self.anchor, self.time_ns) = (Instant::now(), time_ns);
     }
 
-    /// Goes on `rate` times as fast as recorded.
+    /// Sets the speed relative to the recording.
     pub fn set_rate(&mut self, rate: f64) {
         self.jump(self.now_ns());
         self.rate = rate;
     }
 
-    /// Stands still, or goes on.
+    /// Pauses or resumes.
     pub fn set_paused(&mut self, is_paused: bool) {
         self.jump(self.now_ns());
         self.is_paused = is_paused;
     }
 
-    /// How many times as fast as recorded it goes.
+    /// Speed relative to the recording.
     pub fn rate(&self) -> f64 {
         self.rate
     }
 
-    /// True while it stands still.
+    /// True while paused.
     pub fn is_paused(&self) -> bool {
         self.is_paused
     }
 
-    /// Waits for `time_ns`, but not longer than a person notices; true if it has come.
+    /// Waits for `time_ns`, but at most for a time that users do not notice. Returns true if it was
+    /// reached.
     pub fn wait_for(&self, time_ns: u64) -> bool {
-        const LONGEST: Duration = Duration::from_millis(20);
+        const SLEEP_MAX: Duration = Duration::from_millis(20);
         let left = Duration::from_nanos(time_ns.saturating_sub(self.now_ns()));
         if left.is_zero() && !self.is_paused {
             return true;
         }
-        let left = if self.is_paused { LONGEST } else { left.div_f64(self.rate) };
-        thread::sleep(left.min(LONGEST));
+        let left = if self.is_paused { SLEEP_MAX } else { left.div_f64(self.rate) };
+        thread::sleep(left.min(SLEEP_MAX));
         !self.is_paused && time_ns <= self.now_ns()
     }
 }
 
-/// Wall time in laps.
+/// Measures wall-clock time in laps.
 pub struct Stopwatch {
     start: Instant,
     lap: Instant,
 }
 
 impl Stopwatch {
-    /// A stopwatch that runs.
+    /// Starts a stopwatch.
     pub fn start() -> Self {
         let start = Instant::now();
         Self { start, lap: start }
     }
 
-    /// Wall time since the start (s).
+    /// Wall-clock time since the start (s).
     pub fn total_s(&self) -> f64 {
         self.start.elapsed().as_secs_f64()
     }
 
-    /// Wall time since the last lap (s); a new lap begins.
+    /// Wall-clock time since the last lap (s). Starts a new lap.
     pub fn lap_s(&mut self) -> f64 {
         let now = Instant::now();
         let lap = now - self.lap;
@@ -207,30 +209,30 @@ fn ratio(time_ns: u64, wall: Duration) -> f64 {
     if wall == 0.0 { 0.0 } else { Duration::from_nanos(time_ns).as_secs_f64() / wall }
 }
 
-/// Wall time since 1970 (ns), the same for all processes of this host.
+/// Wall-clock time since 1970 (ns), the same for all processes of this host.
 pub fn wall_ns() -> u64 {
     let since_epoch = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
     u64::try_from(since_epoch.as_nanos()).unwrap_or(u64::MAX)
 }
 
-/// How long the run waits for someone before it looks around.
+/// Time between two checks while the run waits for input.
 pub const IDLE_SLEEP: Duration = Duration::from_millis(5);
 
-/// The same while a tick waits for a command.
+/// Time between two checks while a tick waits for a command.
 pub const POLL_PERIOD: Duration = Duration::from_micros(50);
 
-/// A short pause while the run waits for someone.
+/// Sleeps briefly while the run waits for input.
 pub fn pause() {
     thread::sleep(IDLE_SLEEP);
 }
 
-/// Wall time as a word for folder names, in UTC: `2026-11-22_15-43-50`.
+/// The current UTC time for folder names: `2026-11-22_15-43-50`.
 pub fn utc_stamp() -> String {
     let since_epoch = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
     stamp_text(since_epoch.as_secs())
 }
 
-/// Calendar date and time of day of a number of seconds since 1970.
+/// The date and time of a number of seconds since 1970.
 fn stamp_text(seconds: u64) -> String {
     let (hour, minute, second) = (seconds / 3600 % 24, seconds / 60 % 60, seconds % 60);
     let mut day = seconds / 86_400;
@@ -266,7 +268,7 @@ mod tests {
         assert_eq!(stamp_text(1_798_761_599), "2026-12-31_23-59-59");
     }
 
-    /// Oracle: in real time 50 ms of simulated time take at least 50 ms of wall time.
+    /// Oracle: in real time, 50 ms of simulation time take at least 50 ms of wall-clock time.
     #[test]
     fn real_time_waits() {
         let mut pacer = Pacer::start(true);

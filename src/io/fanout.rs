@@ -1,8 +1,8 @@
-//! One thread and one bounded queue per sink, so that no sink can stop or slow the physics.
+//! One thread and one bounded queue per sink, so that no sink can block or slow the physics.
 //!
-//! The exception is a choice: a sink with `Delivery::Every` makes the run wait when its queue is
-//! full. A sink that fails is counted and goes on; one that panics is out, and what it should
-//! have got counts as failed; one that hangs is left behind at the end.
+//! The exception is explicit: a sink with `Delivery::Every` makes the run wait while its queue is
+//! full. A sink that fails is counted and stays in use. A sink that panics is removed, and its
+//! remaining packets count as failed. A sink that hangs is abandoned on close.
 
 use std::{
     any::Any,
@@ -16,21 +16,21 @@ use std::{
 
 use crate::io::sink::{Packet, Sink, SinkCounters};
 
-/// Most faults kept until someone takes them; a sink that fails on and on says little new.
-const FAULTS_MAX: usize = 64;
+/// Most errors kept until they are taken; a sink that keeps failing reports little new.
+const ERRORS_MAX: usize = 64;
 
 /// What happens when a sink's queue is full.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Delivery {
-    /// The oldest packet is dropped and counted; one with a change of the world, or all that is
-    /// needed to go on, only if there are no others.
+    /// The oldest packet is dropped and counted. Packets with changes or checkpoints are dropped
+    /// only if there are no others.
     Latest {
-        /// Packets that the queue holds, at least 1.
+        /// Capacity of the queue (packets), at least 1.
         depth: usize,
     },
     /// The run waits.
     Every {
-        /// Packets that the queue holds, at least 1.
+        /// Capacity of the queue (packets), at least 1.
         depth: usize,
     },
 }
@@ -43,32 +43,32 @@ impl Delivery {
     }
 }
 
-/// What a sink complained about.
+/// An error that a sink reported.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct SinkFault {
+pub struct SinkError {
     /// Name of the sink.
     pub sink: &'static str,
-    /// What it said.
+    /// The error message.
     pub text: String,
 }
 
-/// How a sink ended.
+/// The final state of a sink.
 #[derive(Clone, Debug)]
 pub struct SinkEnd {
-    /// What became of the packets.
+    /// Packets written, dropped and failed.
     pub counters: SinkCounters,
-    /// False for a sink that did not end in the time it was given.
+    /// False if the sink did not close in time.
     pub is_closed: bool,
 }
 
-/// Gives packets to all sinks.
+/// Distributes packets to all sinks.
 #[derive(Default)]
 pub struct Fanout {
-    lanes: Vec<Lane>,
+    queues: Vec<SinkQueue>,
 }
 
 impl Fanout {
-    /// A fanout without sinks.
+    /// Creates a fanout without sinks.
     pub fn new() -> Self {
         Self::default()
     }
@@ -76,60 +76,60 @@ impl Fanout {
     /// Adds a sink and starts its thread.
     ///
     /// # Errors
-    /// If the operating system refuses the thread.
+    /// If the operating system cannot start the thread.
     pub fn add(&mut self, sink: Box<dyn Sink>, delivery: Delivery) -> std::io::Result<()> {
-        self.lanes.push(Lane::start(sink, delivery)?);
+        self.queues.push(SinkQueue::start(sink, delivery)?);
         Ok(())
     }
 
-    /// Queues a packet for every sink. Waits only for sinks with `Delivery::Every`.
+    /// Queues a packet for every sink. Blocks only for sinks with `Delivery::Every`.
     pub fn publish(&self, packet: &Arc<Packet>) {
-        for lane in &self.lanes {
-            lane.push(packet);
+        for queue in &self.queues {
+            queue.push(packet);
         }
     }
 
-    /// What became of the packets so far, sink by sink.
+    /// Packet counters of every sink so far.
     pub fn counters(&self) -> Vec<SinkCounters> {
-        self.lanes.iter().map(|lane| lane.shared.lock().counters.clone()).collect()
+        self.queues.iter().map(|queue| queue.shared.lock().counters.clone()).collect()
     }
 
-    /// What the sinks complained about since the last call. A complaint that a sink repeats is
-    /// there once.
-    pub fn take_faults(&self) -> Vec<SinkFault> {
-        let of_lane = |lane: &Lane| std::mem::take(&mut lane.shared.lock().faults);
-        self.lanes.iter().flat_map(of_lane).collect()
+    /// Errors that the sinks reported since the last call. Repetitions of a sink's last error are
+    /// left out.
+    pub fn take_errors(&self) -> Vec<SinkError> {
+        let take = |queue: &SinkQueue| std::mem::take(&mut queue.shared.lock().errors);
+        self.queues.iter().flat_map(take).collect()
     }
 
-    /// Lets the sinks write what is queued and close, and waits for each at most `patience`.
-    /// Returns how they ended and what they complained about.
-    pub fn close(mut self, patience: Duration) -> (Vec<SinkEnd>, Vec<SinkFault>) {
-        self.lanes.iter().for_each(Lane::ask_to_close);
-        let ends = self.lanes.iter_mut().map(|lane| lane.join(patience)).collect();
-        (ends, self.take_faults())
+    /// Lets the sinks write their queued packets and close, and waits for each at most `timeout`.
+    /// Returns their final states and the errors reported since the last call.
+    pub fn close(mut self, timeout: Duration) -> (Vec<SinkEnd>, Vec<SinkError>) {
+        self.queues.iter().for_each(SinkQueue::request_close);
+        let ends = self.queues.iter_mut().map(|queue| queue.join(timeout)).collect();
+        (ends, self.take_errors())
     }
 }
 
 impl Drop for Fanout {
     fn drop(&mut self) {
-        self.lanes.iter().for_each(Lane::ask_to_close);
+        self.queues.iter().for_each(SinkQueue::request_close);
     }
 }
 
-/// A sink's thread and queue, seen from the run.
-struct Lane {
+/// A sink's thread and queue, as the run uses them.
+struct SinkQueue {
     delivery: Delivery,
     shared: Arc<Shared>,
     thread: Option<JoinHandle<()>>,
 }
 
-impl Lane {
+impl SinkQueue {
     fn start(sink: Box<dyn Sink>, delivery: Delivery) -> std::io::Result<Self> {
         let name = sink.name();
         let shared = Arc::new(Shared::new(name));
         let thread = std::thread::Builder::new().name(format!("sink-{name}")).spawn({
             let shared = Arc::clone(&shared);
-            move || serve(sink, &shared)
+            move || run_sink(sink, &shared)
         })?;
         Ok(Self { delivery, shared, thread: Some(thread) })
     }
@@ -158,57 +158,56 @@ impl Lane {
         }
     }
 
-    fn ask_to_close(&self) {
+    fn request_close(&self) {
         self.shared.lock().is_closing = true;
         self.shared.for_sink.notify_one();
     }
 
-    fn join(&mut self, patience: Duration) -> SinkEnd {
+    fn join(&mut self, timeout: Duration) -> SinkEnd {
         let queue = self.shared.lock();
         let is_running = |queue: &mut Queue| !queue.is_ended;
         let (mut queue, _) =
-            ignore_poison(self.shared.for_run.wait_timeout_while(queue, patience, is_running));
+            ignore_poison(self.shared.for_run.wait_timeout_while(queue, timeout, is_running));
         if !queue.is_ended {
             let text = format!(
-                "{}: still busy {} s after it was asked to close; \
-                 left behind with {} results unwritten",
+                "{}: did not close within {} s; abandoned with {} results unwritten",
                 queue.counters.name,
-                patience.as_secs_f64(),
+                timeout.as_secs_f64(),
                 queue.packets.len()
             );
-            queue.report_malformed(text);
+            queue.report_error(text);
         }
         let end = SinkEnd { counters: queue.counters.clone(), is_closed: queue.is_ended };
         drop(queue);
         if end.is_closed
             && let Some(thread) = self.thread.take()
         {
-            // The thread has nothing left to do but return; its panics were caught in `serve`.
+            // The thread only has to return; its panics were caught in `run_sink`.
             drop(thread.join());
         }
         end
     }
 }
 
-/// What a sink's thread does.
-fn serve(mut sink: Box<dyn Sink>, shared: &Shared) {
+/// The body of a sink's thread.
+fn run_sink(mut sink: Box<dyn Sink>, shared: &Shared) {
     let work = AssertUnwindSafe(|| {
         loop {
             match shared.next(sink.idle_after()) {
                 Work::Packet(packet) => {
-                    let outcome = sink.write(&packet);
+                    let result = sink.write(&packet);
                     drop(packet);
-                    shared.written(outcome);
+                    shared.finish_write(result);
                 }
-                Work::Idle => shared.complain_if_failed(sink.idle()),
-                Work::Close => break shared.complain_if_failed(sink.close()),
+                Work::Idle => shared.report_if_failed(sink.idle()),
+                Work::Close => break shared.report_if_failed(sink.close()),
             }
         }
-        // Dropped here, so that a panic while dropping is caught as well.
+        // Dropped here, so that a panic during the drop is also caught.
         drop(sink);
     });
-    let outcome = catch_unwind(work);
-    shared.end(outcome.err().map(|panic| panic_text(&*panic)));
+    let result = catch_unwind(work);
+    shared.end(result.err().map(|panic| panic_text(&*panic)));
 }
 
 fn panic_text(panic: &(dyn Any + Send)) -> String {
@@ -216,38 +215,38 @@ fn panic_text(panic: &(dyn Any + Send)) -> String {
     text.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_default()
 }
 
-/// What a sink's thread has to do next.
+/// The next job of a sink's thread.
 enum Work {
     Packet(Arc<Packet>),
     Idle,
     Close,
 }
 
-/// What run and sink share.
+/// State shared by the run and a sink's thread.
 struct Shared {
     queue: Mutex<Queue>,
-    /// Tells the sink that there is work.
+    /// Notifies the sink that there is work.
     for_sink: Condvar,
-    /// Tells the run that there is room, or that the sink has ended.
+    /// Notifies the run that there is space, or that the sink has ended.
     for_run: Condvar,
 }
 
 struct Queue {
     packets: VecDeque<Arc<Packet>>,
     counters: SinkCounters,
-    faults: Vec<SinkFault>,
-    fault_last: Option<String>,
-    /// 1 while the sink works on a packet.
-    in_hand: u64,
+    errors: Vec<SinkError>,
+    last_error: Option<String>,
+    /// Number of packets that the sink is writing, 0 or 1.
+    n_in_progress: u64,
     is_closing: bool,
     is_ended: bool,
 }
 
 impl Queue {
-    fn report_malformed(&mut self, text: String) {
-        if self.fault_last.as_ref() != Some(&text) && self.faults.len() < FAULTS_MAX {
-            self.faults.push(SinkFault { sink: self.counters.name, text: text.clone() });
-            self.fault_last = Some(text);
+    fn report_error(&mut self, text: String) {
+        if self.last_error.as_ref() != Some(&text) && self.errors.len() < ERRORS_MAX {
+            self.errors.push(SinkError { sink: self.counters.name, text: text.clone() });
+            self.last_error = Some(text);
         }
     }
 }
@@ -257,28 +256,28 @@ impl Shared {
         let queue = Queue {
             packets: VecDeque::new(),
             counters: SinkCounters { name, ..SinkCounters::default() },
-            faults: Vec::new(),
-            fault_last: None,
-            in_hand: 0,
+            errors: Vec::new(),
+            last_error: None,
+            n_in_progress: 0,
             is_closing: false,
             is_ended: false,
         };
         Self { queue: Mutex::new(queue), for_sink: Condvar::new(), for_run: Condvar::new() }
     }
 
-    /// Nothing panics while it holds the lock, so what is behind it is whole.
+    /// Nothing panics while it holds the lock, so the queue is always consistent.
     fn lock(&self) -> MutexGuard<'_, Queue> {
         ignore_poison(self.queue.lock())
     }
 
-    fn next(&self, patience: Duration) -> Work {
+    fn next(&self, timeout: Duration) -> Work {
         let queue = self.lock();
         let is_empty = |queue: &mut Queue| queue.packets.is_empty() && !queue.is_closing;
-        let waited = self.for_sink.wait_timeout_while(queue, patience, is_empty);
+        let waited = self.for_sink.wait_timeout_while(queue, timeout, is_empty);
         let (mut queue, _) = ignore_poison(waited);
         match queue.packets.pop_front() {
             Some(packet) => {
-                queue.in_hand = 1;
+                queue.n_in_progress = 1;
                 self.for_run.notify_one();
                 Work::Packet(packet)
             }
@@ -287,21 +286,21 @@ impl Shared {
         }
     }
 
-    fn written(&self, outcome: Result<(), Box<dyn Error + Send + Sync>>) {
+    fn finish_write(&self, result: Result<(), Box<dyn Error + Send + Sync>>) {
         let mut queue = self.lock();
-        queue.in_hand = 0;
-        match outcome {
+        queue.n_in_progress = 0;
+        match result {
             Ok(()) => queue.counters.n_written += 1,
             Err(error) => {
                 queue.counters.n_failed += 1;
-                queue.report_malformed(error.to_string());
+                queue.report_error(error.to_string());
             }
         }
     }
 
-    fn complain_if_failed(&self, outcome: Result<(), Box<dyn Error + Send + Sync>>) {
-        if let Err(error) = outcome {
-            self.lock().report_malformed(error.to_string());
+    fn report_if_failed(&self, result: Result<(), Box<dyn Error + Send + Sync>>) {
+        if let Err(error) = result {
+            self.lock().report_error(error.to_string());
         }
     }
 
@@ -309,11 +308,9 @@ impl Shared {
         let mut queue = self.lock();
         queue.is_ended = true;
         if let Some(text) = panic {
-            queue.counters.n_failed += queue.in_hand + queue.packets.len() as u64;
+            queue.counters.n_failed += queue.n_in_progress + queue.packets.len() as u64;
             let name = queue.counters.name;
-            queue.report_malformed(format!(
-                "{name}: broke off: {text}; nothing more is written there"
-            ));
+            queue.report_error(format!("{name}: panicked: {text}; it receives no more results"));
         }
         queue.packets.clear();
         self.for_run.notify_all();

@@ -1,7 +1,7 @@
-//! Inputs and outputs, whatever carries them: traits, queues, threads.
+//! Inputs and outputs, independent of transport: traits, queues, threads.
 //!
 //! A sink runs on its own thread behind a bounded queue, so a slow or dead reader never slows the
-//! physics. A source never waits: what arrives during a tick is kept for the next one.
+//! physics. A source never blocks: commands that arrive during a tick are kept for the next one.
 
 pub mod fanout; // one thread and one queue per sink
 pub mod inbox; // a bounded queue of commands

@@ -1,11 +1,11 @@
-//! How far the packets of a run have been published, so that answers can stay behind them.
+//! How far the packets of a run have been published, so that responses can wait for them.
 
 use std::{
     sync::{Condvar, Mutex, PoisonError},
     time::Duration,
 };
 
-/// Number of the last packet that was published. Packets count from 1.
+/// Number of the last published packet. Packets count from 1.
 #[derive(Debug, Default)]
 pub struct PublishedUpTo {
     last: Mutex<u64>,
@@ -13,22 +13,22 @@ pub struct PublishedUpTo {
 }
 
 impl PublishedUpTo {
-    /// The packet of this number has been published.
-    pub fn note(&self, number: u64) {
+    /// Reports that packet `number` has been published.
+    pub fn report(&self, number: u64) {
         let mut last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
         *last = number.max(*last);
         self.changed.notify_all();
     }
 
-    /// Number of the last packet that was published.
+    /// Number of the last published packet.
     pub fn last(&self) -> u64 {
         *self.last.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Waits for a packet, at most `patience`: a publisher that died holds nobody up for ever.
-    pub fn wait_for(&self, number: u64, patience: Duration) {
+    /// Waits until packet `number` is published, at most `timeout`, in case its publisher has died.
+    pub fn wait_for(&self, number: u64, timeout: Duration) {
         let last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
-        let waited = self.changed.wait_timeout_while(last, patience, |last| *last < number);
+        let waited = self.changed.wait_timeout_while(last, timeout, |last| *last < number);
         drop(waited.unwrap_or_else(PoisonError::into_inner));
     }
 }

@@ -1,56 +1,56 @@
-//! Where questions wait for the time between two ticks.
+//! Requests that wait until the next tick is over.
 
 use std::collections::VecDeque;
 
 use crate::io::server::{ServerCounters, ServiceRequest};
 
-/// Questions that can wait. A client asks again; one that floods hurts itself.
+/// Capacity of the queue. Clients can retry; a client that floods the queue only hurts itself.
 pub const DEPTH: usize = 256;
 
-/// Waiting questions and what was counted.
+/// Waiting requests, and counters.
 #[derive(Debug, Default)]
-pub struct Queue {
-    calls: VecDeque<ServiceRequest>,
+pub struct RequestQueue {
+    requests: VecDeque<ServiceRequest>,
     counters: ServerCounters,
-    last_fault: Option<String>,
+    last_error: Option<String>,
 }
 
-impl Queue {
-    /// Keeps a question if there is room.
-    pub fn offer(&mut self, call: ServiceRequest) {
+impl RequestQueue {
+    /// Adds a request, or counts it as rejected if the queue is full.
+    pub fn push(&mut self, request: ServiceRequest) {
         self.counters.n_received += 1;
-        if self.calls.len() < DEPTH {
-            self.calls.push_back(call);
+        if self.requests.len() < DEPTH {
+            self.requests.push_back(request);
         } else {
             self.counters.n_rejected += 1;
         }
     }
 
-    /// At most `most` questions, oldest first.
-    pub fn take(&mut self, most: usize) -> Vec<ServiceRequest> {
-        let n = most.min(self.calls.len());
-        self.calls.drain(..n).collect()
+    /// Takes at n_max `n_max` requests, oldest first.
+    pub fn take(&mut self, n_max: usize) -> Vec<ServiceRequest> {
+        let n = n_max.min(self.requests.len());
+        self.requests.drain(..n).collect()
     }
 
-    /// True if nothing waits.
+    /// True if no request waits.
     pub fn is_empty(&self) -> bool {
-        self.calls.is_empty()
+        self.requests.is_empty()
     }
 
-    /// Counts a question that could not be read.
-    pub fn report_malformed(&mut self, fault: String) {
+    /// Counts a request that could not be decoded.
+    pub fn report_malformed(&mut self, error: String) {
         self.counters.n_malformed += 1;
-        self.last_fault = Some(fault);
+        self.last_error = Some(error);
     }
 
-    /// What was counted so far.
+    /// The counters so far.
     pub fn counters(&self) -> ServerCounters {
         self.counters
     }
 
-    /// What was wrong with the last question that could not be read; asking clears it.
-    pub fn take_fault(&mut self) -> Option<String> {
-        self.last_fault.take()
+    /// Takes the error of the last request that could not be decoded, if any since the last call.
+    pub fn take_error(&mut self) -> Option<String> {
+        self.last_error.take()
     }
 }
 
@@ -59,17 +59,17 @@ mod tests {
     use super::*;
     use crate::{io::server::RequestId, wire::cdr::Cdr};
 
-    fn call(number: i64) -> ServiceRequest {
-        let asker = RequestId { offer: 0, writer: [0; 16], number, header: None };
-        ServiceRequest { asker, body: Cdr::of(&number) }
+    fn request(number: i64) -> ServiceRequest {
+        let id = RequestId { service: 0, writer: [0; 16], number, header: None };
+        ServiceRequest { id, body: Cdr::of(&number) }
     }
 
-    /// Oracle: the contract. The first that came are answered, in order; the flood is counted.
+    /// Oracle: the first requests are served in order; the flood is counted.
     #[test]
-    fn a_flood_pushes_out_nobody_who_waits() {
-        let mut queue = Queue::default();
-        (0..10_000).for_each(|number| queue.offer(call(number)));
-        let first: Vec<i64> = queue.take(3).iter().map(|it| it.asker.number).collect();
+    fn a_flood_displaces_no_waiting_request() {
+        let mut queue = RequestQueue::default();
+        (0..10_000).for_each(|number| queue.push(request(number)));
+        let first: Vec<i64> = queue.take(3).iter().map(|it| it.id.number).collect();
         assert_eq!(first, [0, 1, 2]);
         assert_eq!(queue.take(usize::MAX).len(), DEPTH - 3);
         let counters = queue.counters();

@@ -1,89 +1,89 @@
-//! Where questions come in and answers go out: ROS 2 services, and the topics of actions.
+//! The interface of service servers: requests in, responses and action topics out.
 //!
-//! A bench only carries. Questions wait here for the time between two ticks; a flood of them pushes
-//! out none of those that wait, costs the physics nothing, and is counted. Answers leave in order,
-//! each behind the messages of the tick that it speaks of.
+//! A server only transports. Requests wait here until the next tick is over. A flood of them
+//! displaces no waiting request, does not slow the physics, and is counted. Responses are sent in
+//! order, each after the messages of its tick.
 
 use std::time::Duration;
 
 use crate::wire::{cdr::Cdr, messages::ServiceType};
 
-/// A service that is offered.
+/// Name and type of a service.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ServiceSpec {
     /// Full name, such as `/jamgrip/step_simulation`.
     pub name: String,
-    /// Its type.
+    /// The type of the service.
     pub service_type: ServiceType,
 }
 
-/// A topic that answers may be published on, besides those of a scene.
+/// A topic of an action, in addition to the topics of the scene.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TopicSpec {
     /// Full name, such as `/jamgrip/gripper_cmd/_action/feedback`.
     pub name: String,
-    /// Name of its type on the DDS wire.
+    /// Name of its type in DDS.
     pub dds_name: String,
-    /// Who comes late gets the last message.
+    /// Transient local: late joiners receive the last message.
     pub is_latched: bool,
 }
 
-/// Who asked, so that the answer finds back.
+/// Identifies a request, so that its response can be addressed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RequestId {
-    /// Which offer was used.
-    pub offer: usize,
-    /// The client's writer.
+    /// Index of the service.
+    pub service: usize,
+    /// GUID of the client's writer.
     pub writer: [u8; 16],
-    /// Number of the question among the client's.
+    /// Sequence number of the request.
     pub number: i64,
-    /// What clients of Cyclone's way put before the body.
+    /// The header before the body, for clients with Cyclone's mapping.
     pub header: Option<[u8; 16]>,
 }
 
-/// A question.
+/// A request to a service.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ServiceRequest {
-    /// Who asks.
-    pub asker: RequestId,
-    /// What is asked.
+    /// Identity of the request.
+    pub id: RequestId,
+    /// The encoded request.
     pub body: Cdr,
 }
 
-/// Something on its way out.
+/// A message to send.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Outgoing {
-    /// An answer.
+    /// The response to a request.
     Response(RequestId, Cdr),
-    /// A message on one of the channels.
+    /// A message on the topic with this index.
     Message(usize, Cdr),
 }
 
-/// What became of the questions.
+/// Request counters.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ServerCounters {
-    /// Questions that arrived.
+    /// Requests that arrived.
     pub n_received: u64,
-    /// Questions that found the queue full and are left without an answer.
+    /// Requests that were dropped because the queue was full.
     pub n_rejected: u64,
-    /// Questions that could not be read.
+    /// Requests that could not be decoded.
     pub n_malformed: u64,
 }
 
-/// A place where others ask.
+/// Receives requests and sends responses.
 pub trait ServiceServer: Send {
-    /// At most `most` questions that wait, oldest first. Never waits.
-    fn take(&mut self, most: usize) -> Vec<ServiceRequest>;
+    /// Takes at n_max `n_max` waiting requests, oldest first. Never blocks.
+    fn take(&mut self, n_max: usize) -> Vec<ServiceRequest>;
 
-    /// Waits until a question is there, at most this long.
-    fn wait(&mut self, at_most: Duration);
+    /// Waits until a request arrives, at n_max `timeout`.
+    fn wait(&mut self, timeout: Duration);
 
-    /// Sends something out, once the packet of this number has been published or is lost.
+    /// Sends a message once packet `after_packet` has been published, or has timed out.
     fn send(&mut self, outgoing: Outgoing, after_packet: u64);
 
-    /// A question could not be read: it is counted, and now and then told.
-    fn report_malformed(&mut self, fault: String);
+    /// Counts a request that could not be decoded; its error is logged from time to time.
+    fn report_malformed(&mut self, error: String);
 
-    /// What became of the questions so far.
+    /// The counters so far.
     fn counters(&self) -> ServerCounters;
 }

@@ -1,7 +1,8 @@
-//! Where snapshots go.
+//! The interface of sinks, which receive the snapshots of a run.
 //!
 //! A sink runs on its own thread behind a bounded queue, so that a slow or dead reader never slows
-//! or stops the physics. The encoding to ROS 2 messages is made once, by whichever sink asks first.
+//! or stops the physics. Snapshots are encoded as ROS 2 messages once, for the first sink that
+//! needs them.
 
 use std::{
     sync::{Arc, OnceLock},
@@ -18,27 +19,27 @@ use crate::{
     },
 };
 
-/// What a sink is given: a snapshot and its messages.
+/// The input of a sink: a snapshot and its messages.
 pub struct Packet {
     /// The system at the end of a tick.
     pub snapshot: Snapshot,
-    /// How the run goes, in wall time; there when statistics are due.
+    /// Wall-clock statistics of the run, when they are due.
     pub run: Option<RunStatistics>,
-    /// All that is needed to go on, where it is due; the start's too with the first packet.
+    /// Checkpoints that are due; the first packet also carries the one of the start.
     pub checkpoints: Vec<Checkpoint>,
-    /// How the world was changed since the packet before, if not by a tick.
+    /// Changes since the previous packet that were not made by a tick.
     pub changes: Vec<Change>,
-    /// Number of the packet in its run; 0 if nobody counts.
+    /// Sequence number in the run; 0 if unnumbered.
     pub number: u64,
-    /// Who makes its messages, if not the one that a sink was opened with; its topics are the same, and
-    /// perhaps more behind them.
+    /// Encoder of the messages, if it is not the one that the sinks were opened with. It has the
+    /// same topics, and possibly more after them.
     encoder: Option<Arc<Encoder>>,
-    /// The messages, once someone has asked for them.
+    /// The encoded messages, once a sink has needed them.
     messages: OnceLock<Vec<Message>>,
 }
 
 impl Packet {
-    /// A packet whose messages are not encoded yet.
+    /// Creates a packet without encoding its messages.
     pub fn new(snapshot: Snapshot, run: Option<RunStatistics>) -> Self {
         Self {
             snapshot,
@@ -51,43 +52,43 @@ impl Packet {
         }
     }
 
-    /// The same with checkpoints.
+    /// Adds checkpoints.
     pub fn with_checkpoints(self, checkpoints: Vec<Checkpoint>) -> Self {
         Self { checkpoints, ..self }
     }
 
-    /// The same after changes of the world.
+    /// Adds changes.
     pub fn with_changes(self, changes: Vec<Change>) -> Self {
         Self { changes, ..self }
     }
 
-    /// True if nothing can be told without it of what comes after.
+    /// True if later packets depend on this one, so it must not be dropped.
     pub fn is_required(&self) -> bool {
         !self.changes.is_empty() || !self.checkpoints.is_empty()
     }
 
-    /// The same packet with a number.
+    /// Sets the sequence number.
     pub fn numbered(self, number: u64) -> Self {
         Self { number, ..self }
     }
 
-    /// The same packet, whose messages are made by `encoder`.
+    /// Sets the encoder of the messages.
     pub fn with_encoder(self, encoder: Option<Arc<Encoder>>) -> Self {
         Self { encoder, ..self }
     }
 
-    /// Topics behind the first `n_known`, which have come later.
+    /// The topics after the first `n_known`, which were added during the run.
     pub fn topics_beyond(&self, n_known: usize) -> &[Topic] {
         self.encoder.as_ref().and_then(|it| it.topics().get(n_known..)).unwrap_or_default()
     }
 
-    /// The messages; its own encoder or else `encoder` makes them if nobody has yet. After another
-    /// scene was loaded they begin with what never changes in it.
+    /// The messages. The first call encodes them, with the packet's own encoder or else with
+    /// `encoder`. If a scene was loaded, they begin with the constant messages of the new scene.
     pub fn messages(&self, encoder: &Encoder) -> &[Message] {
         self.messages.get_or_init(|| {
             let encoder = self.encoder.as_deref().unwrap_or(encoder);
-            let is_new = self.changes.iter().any(|it| matches!(it, Change::LoadScene(_)));
-            let mut messages = match is_new {
+            let has_new_scene = self.changes.iter().any(|it| matches!(it, Change::LoadScene(_)));
+            let mut messages = match has_new_scene {
                 true => encoder.latched(self.snapshot.time_ns),
                 false => Vec::new(),
             };
@@ -97,23 +98,23 @@ impl Packet {
     }
 }
 
-/// A place where snapshots go. Runs on a thread of its own.
+/// A receiver of snapshots. Runs on its own thread.
 pub trait Sink: Send {
     /// Name for counters and messages.
     fn name(&self) -> &'static str;
 
-    /// Takes one packet. An error is counted and shown; the run goes on.
+    /// Writes one packet. An error is counted and shown; the run continues.
     ///
     /// # Errors
-    /// Whatever the place says; the text names place, value, limit and remedy.
+    /// Errors of the receiver; the text names place, value, limit and remedy.
     fn write(&mut self, packet: &Packet) -> Result<(), Box<dyn std::error::Error + Send + Sync>>;
 
-    /// Wall time without packets after which `idle` is called, again and again.
+    /// Wall-clock time without packets after which `idle` is called, repeatedly.
     fn idle_after(&self) -> Duration {
         Duration::from_secs(1)
     }
 
-    /// Called while no packets come.
+    /// Called while no packets arrive.
     ///
     /// # Errors
     /// As for `write`.

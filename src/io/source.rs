@@ -1,33 +1,33 @@
-//! Where commands come from.
+//! The interface of sources, which provide commands.
 //!
-//! A source never waits and never slows a tick: what arrives while a tick runs is kept for the
-//! next one, in the order of arrival.
+//! A source never blocks and never slows a tick: commands that arrive during a tick are kept for
+//! the next one, in the order of arrival.
 
 use crate::{command::Command, snapshot::Snapshot};
 
-/// A place where commands come from.
+/// A provider of commands.
 pub trait Source: Send {
     /// Name for counters and messages.
     fn name(&self) -> &'static str;
 
-    /// Everything that came since the last call, oldest first. `seen` is the system at the end of
-    /// the last tick, for sources that decide by it. Never waits.
-    fn drain(&mut self, seen: &Snapshot) -> Vec<Command>;
+    /// Takes all commands that arrived since the last call, oldest first. `snapshot` is the system
+    /// at the end of the last tick, for sources that decide by it. Never blocks.
+    fn drain(&mut self, snapshot: &Snapshot) -> Vec<Command>;
 
-    /// True once a first command was there, drained or not.
-    fn has_heard(&self) -> bool;
+    /// True once a command has arrived, drained or not.
+    fn has_received(&self) -> bool;
 
-    /// What became of the messages so far.
+    /// The counters so far.
     fn counters(&self) -> SourceCounters;
 }
 
-/// What became of the messages of a source.
+/// Counters of a source's messages.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SourceCounters {
-    /// Commands that arrived and could be read.
+    /// Commands that were received and decoded.
     pub n_received: u64,
-    /// Commands that newer ones pushed out before a tick could take them.
+    /// Commands that were displaced by newer ones before a tick took them.
     pub n_dropped: u64,
-    /// Messages that could not be read.
+    /// Messages that could not be decoded.
     pub n_malformed: u64,
 }

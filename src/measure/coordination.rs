@@ -1,9 +1,9 @@
-//! Who carries load: contacts per grain, with and without rattlers.
+//! Coordination numbers: contacts per grain, with and without rattlers.
 //!
-//! A rattler has fewer contacts than a grain needs to be held: four without friction, since three
-//! forces that only push cannot balance in space unless they lie in a plane; two with friction.
-//! Taking rattlers away takes contacts from their neighbours, so this is repeated until all have
-//! enough. Isostatic counts without rattlers: 6 without friction, 4 with infinite friction.
+//! A rattler has fewer contacts than a grain needs for mechanical equilibrium: four without friction,
+//! since three repulsive forces cannot balance in space unless they lie in a plane; two with friction.
+//! Removing rattlers removes contacts of their neighbors, so this is repeated until all grains have
+//! enough. Isostatic coordination numbers without rattlers: 6 without friction, 4 with infinite friction.
 
 use crate::{
     base::{Real, real::real},
@@ -20,15 +20,15 @@ pub const NEEDED_ROUGH: usize = 2;
 pub struct Coordination {
     /// Mean number of contacts of a grain, with grains, walls and membrane.
     pub mean: Real,
-    /// The same among the grains that are no rattlers.
+    /// The same among the grains that are not rattlers.
     pub backbone: Real,
-    /// Share of the grains that are rattlers.
+    /// Fraction of the grains that are rattlers.
     pub rattler_share: Real,
     /// True for each rattler.
     pub is_rattler: Vec<bool>,
 }
 
-/// Coordination after the last substep, where grains with fewer than `n_needed` contacts rattle.
+/// Coordination after the last substep. Grains with fewer than `n_needed` contacts are rattlers.
 pub fn coordination(state: &State, scratch: &Scratch, n_needed: usize) -> Coordination {
     let n_grains = state.grains.len();
     let mut supports = vec![0_usize; n_grains];
@@ -43,7 +43,7 @@ pub fn coordination(state: &State, scratch: &Scratch, n_needed: usize) -> Coordi
     of_contacts(&pairs, &supports, n_needed)
 }
 
-/// Coordination of grains that touch each other in `pairs` and have `supports` besides.
+/// Coordination of grains with contacts `pairs` and with `supports` other contacts each.
 pub fn of_contacts(pairs: &[[usize; 2]], supports: &[usize], n_needed: usize) -> Coordination {
     let n_grains = supports.len();
     let counts = |is_rattler: &[bool]| {
@@ -81,9 +81,9 @@ pub fn of_contacts(pairs: &[[usize; 2]], supports: &[usize], n_needed: usize) ->
 mod tests {
     use super::*;
 
-    /// Oracle: by hand. Five grains that all touch each other; a chain of two hangs on one of them.
+    /// Oracle: by hand. Five grains that all touch each other; a chain of two is attached to one of them.
     #[test]
-    fn a_chain_that_hangs_on_a_cluster_rattles_link_by_link() {
+    fn a_chain_attached_to_a_cluster_is_removed_link_by_link() {
         let mut pairs: Vec<[usize; 2]> = Vec::new();
         for i in 0..5 {
             pairs.extend((0..i).map(|j| [i, j]));
@@ -94,7 +94,7 @@ mod tests {
         assert!((found.mean - 24.0 / 7.0).abs() < 1e-15);
         assert!((found.backbone - 4.0).abs() < 1e-15);
         assert!((found.rattler_share - 2.0 / 7.0).abs() < 1e-15);
-        // A support at the end of the chain holds it.
+        // A support at the end of the chain stabilizes it.
         let found = of_contacts(&pairs, &[0, 0, 0, 0, 0, 0, 1], 2);
         assert_eq!(found.rattler_share.to_bits(), 0.0_f64.to_bits());
     }

@@ -1,4 +1,4 @@
-//! A regular grid of cells in an oriented box: where fields are measured.
+//! A regular grid of cells in an oriented box, on which fields are measured.
 //!
 //! Cells are numbered with x fastest: `index = (z n_y + y) n_x + x`.
 
@@ -12,13 +12,13 @@ pub struct Grid {
     counts: [usize; 3],
 }
 
-/// A grid that cannot be.
+/// Why a grid is invalid.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum GridError {
-    /// No cell along an axis.
+    /// There is no cell along an axis.
     #[error("the grid has {0:?} cells; it needs at least one along each axis")]
     NoCells([usize; 3]),
-    /// A cell without volume.
+    /// A cell has no volume.
     #[error("the cells measure {0:?} m; each edge must be finite and positive")]
     NoVolume([Real; 3]),
 }
@@ -74,44 +74,45 @@ impl Grid {
         self.cell_size.product()
     }
 
-    /// Index of the cell at `place` along the axes.
-    pub fn index(&self, place: [usize; 3]) -> usize {
-        (place[2] * self.counts[1] + place[1]) * self.counts[0] + place[0]
+    /// Index of the cell with these indices along the axes.
+    pub fn index(&self, indices: [usize; 3]) -> usize {
+        (indices[2] * self.counts[1] + indices[1]) * self.counts[0] + indices[0]
     }
 
-    /// Place along the axes of cell `index`.
-    pub fn place(&self, index: usize) -> [usize; 3] {
+    /// Indices along the axes of cell `index`.
+    pub fn indices(&self, index: usize) -> [usize; 3] {
         let [n_x, n_y, _] = self.counts;
         [index % n_x, index / n_x % n_y, index / (n_x * n_y)]
     }
 
     /// Center of cell `index`, world frame (m).
     pub fn center(&self, index: usize) -> Vec3 {
-        let place = self.place(index).map(|k| real(k) + 0.5);
-        self.to_world(&Vec3::from(place).component_mul(&self.cell_size))
+        let indices = self.indices(index).map(|k| real(k) + 0.5);
+        self.to_world(&Vec3::from(indices).component_mul(&self.cell_size))
     }
 
-    /// The cell that holds `point`, world frame (m); `None` outside the grid.
+    /// The cell that contains `point`, world frame (m); `None` outside the grid.
     pub fn cell_at(&self, point: &Vec3) -> Option<usize> {
         let steps = self.to_local(point).component_div(&self.cell_size);
-        let mut place = [0; 3];
+        let mut indices = [0; 3];
         for axis in 0..3 {
             if !(0.0..real(self.counts[axis])).contains(&steps[axis]) {
                 return None;
             }
-            place[axis] = index_of(steps[axis]).min(self.counts[axis] - 1);
+            indices[axis] = index_of(steps[axis]).min(self.counts[axis] - 1);
         }
-        Some(self.index(place))
+        Some(self.index(indices))
     }
 
-    /// Lowest and highest corner of the cell at `place`, grid frame (m).
-    pub fn corners(&self, place: [usize; 3]) -> [Vec3; 2] {
-        let corner =
-            |step: usize| Vec3::from(place.map(|k| real(k + step))).component_mul(&self.cell_size);
+    /// Lowest and highest corner of the cell with these indices along the axes, grid frame (m).
+    pub fn corners(&self, indices: [usize; 3]) -> [Vec3; 2] {
+        let corner = |step: usize| {
+            Vec3::from(indices.map(|k| real(k + step))).component_mul(&self.cell_size)
+        };
         [corner(0), corner(1)]
     }
 
-    /// Edges of the whole grid (m).
+    /// Edge lengths of the grid (m).
     pub fn extent(&self) -> Vec3 {
         Vec3::from(self.counts.map(real)).component_mul(&self.cell_size)
     }
@@ -140,13 +141,13 @@ impl Grid {
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
-    reason = "the cast saturates, which is what is wanted"
+    reason = "the cast saturates, as intended"
 )]
 pub(super) fn index_of(value: Real) -> usize {
     value as usize
 }
 
-/// The translations (m) by whole periods that bring a copy of the interval from `low` to `high` (m)
+/// The translations (m) by integer multiples of the period that bring a copy of the interval from `low` to `high` (m)
 /// into the interval from 0 to `extent` (m).
 fn shifts_along(low: Real, high: Real, extent: Real, period: Real) -> Vec<Real> {
     let first = (-high / period).ceil();
@@ -155,7 +156,7 @@ fn shifts_along(low: Real, high: Real, extent: Real, period: Real) -> Vec<Real> 
 }
 
 /// The translations (m), world axes, of the periodic images of a box, from `low` to `high` (m), that
-/// can touch the world box from `from` to `to` (m). Without a period: none but the identity.
+/// can touch the world box from `from` to `to` (m). Without a period: none but zero.
 pub(super) fn images(
     [low, high]: [Vec3; 2],
     [from, to]: [Vec3; 2],
@@ -199,7 +200,7 @@ mod tests {
         );
         let grid = Grid::new(frame, Vec3::new(0.1, 0.2, 0.3), [4, 3, 5]).unwrap();
         for index in 0..grid.n_cells() {
-            assert_eq!(grid.index(grid.place(index)), index);
+            assert_eq!(grid.index(grid.indices(index)), index);
             assert_eq!(grid.cell_at(&grid.center(index)), Some(index));
         }
         assert_eq!(grid.cell_at(&grid.to_world(&Vec3::new(-0.01, 0.1, 0.1))), None);
@@ -218,9 +219,9 @@ mod tests {
         assert!(matches!(Grid::aligned(&low, &flat, [1, 1, 1]), Err(GridError::NoVolume(_))));
     }
 
-    /// Oracle: by hand. A sphere near the corner of a periodic box has eight images there.
+    /// Oracle: by hand. A sphere at the corner of a periodic box has eight images there.
     #[test]
-    fn images_are_those_that_touch() {
+    fn images_are_those_that_touch_the_box() {
         let period = Vec3::repeat(1.0);
         let at = |center: Real| {
             let corners = [Vec3::repeat(center - 0.1), Vec3::repeat(center + 0.1)];

@@ -1,7 +1,7 @@
-//! What can be read off a state: energies, volumes, contacts, fields, structure. Changes nothing.
+//! Measurements of a state: energies, volumes, contacts, fields, structure. Nothing is changed.
 //!
 //! Fields, radial distribution functions and Voronoi cells take plain slices of positions and radii, so
-//! they serve any system and any recording:
+//! they work for any system and any recording:
 //!
 //! ```
 //! use jamgrip::{base::Vec3, measure::{fields::Overlaps, grid::Grid}};
@@ -14,36 +14,36 @@
 //! # Ok::<(), jamgrip::measure::grid::GridError>(())
 //! ```
 
-pub mod cell_stress; // stress, cell by cell
-pub mod coordination; // who carries load
-pub mod fields; // density, velocity, displacement, cell by cell
-pub mod grid; // the cells
-mod near; // who is close by
-pub mod overlap; // sphere and box, exactly
-pub mod rest; // is it at rest?
-pub mod stress; // what the contacts carry
-pub mod structure; // how grains are arranged
-pub mod voronoi; // the space that belongs to each grain
+pub mod cell_stress; // stress in each cell of a grid
+pub mod coordination; // contacts per grain, rattlers
+pub mod fields; // density, velocity, displacement in each cell of a grid
+pub mod grid; // the grid of cells
+mod search; // neighbor search with periodic images
+pub mod overlap; // exact overlap volume of sphere and box
+pub mod rest; // unbalanced force, energies, inertial number
+pub mod stress; // mean stress
+pub mod structure; // solid fraction, radial distribution
+pub mod voronoi; // Laguerre-Voronoi cells
 
 use crate::{
     base::{Real, real::real},
     physics::{Model, Scratch, State, membrane::pressure},
 };
 
-/// State of the packing.
+/// Contact statistics of the packing.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Packing {
-    /// Contacts between grains.
+    /// Number of contacts between grains.
     pub n_grain_contacts: usize,
-    /// Contacts between grains and membrane; of vertex spheres each counts.
+    /// Number of contacts between grains and membrane; each vertex sphere counts.
     pub n_membrane_contacts: usize,
-    /// Contacts between membrane and bodies.
+    /// Number of contacts between membrane and bodies.
     pub n_body_contacts: usize,
     /// Mean number of contacts per grain, with grains, membrane and walls.
     pub coordination_number: Real,
-    /// Share of grains with at least four contacts, those that can carry load.
+    /// Fraction of grains with at least four contacts, which can carry load.
     pub jammed_fraction: Real,
-    /// Share of sliding contacts among contacts between grains.
+    /// Fraction of sliding contacts among contacts between grains.
     pub sliding_fraction: Real,
     /// Largest overlap between grains (m).
     pub overlap_max: Real,
@@ -51,7 +51,7 @@ pub struct Packing {
     pub membrane_overlap_max: Real,
 }
 
-/// Looks at all contacts of the last substep.
+/// Contact statistics of the last substep.
 pub fn packing(state: &State, scratch: &Scratch) -> Packing {
     let n_grains = state.grains.len();
     let mut packing = Packing::default();

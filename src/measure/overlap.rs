@@ -1,4 +1,4 @@
-//! Volume that a sphere shares with a box whose edges run along the axes, in closed form.
+//! Overlap volume of a sphere and an axis-aligned box, in closed form.
 //!
 //! ```text
 //! V(box)  = Σ ± P(corner)            over its eight corners, − for each high coordinate
@@ -13,8 +13,8 @@
 //! φ_a  angle of the arc that bounds both                            (rad)
 //! ```
 //!
-//! Negative coordinates are mirrored: what lies beyond −a and what lies beyond a make up the ball
-//! beyond the other planes. Exact to rounding, about 1e-15 R³.
+//! Negative coordinates are mirrored: the parts beyond −a and beyond a add up to the ball beyond the
+//! other planes. Exact to rounding, about 1e-15 R³.
 
 use std::f64::consts::PI;
 
@@ -81,7 +81,7 @@ fn beyond_three(radius: Real, at: Vec3) -> Real {
     let (mut turned, mut flat) = (0.0, 0.0);
     for axis in 0..3 {
         let [a, b, c] = [0, 1, 2].map(|k| at[(axis + k) % 3]);
-        // Where the arc in the plane of a meets the planes of b and c.
+        // The intersections of the arc in the plane of a with the planes of b and c.
         let h = |other: Real| (radius * radius - a * a - other * other).sqrt();
         let arc = h(b).atan2(b) - c.atan2(h(c));
         let in_plane = (radius * radius - a * a) * arc - b * (h(b) - c) - c * (h(c) - b);
@@ -97,7 +97,7 @@ mod tests {
     use crate::base::random::{Random, Stream};
 
     const R: Real = 0.3;
-    const WHOLE: Real = 4.0 / 3.0 * PI * R * R * R;
+    const VOLUME: Real = 4.0 / 3.0 * PI * R * R * R;
 
     fn in_cube(center: [Real; 3], radius: Real, edge: Real) -> Real {
         sphere_in_box(&Vec3::from(center), radius, &Vec3::zeros(), &Vec3::repeat(edge))
@@ -109,9 +109,9 @@ mod tests {
         for (center, share) in
             [([0.0, 1.0, 1.0], 0.5), ([0.0, 0.0, 1.0], 0.25), ([0.0, 0.0, 0.0], 0.125)]
         {
-            assert!((in_cube(center, R, 2.0) / WHOLE - share).abs() < 1e-14, "{share}");
+            assert!((in_cube(center, R, 2.0) / VOLUME - share).abs() < 1e-14, "{share}");
         }
-        assert!((in_cube([1.0; 3], R, 2.0) / WHOLE - 1.0).abs() < 1e-15);
+        assert!((in_cube([1.0; 3], R, 2.0) / VOLUME - 1.0).abs() < 1e-15);
         assert!(in_cube([-0.4, 1.0, 1.0], R, 2.0).abs() < 1e-15);
     }
 
@@ -127,10 +127,10 @@ mod tests {
         assert!((cut - 0.797_964_5).abs() < 5e-8, "{cut}");
     }
 
-    /// Oracle: the parts of a partition make up the sphere. Tolerance 1e-12 of it: 343 sums of
+    /// Oracle: the parts of a partition add up to the sphere. Tolerance 1e-12 of it: 343 sums of
     /// eight terms, each exact to 1e-15.
     #[test]
-    fn the_parts_in_all_cells_make_up_the_sphere() {
+    fn the_parts_in_all_cells_add_up_to_the_sphere() {
         let mut random = Random::new(1, Stream::Position);
         for _ in 0..300 {
             let center = Vec3::from_fn(|_, _| random.between(-0.2, 0.2));
@@ -148,13 +148,13 @@ mod tests {
                 assert!(part > -1e-15, "{part}");
                 sum += part;
             }
-            let whole = 4.0 / 3.0 * PI * radius.powi(3);
-            assert!((sum / whole - 1.0).abs() < 1e-12, "{sum} {whole}");
+            let sphere_volume = 4.0 / 3.0 * PI * radius.powi(3);
+            assert!((sum / sphere_volume - 1.0).abs() < 1e-12, "{sum} {sphere_volume}");
         }
     }
 
     /// Oracle: the `overlap` library of Strobl, Formella & Pöschel (2016) (tests/golden/measure/make.py):
-    /// spheres and boxes in all positions. Tolerance 1e-12 of the smaller of both volumes.
+    /// spheres and boxes in all relative positions. Tolerance 1e-12 of the smaller of both volumes.
     #[test]
     fn volumes_are_those_of_the_overlap_library() {
         let text = include_str!("../../tests/golden/measure/overlap.json");
@@ -169,8 +169,8 @@ mod tests {
             let (center, low, high) = (vector("center"), vector("low"), vector("high"));
             let found = sphere_in_box(&center, real("radius"), &low, &high);
             let size = (high - low).product().min(4.0 / 3.0 * PI * real("radius").powi(3));
-            let apart = (found - real("volume")).abs();
-            assert!(apart < 1e-12 * size, "{row}: {found}");
+            let difference = (found - real("volume")).abs();
+            assert!(difference < 1e-12 * size, "{row}: {found}");
         }
     }
 }

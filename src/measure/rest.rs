@@ -1,4 +1,4 @@
-//! Is it at rest? Unbalanced forces, energies, and the inertial number of a slow deformation.
+//! Criteria for rest: unbalanced force, energies, and the inertial number of a slow deformation.
 //!
 //! ```text
 //! u   = mean |force on a grain| / mean |force in a contact|        at rest below 1e-3
@@ -6,15 +6,15 @@
 //! I   = ε̇ d √(ρ/p)                                                quasi-static below 1e-3
 //! ```
 //!
-//! Source of u and I: da Cruz et al. (2005); of the criteria: E_kin/U below 1e-6 as well, since a
-//! grain in flight has no unbalanced force.
+//! Source of u and I: da Cruz et al. (2005). At rest, E_kin/U must also be below 1e-6, since a grain in
+//! free flight has no unbalanced force.
 
 use crate::{
     base::{Real, real::real},
     physics::{Model, Scratch, State, contact::sums, law::PairLaw, state::ListedSprings},
 };
 
-/// Mean force on a grain over the mean force in its contacts; 0 without contacts.
+/// Mean force on a grain divided by the mean force in its contacts; 0 without contacts.
 pub fn unbalanced_force(model: &Model, state: &State, scratch: &Scratch) -> Real {
     let grains = &state.grains;
     let net: Real = (0..grains.len())
@@ -38,7 +38,7 @@ pub fn unbalanced_force(model: &Model, state: &State, scratch: &Scratch) -> Real
 }
 
 /// Energy stored in the contacts of grains with each other, with walls and with the membrane (J).
-/// The membrane's friction springs are left out.
+/// Friction springs of the membrane are not included.
 pub fn elastic_energy(model: &Model, state: &State, scratch: &Scratch) -> Real {
     let radii = &state.grains.radii;
     let mut energy = 0.0;
@@ -61,6 +61,14 @@ pub fn elastic_energy(model: &Model, state: &State, scratch: &Scratch) -> Real {
             let [w, i] = ids.map(|id| id as usize);
             let law = &model.walls[w].law;
             energy += stored(law, radii[i], contact.overlap, spring.norm_squared());
+        }
+    }
+    for (contact, ids) in scratch.surface_contacts_with_ids() {
+        let [s, i] = ids.map(|id| id as usize);
+        let law = model.surface(s).map(|(_, law)| law);
+        if let Some(law) = law.filter(|_| contact.force.overlap > 0.0) {
+            let stretch = contact.history.spring.norm_squared();
+            energy += contact.share * stored(law, radii[i], contact.force.overlap, stretch);
         }
     }
     energy

@@ -1,4 +1,4 @@
-//! Mean stress of the grains: what their contacts carry.
+//! Mean stress of the grains from their contact forces.
 //!
 //! ```text
 //! σ_ij = 1/V Σ_c f_i l_j       over all contacts of grains with grains, walls and membrane
@@ -18,7 +18,7 @@ use crate::{
     physics::{Model, Scratch, State, contact::grains::closest_image},
 };
 
-/// A contact of a grain, as the stress sees it. All vectors in the world frame.
+/// A contact of a grain: its force and its branch vector. World frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Branch {
     /// Center of the grain that the force acts on (m).
@@ -53,9 +53,9 @@ pub fn branches(model: &Model, state: &State, scratch: &Scratch) -> Vec<Branch> 
     for (sphere, ids) in scratch.sphere_forces.iter().zip(&state.springs.spheres.ids) {
         if sphere.overlap > 0.0 {
             let end = positions[ids[0] as usize];
-            let apart = end - state.membrane.positions[sphere.vertex as usize];
+            let offset = end - state.membrane.positions[sphere.vertex as usize];
             let reach = state.grains.radii[ids[0] as usize] - sphere.overlap / 2.0;
-            branches.push(Branch { end, branch: apart.normalize() * reach, force: sphere.force });
+            branches.push(Branch { end, branch: offset.normalize() * reach, force: sphere.force });
         }
     }
     for (wall, [_, i]) in scratch.touching_walls(state) {

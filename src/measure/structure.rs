@@ -1,23 +1,23 @@
-//! How grains are arranged: solid fraction of a region, and radial distribution functions.
+//! Structure of a packing: solid fraction of a region, and radial distribution functions.
 //!
 //! ```text
 //! g(r)  = ⟨pairs at r … r + Δ⟩ / (ρ_n 4/3 π ((r + Δ)³ − r³))        center to center, → 1 far away
 //! g₄₂(r) = 1/N Σ_i n_i(r) / (4π (r/R̄)²)                             Götz (2024), eq. 42
 //!
-//! n_i(r)  grains that the sphere of radius r about grain i cuts       (-)
-//! ρ_n     grains per volume                                          (1/m³)
-//! R̄       mean radius                                                (m)
+//! n_i(r)  grains that intersect the sphere of radius r about grain i  (-)
+//! ρ_n     grains per volume                                        (1/m³)
+//! R̄       mean radius                                              (m)
 //! ```
 //!
 //! In a bounded sample only the part of each shell inside the sample counts: its exact volume replaces
-//! that of the whole shell.
+//! that of the complete shell.
 //!
 //! Eq. 42 counts with a kernel one diameter wide, so narrow peaks of a lattice are smeared out, and it
 //! tends to 3 φ/(2π) (1 + R̄²/(3 r²)) in a packing without correlations, not to 1.
 
 use std::f64::consts::PI;
 
-use super::{grid::index_of as index, near::Near, overlap::sphere_in_box};
+use super::{grid::index_of as index, overlap::sphere_in_box, search::PointSearch};
 use crate::{
     base::{
         Real, Vec3,
@@ -26,26 +26,26 @@ use crate::{
     physics::contact::grains::closest_image,
 };
 
-/// Share of the box from `low` to `high` (m) that spheres at `positions` (m) with `radii` (m) fill, cut
-/// exactly at its faces.
+/// Solid fraction of the box from `low` to `high` (m) with spheres at `positions` (m) with `radii` (m),
+/// which are cut exactly at its faces.
 pub fn solid_fraction(positions: &[Vec3], radii: &[Real], low: &Vec3, high: &Vec3) -> Real {
     let inside = |(center, &radius): (&Vec3, &Real)| sphere_in_box(center, radius, low, high);
     let solid: Real = positions.iter().zip(radii).map(inside).sum();
     solid / (high - low).product()
 }
 
-/// Distances are counted in bins of `width` (m), `n_bins` of them.
+/// Bins of a histogram of distances.
 #[derive(Clone, Copy, Debug)]
 pub struct Bins {
     /// Width of a bin (m).
     pub width: Real,
-    /// How many there are.
+    /// Number of bins.
     pub n_bins: usize,
 }
 
 impl Bins {
-    /// Middle of bin `k` (m).
-    pub fn middle(&self, k: usize) -> Real {
+    /// Center of bin `k` (m).
+    pub fn center(&self, k: usize) -> Real {
         (real(k) + 0.5) * self.width
     }
 
@@ -54,7 +54,7 @@ impl Bins {
         real(self.n_bins) * self.width
     }
 
-    /// The bin of `distance`.
+    /// The bin that contains `distance`.
     fn of(&self, distance: Real) -> Option<usize> {
         let k = index(distance / self.width);
         (k < self.n_bins).then_some(k)
@@ -64,17 +64,18 @@ impl Bins {
 /// The sample, and which of its grains are centers of shells.
 #[derive(Clone, Copy, Debug)]
 pub enum Region {
-    /// All of a periodic box with these edges (m); half the shortest must hold the bins.
+    /// A periodic box with these edges (m). The bins must not exceed half the shortest edge.
     Periodic(Vec3),
-    /// Grains in a box inside a larger packing; it should lie as deep in the packing as the bins reach.
+    /// Grains in a box inside a larger packing. The packing should extend beyond the box by the largest
+    /// distance that is counted.
     Core {
         /// Lowest corner (m).
         low: Vec3,
         /// Highest corner (m).
         high: Vec3,
     },
-    /// All grains with their center in a box that bounds the centers: for a container with walls, the
-    /// container less one radius on each side. Shells are cut at its faces.
+    /// All grains whose center is in a box that bounds the centers: for a container with walls, the
+    /// container minus one radius on each side. Shells are cut at its faces.
     Bounded {
         /// Lowest corner (m).
         low: Vec3,
@@ -98,7 +99,7 @@ impl Region {
     }
 
     /// True if the grain at `point` (m) is in the sample.
-    fn holds(&self, point: &Vec3) -> bool {
+    fn contains(&self, point: &Vec3) -> bool {
         let [low, high] = self.corners();
         matches!(self, Self::Periodic(_))
             || (0..3).all(|k| low[k] <= point[k] && point[k] < high[k])
@@ -109,7 +110,7 @@ impl Region {
     }
 }
 
-/// Radial distribution function from center to center, bin by bin.
+/// Radial distribution function of center-to-center distances in each bin.
 pub fn radial_distribution(positions: &[Vec3], region: &Region, bins: &Bins) -> Vec<Real> {
     let mut counts = vec![0_u64; bins.n_bins];
     let n_centers = each_distance(positions, region, bins.reach(), |_, _, distance| {
@@ -120,16 +121,16 @@ pub fn radial_distribution(positions: &[Vec3], region: &Region, bins: &Bins) -> 
     let density = real(n_centers) / region.volume();
     let shell =
         |k: usize| 4.0 / 3.0 * PI * bins.width.powi(3) * (real(k + 1).powi(3) - real(k).powi(3));
-    let seen = shells_seen(positions, region, bins);
+    let shells = shells_inside(positions, region, bins);
     let g = |(k, &n): (usize, &u64)| {
-        let n_shells = seen.as_ref().map_or(real(n_centers), |seen| seen[k]);
+        let n_shells = shells.as_ref().map_or(real(n_centers), |shells| shells[k]);
         let n_expected = n_shells.max(Real::MIN_POSITIVE) * density * shell(k);
         if n == 0 { 0.0 } else { real_of(n) / n_expected }
     };
     counts.iter().enumerate().map(g).collect()
 }
 
-/// Radial distribution of the grains that a sphere cuts, eq. 42, at the middles of the bins.
+/// Radial distribution of the grains that intersect a sphere, eq. 42, at the centers of the bins.
 pub fn cut_distribution(
     positions: &[Vec3],
     radii: &[Real],
@@ -138,7 +139,7 @@ pub fn cut_distribution(
 ) -> Vec<Real> {
     let largest = radii.iter().copied().fold(0.0, Real::max);
     let mean = radii.iter().sum::<Real>() / real(radii.len().max(1));
-    // Cut between distance − R and distance + R: counted by the change at both ends.
+    // A grain intersects from distance − R to distance + R; the count changes at both ends.
     let mut changes = vec![0_i64; bins.n_bins + 1];
     let reach = bins.reach() + largest;
     let n_centers = each_distance(positions, region, reach, |_, j, distance| {
@@ -146,67 +147,67 @@ pub fn cut_distribution(
         changes[first(distance - radii[j])] += 1;
         changes[first(distance + radii[j])] -= 1;
     });
-    let seen = shells_seen(positions, region, bins);
+    let shells = shells_inside(positions, region, bins);
     let mut cut = 0_i64;
     (0..bins.n_bins)
         .map(|k| {
             cut += changes[k];
             let n = real_of(u64::try_from(cut).unwrap_or(0));
-            let n_shells = seen.as_ref().map_or(real(n_centers.max(1)), |seen| seen[k]);
+            let n_shells = shells.as_ref().map_or(real(n_centers.max(1)), |shells| shells[k]);
             let n_shells = n_shells.max(Real::MIN_POSITIVE);
-            if n == 0.0 { 0.0 } else { n / (n_shells * 4.0 * PI * (bins.middle(k) / mean).powi(2)) }
+            if n == 0.0 { 0.0 } else { n / (n_shells * 4.0 * PI * (bins.center(k) / mean).powi(2)) }
         })
         .collect()
 }
 
-/// How many whole shells the shells of bin k inside a bounded sample make up together; `None` if all
-/// shells are whole.
-fn shells_seen(positions: &[Vec3], region: &Region, bins: &Bins) -> Option<Vec<Real>> {
+/// For each bin, the total of the fractions of all shells that are inside a bounded sample; `None` if no
+/// shell is cut.
+fn shells_inside(positions: &[Vec3], region: &Region, bins: &Bins) -> Option<Vec<Real>> {
     let Region::Bounded { low, high } = region else { return None };
-    let mut seen = vec![0.0; bins.n_bins];
-    for center in positions.iter().filter(|p| region.holds(p)) {
+    let mut shells = vec![0.0; bins.n_bins];
+    for center in positions.iter().filter(|p| region.contains(p)) {
         let to_wall = (center - low).inf(&(high - center)).min();
         let mut below = 0.0;
-        for (k, seen) in seen.iter_mut().enumerate() {
+        for (k, shells) in shells.iter_mut().enumerate() {
             let (inner, outer) = (real(k) * bins.width, real(k + 1) * bins.width);
             let ball = 4.0 / 3.0 * PI * outer.powi(3);
             let part =
                 if outer <= to_wall { ball } else { sphere_in_box(center, outer, low, high) };
-            *seen += (part - below) / (ball - 4.0 / 3.0 * PI * inner.powi(3));
+            *shells += (part - below) / (ball - 4.0 / 3.0 * PI * inner.powi(3));
             below = part;
         }
     }
-    Some(seen)
+    Some(shells)
 }
 
-/// Calls `see` with center, partner and their distance, for all closer than `reach`; returns the
-/// number of centers.
+/// Calls `visit` with center, partner and distance of all pairs closer than `reach`. Returns the number
+/// of centers.
 fn each_distance(
     positions: &[Vec3],
     region: &Region,
     reach: Real,
-    mut see: impl FnMut(usize, usize, Real),
+    mut visit: impl FnMut(usize, usize, Real),
 ) -> usize {
-    let near = Near::new(positions, reach / 2.0, region.period());
+    let points = PointSearch::new(positions, reach / 2.0, region.period());
     let is_partner =
-        |j: usize| !matches!(region, Region::Bounded { .. }) || region.holds(&positions[j]);
+        |j: usize| !matches!(region, Region::Bounded { .. }) || region.contains(&positions[j]);
     let mut n_centers = 0;
     let mut partners = Vec::new();
-    for (i, center) in positions.iter().enumerate().filter(|(_, p)| region.holds(p)) {
+    for (i, center) in positions.iter().enumerate().filter(|(_, p)| region.contains(p)) {
         n_centers += 1;
         partners.clear();
-        // Wrapping rounds: a little more is searched than is counted.
-        near.visit(&near.at(i), reach * (1.0 + 1e-9), |j, _| partners.push(j));
+        // Because wrapping rounds, the search range is slightly larger.
+        points.visit(&points.at(i), reach * (1.0 + 1e-9), |j, _| partners.push(j));
         if region.period().is_some() {
             partners.sort_unstable();
             partners.dedup();
         }
         for &j in partners.iter().filter(|&&j| j != i && is_partner(j)) {
-            let apart = positions[j] - center;
-            let apart = region.period().map_or(apart, |period| closest_image(apart, period));
-            let squared = apart.norm_squared();
+            let delta = positions[j] - center;
+            let delta = region.period().map_or(delta, |period| closest_image(delta, period));
+            let squared = delta.norm_squared();
             if squared < reach * reach {
-                see(i, j, squared.sqrt());
+                visit(i, j, squared.sqrt());
             }
         }
     }
@@ -218,7 +219,7 @@ mod tests {
     use super::*;
     use crate::base::random::{Random, Stream};
 
-    /// Face-centerd cubic, touching spheres of diameter 1: `n` cells along each edge.
+    /// Face-centered cubic lattice, touching spheres of diameter 1: `n` cells along each edge.
     fn fcc(n: usize) -> (Vec<Vec3>, Vec3) {
         let edge = 2.0_f64.sqrt();
         let basis = [[0.0, 0.0, 0.0], [0.5, 0.5, 0.0], [0.5, 0.0, 0.5], [0.0, 0.5, 0.5]];
@@ -230,8 +231,8 @@ mod tests {
         (positions, Vec3::repeat(real(n) * edge))
     }
 
-    /// Oracle: the shells of the lattice, 12 neighbours at 1, 6 at √2, 24 at √3, 12 at 2; nothing
-    /// between. Exact: the pairs are counted back from g.
+    /// Oracle: the shells of the lattice, 12 neighbors at 1, 6 at √2, 24 at √3, 12 at 2; nothing
+    /// between. Exact: the pairs are recovered from g.
     #[test]
     fn a_lattice_has_its_shells() {
         let (positions, period) = fcc(4);
@@ -241,9 +242,9 @@ mod tests {
         let core = Region::Core { low: period * 0.3, high: period * 0.55 };
         for region in [Region::Periodic(period), core] {
             let g = radial_distribution(&positions, &region, &bins);
-            for (at, neighbours) in expect {
+            for (at, neighbors) in expect {
                 let k = index(at / bins.width);
-                // The shell may fall on the border of two bins.
+                // The shell may be on the boundary of two bins.
                 let n: Real = (k - 1..=k + 1)
                     .map(|k| {
                         let (r, s) = (real(k) * bins.width, real(k + 1) * bins.width);
@@ -252,16 +253,16 @@ mod tests {
                             * (s.powi(3) - r.powi(3))
                     })
                     .sum();
-                assert!((n - neighbours).abs() < 1e-6, "{region:?} {at}: {n}");
+                assert!((n - neighbors).abs() < 1e-6, "{region:?} {at}: {n}");
             }
             assert!(g[60] == 0.0 && g[80] == 0.0, "between the shells");
         }
     }
 
-    /// Density that the distribution was normalised by.
-    fn density_in(region: &Region, positions: &[Vec3], whole: Real) -> Real {
+    /// Density by which the distribution was normalized.
+    fn density_in(region: &Region, positions: &[Vec3], density: Real) -> Real {
         match region {
-            Region::Periodic(_) => whole,
+            Region::Periodic(_) => density,
             Region::Core { low, high } | Region::Bounded { low, high } => {
                 let inside = |p: &&Vec3| (0..3).all(|k| low[k] <= p[k] && p[k] < high[k]);
                 real(positions.iter().filter(inside).count()) / (high - low).product()
@@ -286,14 +287,14 @@ mod tests {
         let phi = 4000.0 * 4.0 / 3.0 * PI * radius.powi(3);
         let eq42 = cut_distribution(&positions, &radii, &region, &bins);
         for k in [20, 30, 39] {
-            let r = bins.middle(k);
+            let r = bins.center(k);
             let expected = 3.0 * phi / (2.0 * PI) * (1.0 + radius * radius / (3.0 * r * r));
             assert!((eq42[k] / expected - 1.0).abs() < 0.02, "{} {expected}", eq42[k]);
         }
     }
 
-    /// Oracle: φ = π/√18 for touching spheres on the lattice; exact cuts make it hold for any cell
-    /// of the lattice inside, to rounding.
+    /// Oracle: φ = π/√18 for touching spheres on the lattice. Because the cuts are exact, it contains for any
+    /// cell of the lattice, to rounding.
     #[test]
     fn a_lattice_has_its_solid_fraction_wherever_it_is_cut() {
         let (positions, period) = fcc(4);
@@ -308,8 +309,8 @@ mod tests {
         }
     }
 
-    /// Oracle: points without correlations have g = 1 in a box with walls too, out to distances at which
-    /// most shells leave the box. Tolerance 2 %: as above.
+    /// Oracle: uncorrelated points have g = 1 also in a box with walls, up to distances at which most
+    /// shells leave the box. Tolerance 2 %: as above.
     #[test]
     fn shells_cut_at_the_walls_do_not_thin_the_distribution() {
         let mut random = Random::new(5, Stream::Position);
@@ -326,7 +327,7 @@ mod tests {
     }
 
     /// Oracle: 6, 12 and 8 neighbors at 1, √2 and √3 in the simple cubic lattice; that of eq. 42 by hand:
-    /// the sphere of radius 1 about a grain of radius 1/2 cuts its 6 neighbors and the 12 whose centers
+    /// the sphere of radius 1 about a grain of radius 1/2 intersects its 6 neighbors and the 12 whose centers
     /// are √2 away.
     #[test]
     fn a_simple_cubic_lattice_has_its_coordination_numbers() {
@@ -345,12 +346,12 @@ mod tests {
         }
         let wide = Bins { width: 0.08, n_bins: 20 };
         let cut = cut_distribution(&positions, &vec![0.5; n * n * n], &region, &wide);
-        // The middle of bin 12 is 1.
+        // The center of bin 12 is 1.
         let expected = 18.0 / (4.0 * PI * 4.0);
         assert!((cut[12] / expected - 1.0).abs() < 1e-12, "{} {expected}", cut[12]);
     }
 
-    /// Oracle: all pairs, one by one, of points that have strayed into other periods.
+    /// Oracle: brute force over all pairs, with points that have moved into other periods.
     #[test]
     fn the_search_finds_every_pair_once() {
         let mut random = Random::new(6, Stream::Position);

@@ -59,7 +59,7 @@ impl CommandSources {
 
     /// True while the run must wait for a first command.
     pub fn is_waiting(&self) -> bool {
-        self.builtin.is_none() && !self.external.iter().any(|source| source.has_heard())
+        self.builtin.is_none() && !self.external.iter().any(|source| source.has_received())
     }
 
     /// Counters of the external sources, by name.

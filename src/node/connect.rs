@@ -157,7 +157,7 @@ impl Connections<'_> {
 
     /// Describes the run in the recording, so that it can be simulated again.
     #[cfg(feature = "bag")]
-    fn subject(&self) -> crate::bag::Subject {
+    fn subject(&self) -> crate::bag::RunDescription {
         let bag = &self.scene.outputs.bag;
         let whole_ns = |time: f64| Duration::from_secs_f64(time).as_nanos();
         let format = crate::bag::Format {
@@ -179,7 +179,7 @@ impl Connections<'_> {
         facts.push((INPUTS, serde_json::json!(inputs).to_string()));
         facts.extend_from_slice(self.facts);
         let scene_text = crate::scene::to_yaml(self.scene);
-        crate::bag::Subject { scene_text, scene_files: self.scene_files(), facts, format }
+        crate::bag::RunDescription { scene_text, scene_files: self.scene_files(), facts, format }
     }
 
     /// The mesh files of the scene. One that can no longer be read is logged and left out.
@@ -265,10 +265,10 @@ impl Connections<'_> {
         let node = RosNode::join_as(&self.scene.outputs.ros.node, &range?);
         let node = node?;
         let log = Arc::clone(&node);
-        self.progress.add_listener(Box::new(move |text| log.say(text)));
+        self.progress.add_listener(Box::new(move |text| log.warn(text)));
         let published = Arc::new(PublishedUpTo::default());
         let sink = RosSink::new(&node, self.encoder)?;
-        let sink = sink.announcing(&published);
+        let sink = sink.reporting_to(&published);
         let source = RosSource::new(&node, self.encoder)?;
         // Old states are of no use to a controller, but half a second bridges a short stall.
         let delivery = Delivery::Latest { depth: 500 };
@@ -282,8 +282,8 @@ impl Connections<'_> {
         }
         let ros = &self.scene.outputs.ros;
         let prefix = ros.interfaces_prefix.as_deref();
-        let (mut offers, asked) = services::asked(&ros.node, prefix);
-        let mut channels = services::channels(&ros.node, prefix);
+        let (mut offers, asked) = services::endpoints(&ros.node, prefix);
+        let mut channels = services::action_topics(&ros.node, prefix);
         offers.iter_mut().for_each(|it| it.name = full_name(ros, &it.name));
         channels.iter_mut().for_each(|it| it.name = full_name(ros, &it.name));
         let services = RosServiceServer::open(&node, &offers, &channels, &published);
@@ -295,9 +295,9 @@ impl Connections<'_> {
             _ => Version::of_distribution(&std::env::var("ROS_DISTRO").unwrap_or_default()),
         };
         let simulator = Simulator::new(self.scene, asked, is_stopped)
-            .with_channels(channels.len())
-            .beside(self.scene_file)
-            .speaking(version);
+            .with_n_topics(channels.len())
+            .with_scene_file(self.scene_file)
+            .with_version(version);
         external.server = Some(SimulationServer::new(simulator, services, published));
         Ok(())
     }

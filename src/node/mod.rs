@@ -255,7 +255,7 @@ impl RunContext {
             server.first_command();
         }
         let changed = {
-            let mut world = World { subject: plant, seen: &seen.snapshot };
+            let mut world = World { access: plant, snapshot: &seen.snapshot };
             server.handle_requests(&mut world, self.n_packets)
         };
         let scene = Arc::clone(server.simulator().scene());
@@ -333,9 +333,9 @@ impl RunContext {
         }
         pacer.wait_paused();
         let is_playing = server.as_ref().is_none_or(|it| it.simulator().may_tick());
-        let missed = if is_playing { gate.miss(pacer.stood_s()) } else { None };
+        let missed = if is_playing { gate.miss(pacer.paused_s()) } else { None };
         if let Some(missed) = missed {
-            let waited_s = pacer.stood_s();
+            let waited_s = pacer.paused_s();
             self.supervision.progress.say(&format!("no command for {waited_s:.3} s of wall time"));
             match (missed, server) {
                 (Missed::End, _) => self.has_missed = true,

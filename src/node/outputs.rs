@@ -74,7 +74,7 @@ impl OutputSinks {
 
     #[cfg(feature = "shm")]
     fn take_stream_error(&mut self) -> Option<String> {
-        self.stream.as_mut()?.take_fault()
+        self.stream.as_mut()?.take_error()
     }
 
     #[cfg(not(feature = "shm"))]
@@ -84,7 +84,7 @@ impl OutputSinks {
 
     /// Errors since the last call, and whether the run must end because of them.
     pub fn take_errors(&mut self) -> (Vec<String>, bool) {
-        let errors = self.fanout.take_faults();
+        let errors = self.fanout.take_errors();
         let must_stop = self.stops_with_bag && errors.iter().any(|error| error.sink == "bag");
         let texts = errors.into_iter().map(|error| error.text);
         (texts.chain(self.take_stream_error()).collect(), must_stop)

@@ -5,15 +5,15 @@ use std::error::Error;
 use super::schedule::Parts;
 use crate::{
     command::{Command, change::Change},
-    cosim::refused::ChangeError,
+    cosim::change_error::ChangeError,
     physics::{health::Diverged, membrane::mesh::Mesh},
     session::Session,
-    simulator::Subject,
+    simulator::WorldAccess,
     snapshot::{Snapshot, checkpoint::Checkpoint, view::View},
 };
 
 /// A system that can be run.
-pub trait Plant: Subject {
+pub trait Plant: WorldAccess {
     /// Why it cannot continue.
     type Error: Error + Send + Sync + 'static;
 
@@ -74,8 +74,8 @@ impl Plant for Session {
     }
 }
 
-impl Subject for Session {
-    fn look(&self) -> Snapshot {
+impl WorldAccess for Session {
+    fn full_snapshot(&self) -> Snapshot {
         Self::snapshot(self, Parts::ALL)
     }
 

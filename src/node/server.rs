@@ -44,7 +44,7 @@ impl SimulationServer {
     /// Serves waiting requests. `n_packets` is the number of the last published packet.
     pub fn handle_requests(&mut self, world: &mut World<'_>, n_packets: u64) -> Changed {
         for call in self.services.take(PER_TICK) {
-            if let Err(error) = self.simulator.handle_requests(&call, world) {
+            if let Err(error) = self.simulator.handle_request(&call, world) {
                 self.services.report_malformed(error);
             }
         }
@@ -57,23 +57,23 @@ impl SimulationServer {
 
     /// Passes scenes to the loader and takes the settled ones.
     fn load(&mut self, world: &mut World<'_>) {
-        let wanted = self.simulator.take_wanted();
+        let wanted = self.simulator.take_scene_to_settle();
         match (&mut self.loader, wanted) {
             (Some(loader), Some(scene)) => loader.begin(scene),
             (None, Some(_)) => {
                 let why = "this run cannot load other scenes".to_owned();
-                self.simulator.loaded(Err(why), world);
+                self.simulator.finish_loading(Err(why), world);
             }
             _ => {}
         }
         if let Some(settled) = self.loader.as_mut().and_then(Loader::poll) {
-            self.simulator.loaded(settled, world);
+            self.simulator.finish_loading(settled, world);
         }
     }
 
     /// A tick has ended; packet `n_packets` holds its results.
     pub fn ticked(&mut self, seen: &Snapshot, n_packets: u64) {
-        self.simulator.ticked(seen);
+        self.simulator.finish_tick(seen);
         self.send(n_packets);
         if self.simulator.is_stepping() {
             self.published.wait_for(n_packets.saturating_sub(LEAD_MAX), TIMEOUT);
@@ -81,7 +81,7 @@ impl SimulationServer {
     }
 
     fn send(&mut self, n_packets: u64) {
-        for outgoing in self.simulator.take_out() {
+        for outgoing in self.simulator.take_outgoing() {
             self.services.send(outgoing, n_packets);
         }
     }

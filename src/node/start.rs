@@ -1,7 +1,7 @@
 //! Creates the session of a run, with its settled state from the cache or computed and cached.
 
 use crate::host::{
-    cache::{Cache, Found},
+    cache::{Cache, Lookup},
     progress_bar::Progress,
 };
 use crate::{
@@ -44,13 +44,13 @@ pub fn start(
     let key = compiled.start_digest();
     let (scene, pool) = (compiled.scene.clone(), compiled.pool.clone());
     let compiled = match cache.load(key) {
-        Found::Nothing => compiled,
-        Found::Damaged(path) => {
+        Lookup::Missing => compiled,
+        Lookup::Damaged(path) => {
             let path = path.display();
             progress.say(&format!("start state {path}: the file is damaged; it is computed again"));
             compiled
         }
-        Found::State(bytes) => match Session::from_start_state(compiled, &bytes) {
+        Lookup::State(bytes) => match Session::from_start_state(compiled, &bytes) {
             Ok(session) => return Ok(Started { session, origin: "cached" }),
             Err(error) => {
                 progress.say(&error);

@@ -12,14 +12,14 @@ use crate::{
         real::{Twist, Wrench},
     },
     command::{Command, CommandCounts, change::Change},
-    cosim::refused::ChangeError,
+    cosim::change_error::ChangeError,
     io::{
         fanout::Delivery,
         sink::Sink,
         source::{Source, SourceCounters},
     },
     scene,
-    simulator::Subject,
+    simulator::WorldAccess,
     snapshot::{BodySnapshot, ChamberSnapshot, JammingSnapshot, ObjectSnapshot, view::View},
 };
 
@@ -39,8 +39,8 @@ struct Counter {
 #[error("broken")]
 struct Broken;
 
-impl Subject for Counter {
-    fn look(&self) -> Snapshot {
+impl WorldAccess for Counter {
+    fn full_snapshot(&self) -> Snapshot {
         snapshot(self.n_ticks)
     }
 
@@ -126,7 +126,7 @@ impl Source for Late {
         self.command.take().into_iter().collect()
     }
 
-    fn has_heard(&self) -> bool {
+    fn has_received(&self) -> bool {
         let mut after = self.after.lock().unwrap();
         *after = after.saturating_sub(1);
         *after == 0

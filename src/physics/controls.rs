@@ -1,15 +1,15 @@
-//! Controls: what the outside wants during the next substeps.
+//! Controls: the inputs of a substep.
 
 use super::boundary::body::BodyMotion;
 use crate::base::Real;
 
-/// Inputs held or moved by `cosim` while the physics runs.
+/// The inputs of a substep. `cosim` sets them.
 #[derive(Clone, Debug)]
 pub struct Controls {
-    /// Set-point of the chamber's gauge pressure (Pa).
+    /// Set-point of the gauge pressure in the chamber (Pa).
     pub gauge_setpoint: Real,
-    /// The walls: poses at the end of this substep, velocities during it.
+    /// Motion of each wall: its pose at the end of this substep, and its velocity during it.
     pub walls: Vec<BodyMotion>,
-    /// The rigid bodies that the membrane can touch.
+    /// Motion of each rigid body that the membrane can touch.
     pub bodies: Vec<BodyMotion>,
 }

@@ -6,12 +6,12 @@
 //!
 //! | symbol | meaning | unit |
 //! |---|---|---|
-//! | T_R | Rayleigh time of the smallest grain: a surface wave crosses it | s |
+//! | T_R | Rayleigh time of the smallest grain: the time that a surface wave takes to cross it | s |
 //! | R, ρ, G, ν | its radius, density, shear modulus and Poisson's ratio | m, kg/m³, Pa, – |
-//! | t_membrane | limit of springs, hinges and of the contacts that press on a vertex | s |
+//! | t_membrane | limit of springs, hinges and contacts of the membrane's vertices | s |
 //!
-//! Source: Thornton & Randall (1988). Under full vacuum a packing of 100 MPa rings at 0.37 of T_R and
-//! comes to rest at 0.28.
+//! Source: Thornton & Randall (1988). Valid up to full vacuum: there, a packing of grains with
+//! E = 100 MPa keeps oscillating at 0.37 T_R and comes to rest at 0.28 T_R.
 
 use super::{
     law::PairLaw,
@@ -20,18 +20,18 @@ use super::{
 };
 use crate::{base::Real, scene::Material};
 
-/// Share of the Rayleigh time at which a packing under full vacuum is stable.
+/// Fraction of the Rayleigh time at which a packing under full vacuum is stable.
 pub const RAYLEIGH_SHARE: Real = 0.3;
 
-/// Rayleigh time of a grain of `radius` (m); in s.
+/// Rayleigh time (s) of a grain of `radius` (m).
 pub fn rayleigh_time(radius: Real, material: &Material) -> Real {
     let shear_modulus = material.youngs_modulus / (2.0 * (1.0 + material.poisson_ratio));
     std::f64::consts::PI * radius * (material.density / shear_modulus).sqrt()
         / (0.1631 * material.poisson_ratio + 0.8766)
 }
 
-/// The longest stable substep (s) for grains of `material`, the smallest of `radius_min` (m), and a
-/// membrane on whose vertices contacts of `stiffness` (N/m) press.
+/// The longest stable substep (s) for grains of `material` with radii of at least `radius_min` (m), and a
+/// membrane whose vertices have contacts of `stiffness` (N/m).
 pub fn critical_step(
     radius_min: Real,
     material: &Material,
@@ -42,8 +42,8 @@ pub fn critical_step(
     of_membrane.min(RAYLEIGH_SHARE * rayleigh_time(radius_min, material))
 }
 
-/// Stiffness (N/m) that grains of `grain_radius` (m) add to a vertex when `pressure` (Pa) lays the
-/// membrane on them under `law`.
+/// Stiffness (N/m) that contacts with grains of `grain_radius` (m) add to a vertex when `pressure` (Pa)
+/// presses the membrane on them, under `law`.
 pub fn stiffness_at_vertex(
     membrane: &MembraneModel,
     law: &PairLaw,
@@ -51,11 +51,11 @@ pub fn stiffness_at_vertex(
     pressure: Real,
 ) -> Real {
     match membrane.contact {
-        // One contact carries the pressure on the grain's square of membrane.
+        // One contact carries the pressure on a square of membrane as wide as the grain.
         MembraneContact::Triangles => {
             law.stiffness(grain_radius, pressure * 4.0 * grain_radius.powi(2))
         }
-        // Two grains at one sphere, each with the pressure on the vertex's own share of the membrane.
+        // Two grains at one sphere, each carrying the pressure on the vertex's area.
         MembraneContact::Spheres { radius } => {
             let area = membrane.mesh.vertex_areas().into_iter().fold(0.0, Real::max);
             let shared = grain_radius * radius / (grain_radius + radius);
@@ -64,8 +64,8 @@ pub fn stiffness_at_vertex(
     }
 }
 
-/// Stiffness (N/m) that the stiffest of `bodies` adds to a vertex when `pressure` (Pa) lays the vertex's
-/// share of the membrane on it.
+/// Stiffness (N/m) that the stiffest of `bodies` adds to a vertex when `pressure` (Pa) presses the vertex's
+/// area on it.
 pub fn stiffness_of_bodies(membrane: &MembraneModel, bodies: &[BodyModel], pressure: Real) -> Real {
     let area = membrane.mesh.vertex_areas().into_iter().fold(0.0, Real::max);
     let of_bodies = bodies.iter().map(|it| it.law.stiffness(it.contact_radius, pressure * area));
@@ -76,10 +76,10 @@ pub fn stiffness_of_bodies(membrane: &MembraneModel, bodies: &[BodyModel], press
 mod tests {
     use super::*;
 
-    /// Oracle: the validation tables' 2.6 µs for 2.3 mm at 46 GPa and 206 µs for 1.9 mm at 5 MPa,
-    /// both at 2000 kg/m³ and ν = 0.245; half a unit of their last digit.
+    /// Oracle: the validation tables: 2.6 µs for 2.3 mm at 46 GPa, and 206 µs for 1.9 mm at 5 MPa,
+    /// both at 2000 kg/m³ and ν = 0.245. Tolerance: half a unit of their last digit.
     #[test]
-    fn rayleigh_times_are_the_known_ones() {
+    fn rayleigh_times_match_the_tables() {
         let of = |youngs_modulus| Material { youngs_modulus, poisson_ratio: 0.245, density: 2e3 };
         assert!((rayleigh_time(2.3e-3, &of(4.6e10)) - 2.6e-6).abs() < 0.05e-6);
         assert!((rayleigh_time(1.9e-3, &of(5e6)) - 206e-6).abs() < 0.5e-6);

@@ -1,9 +1,11 @@
-//! Grains into the bag, as Götz (2024), section 4.2, does it: the membrane is held stretched, grains
-//! grow in it without friction (Lubachevsky & Stillinger 1990) while they fall, then the membrane
-//! is let go, its springs are shortened, and everything comes to rest.
+//! Fills the gripper's membrane with grains, following Götz (2024), section 4.2.
 //!
-//! The source leaves open how the bag is let go. Here the rest lengths start at the held shape and
-//! shrink steadily to their final value, so that the bag closes on the grains without a snap.
+//! The membrane is held in a stretched shape. Grains grow in it without friction (Lubachevsky &
+//! Stillinger 1990) while they fall. Then the membrane is released, its springs are shortened, and
+//! everything comes to rest.
+//!
+//! The source does not specify the release. Here the rest lengths start at those of the held shape
+//! and shrink steadily to their final value, so the membrane closes on the grains without a jerk.
 
 use serde::{Deserialize, Serialize};
 
@@ -13,7 +15,7 @@ use super::{
     health::Diverged,
     law::PairLaw,
     membrane::{CARRIER_ID, MembraneState, mesh::Mesh},
-    neighbours::update_pair_masses,
+    neighbors::update_pair_masses,
     packing::sphere_volume,
     state::{Grains, Springs},
 };
@@ -26,40 +28,40 @@ use crate::{
     scene::Scene,
 };
 
-/// Solid fraction of the bowl at which grains are placed before they grow. Random placement
-/// without contact gets slow above a third.
-const FIRST_SOLID_FRACTION: Real = 0.15;
-/// Growth per relaxation time: slow enough that grains get out of each other's way.
+/// Solid fraction of the held membrane at which grains are placed before they grow. Random placement
+/// without contact is slow above a third.
+const INITIAL_SOLID_FRACTION: Real = 0.15;
+/// Growth per relaxation time: slow enough for grains to move out of each other's way.
 const GROWTH_PER_RELAXATION: Real = 0.05;
-/// Pressure that the growing grains may exert, for the relaxation time (Pa).
+/// Pressure that growing grains may exert (Pa). It defines the relaxation time.
 const GROWTH_PRESSURE: Real = 900.0;
-/// Time to fall into the bowl (s).
+/// Time for grains to fall into the held membrane (s).
 const FALL_TIME: Real = 0.12;
-/// Time over which the springs are shortened (s).
+/// Time in which the springs are shortened (s).
 const SHRINK_TIME: Real = 0.15;
-/// Time over which softer grains become as hard as they are (s).
+/// Time in which softened grains regain their real stiffness (s).
 const HARDEN_TIME: Real = 0.03;
-/// Longest time to come to rest (s).
+/// Longest time for everything to come to rest (s).
 const REST_TIME_MAX: Real = 0.4;
-/// Root mean square speed of grains at rest (m/s).
+/// Root-mean-square speed below which grains count as at rest (m/s).
 const REST_SPEED: Real = 2e-3;
 
-/// Substeps between two looks at progress and health.
-const LOOK_EVERY: usize = 100;
+/// Substeps between two checks of progress and health.
+const CHECK_INTERVAL: usize = 100;
 
-/// How far the filling is.
+/// Progress of a filling, for display.
 #[derive(Clone, Copy, Debug)]
 pub struct Progress {
-    /// What is being done.
+    /// Name of the current stage.
     pub stage: &'static str,
-    /// Share of the longest time the filling can take.
+    /// Fraction of the longest duration of the filling.
     pub share: Real,
 }
 
-/// Fills the bag of `model` with the grains of `scene`; the flange stands at its first pose.
+/// Fills the membrane of `model` with the grains of `scene`, with the flange at its initial pose.
 ///
 /// # Errors
-/// If the system blows up or a grain leaks.
+/// If the system diverges or a grain leaks.
 pub fn fill(
     scene: &Scene,
     model: &Model,
@@ -67,26 +69,26 @@ pub fn fill(
 ) -> Result<State, Diverged> {
     let mut filling = Filling::new(scene, model, model);
     while !filling.is_settled() {
-        filling.advance(LOOK_EVERY)?;
+        filling.advance(CHECK_INTERVAL)?;
         on_progress(filling.progress());
     }
     Ok(filling.into_state())
 }
 
-/// What is done to the bag, in this order.
+/// A stage of the filling. The stages follow each other in this order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Stage {
     /// All radii grow by a common factor, without friction; the membrane is held stretched.
     Growing,
-    /// The grains fall into the held bowl.
+    /// The grains fall into the held membrane.
     Falling,
-    /// The membrane is free, its springs are shortened.
+    /// The membrane is free, and its springs are shortened.
     Closing,
-    /// Grains that were filled in softer than they are become as hard as they are.
+    /// Grains that were softened for the filling regain their real stiffness.
     Hardening,
     /// Everything comes to rest.
     Resting,
-    /// Done.
+    /// The filling is complete.
     Settled,
 }
 
@@ -94,7 +96,7 @@ const STAGES: [Stage; 5] =
     [Stage::Growing, Stage::Falling, Stage::Closing, Stage::Hardening, Stage::Resting];
 
 impl Stage {
-    /// Its name.
+    /// Name of the stage, as reported.
     pub fn name(self) -> &'static str {
         match self {
             Self::Growing => "growing",
@@ -117,64 +119,64 @@ impl Stage {
     }
 }
 
-/// Progress of a filling. With the state it is all that a filling resumes from.
+/// Position of a filling: with the state, everything needed to resume it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Place {
-    /// What is being done.
+pub struct FillPosition {
+    /// The current stage.
     pub stage: Stage,
-    /// Substeps of the stage that are done.
+    /// Completed substeps of the stage.
     pub k: usize,
 }
 
-/// A bag that is being filled, substep by substep.
+/// A membrane being filled, substep by substep.
 pub struct Filling {
-    /// The system while it is filled, and when it is.
+    /// Models during the filling and at its end; they differ if grains are softened.
     soft: Model,
-    goal: Model,
-    /// With the model of the present stage.
+    target: Model,
+    /// The system, with the model of the current stage.
     system: System,
-    place: Place,
+    position: FillPosition,
     recipe: Recipe,
 }
 
 /// Parameters of the filling, from the scene.
 struct Recipe {
     final_radii: Vec<Real>,
-    /// Share of the final radii at which the growth begins.
-    first: Real,
+    /// Fraction of the final radii at which growth begins.
+    initial_scale: Real,
     density: Real,
-    /// Rest lengths of the springs over those of the reference shape, before and after closing.
+    /// Rest lengths of the springs divided by those of the reference shape, before and after closing.
     rest_lengths: [Real; 2],
     held_shape: Vec<Vec3>,
-    /// Substeps of each stage, of the last one the most.
+    /// Substeps of each stage; for the last stage, the largest number.
     n_substeps: [usize; STAGES.len()],
 }
 
 impl Recipe {
     fn new(scene: &Scene, models: [&Model; 2]) -> Self {
-        let [soft, goal] = models;
-        let density = scene.grains.material.density * goal.density_scaling;
-        let slower = goal.density_scaling.sqrt();
+        let [soft, target] = models;
+        let density = scene.grains.material.density * target.density_scaling;
+        let slower = target.density_scaling.sqrt();
         let stretch = scene.membrane.fill_stretch;
         let final_radii = final_radii(scene);
-        let first = first_scale(scene, &final_radii);
-        let mass = sphere_volume(goal.radius_mean) * density;
-        let relaxation = (mass / (GROWTH_PRESSURE * 2.0 * goal.radius_mean)).sqrt();
+        let initial_scale = initial_scale(scene, &final_radii);
+        let mass = sphere_volume(target.radius_mean) * density;
+        let relaxation = (mass / (GROWTH_PRESSURE * 2.0 * target.radius_mean)).sqrt();
         let rate = GROWTH_PER_RELAXATION / relaxation;
-        let growth = first.recip().ln() / rate;
+        let growth = initial_scale.recip().ln() / rate;
         let of_soft = |time: Real| count(slower * time / soft.substep);
-        let is_softer = soft.grain_law.modulus < goal.grain_law.modulus;
+        let is_softer = soft.grain_law.modulus < target.grain_law.modulus;
         Self {
-            first,
+            initial_scale,
             density,
             rest_lengths: [stretch, 1.0 - scene.membrane.rest_length_shrink],
-            held_shape: held_shape(&goal.membrane.mesh, stretch),
+            held_shape: held_shape(&target.membrane.mesh, stretch),
             n_substeps: [
                 count(growth / soft.substep),
                 of_soft(FALL_TIME),
                 of_soft(SHRINK_TIME),
-                if is_softer { count(slower * HARDEN_TIME / goal.substep) } else { 0 },
-                count(slower * REST_TIME_MAX / goal.substep),
+                if is_softer { count(slower * HARDEN_TIME / target.substep) } else { 0 },
+                count(slower * REST_TIME_MAX / target.substep),
             ],
             final_radii,
         }
@@ -182,38 +184,38 @@ impl Recipe {
 }
 
 impl Filling {
-    /// Grains at random places in the held bowl, before they grow. `soft` and `goal` are the model
-    /// while it is filled and in the end: with softer grains the substep is longer.
-    pub fn new(scene: &Scene, soft: &Model, goal: &Model) -> Self {
-        let recipe = Recipe::new(scene, [soft, goal]);
+    /// Starts a filling with grains at random positions in the held membrane, before they grow. `soft` is the
+    /// model during the filling, `target` the model at its end. Softer grains allow a longer substep.
+    pub fn new(scene: &Scene, soft: &Model, target: &Model) -> Self {
+        let recipe = Recipe::new(scene, [soft, target]);
         let state = scatter(scene, &recipe);
-        Self::with([soft, goal], recipe, Place { stage: Stage::Growing, k: 0 }, state)
+        Self::with([soft, target], recipe, FillPosition { stage: Stage::Growing, k: 0 }, state)
     }
 
-    /// Resumes `(place, state)` of a filling of the same scene.
+    /// Resumes a filling of the same scene at `(position, state)`.
     pub fn resume(
         scene: &Scene,
         soft: &Model,
-        goal: &Model,
-        (place, state): (Place, State),
+        target: &Model,
+        (position, state): (FillPosition, State),
     ) -> Self {
-        Self::with([soft, goal], Recipe::new(scene, [soft, goal]), place, state)
+        Self::with([soft, target], Recipe::new(scene, [soft, target]), position, state)
     }
 
-    fn with(models: [&Model; 2], recipe: Recipe, place: Place, state: State) -> Self {
-        let [soft, goal] = models.map(|it| Model { bodies: Vec::new(), ..it.clone() });
+    fn with(models: [&Model; 2], recipe: Recipe, position: FillPosition, state: State) -> Self {
+        let [soft, target] = models.map(|it| Model { bodies: Vec::new(), ..it.clone() });
         let controls =
             Controls { gauge_setpoint: 0.0, walls: state.walls.clone(), bodies: Vec::new() };
-        let system = System::new(goal.clone(), controls, state);
-        let mut filling = Self { soft, goal, system, place, recipe };
-        filling.enter();
+        let system = System::new(target.clone(), controls, state);
+        let mut filling = Self { soft, target, system, position, recipe };
+        filling.enter_stage();
         filling
     }
 
-    /// Goes on by at most `n_substeps`.
+    /// Advances by at most `n_substeps`.
     ///
     /// # Errors
-    /// If the system blows up or a grain leaks.
+    /// If the system diverges or a grain leaks.
     pub fn advance(&mut self, n_substeps: usize) -> Result<(), Diverged> {
         for _ in 0..n_substeps {
             if self.is_settled() {
@@ -224,45 +226,45 @@ impl Filling {
         Ok(())
     }
 
-    /// How far it is.
-    pub fn place(&self) -> Place {
-        self.place
+    /// Where the filling is; with `state` it can be resumed.
+    pub fn position(&self) -> FillPosition {
+        self.position
     }
 
-    /// The state so far.
+    /// The current state.
     pub fn state(&self) -> &State {
         &self.system.state
     }
 
     /// True when everything has come to rest.
     pub fn is_settled(&self) -> bool {
-        self.place.stage == Stage::Settled
+        self.position.stage == Stage::Settled
     }
 
-    /// The state at the end.
+    /// Ends the filling and returns its state.
     pub fn into_state(self) -> State {
         self.system.state
     }
 
-    /// Most substeps that the whole filling can take.
+    /// Largest number of substeps that the whole filling can take.
     pub fn n_substeps_max(&self) -> usize {
         self.recipe.n_substeps.iter().sum()
     }
 
-    /// How far it is, in words and as a share.
+    /// Name of the stage, and progress as a fraction.
     pub fn progress(&self) -> Progress {
         let stages = STAGES.iter().zip(&self.recipe.n_substeps);
         let before: usize =
-            stages.filter(|(stage, _)| **stage < self.place.stage).map(|(_, n)| n).sum();
-        let share = real(before + self.place.k) / real(self.n_substeps_max());
-        Progress { stage: self.place.stage.name(), share }
+            stages.filter(|(stage, _)| **stage < self.position.stage).map(|(_, n)| n).sum();
+        let share = real(before + self.position.k) / real(self.n_substeps_max());
+        Progress { stage: self.position.stage.name(), share }
     }
 
-    /// Makes the model that of the present stage.
-    fn enter(&mut self) {
-        let stage = self.place.stage;
+    /// Sets up the model of the current stage.
+    fn enter_stage(&mut self) {
+        let stage = self.position.stage;
         let is_soft = stage <= Stage::Closing;
-        self.system.model = if is_soft { self.soft.clone() } else { self.goal.clone() };
+        self.system.model = if is_soft { self.soft.clone() } else { self.target.clone() };
         if stage <= Stage::Falling {
             self.system.model.membrane.holders.fill(CARRIER_ID);
             self.system.model.held_positions.clone_from(&self.recipe.held_shape);
@@ -278,13 +280,13 @@ impl Filling {
         }
     }
 
-    /// Rest lengths when `share` of the closing is over.
+    /// Sets the rest lengths for a fraction `share` of the closing.
     fn close(&mut self, share: Real) {
         let [first, last] = self.recipe.rest_lengths;
         self.system.model.membrane.scale_rest_lengths(first + (last - first) * share);
     }
 
-    /// Laws when `share` of the hardening is over: moduli rise by equal factors in equal times.
+    /// Sets the laws for a fraction `share` of the hardening. Moduli rise by equal factors in equal times.
     fn harden(&mut self, share: Real) {
         let between = |soft: &PairLaw, hard: &PairLaw| {
             let blend = |a: Real, b: Real| a * (b / a).powf(share);
@@ -294,34 +296,34 @@ impl Filling {
                 ..*hard
             }
         };
-        let (soft, goal) = (&self.soft, &self.goal);
-        self.system.model.grain_law = between(&soft.grain_law, &goal.grain_law);
-        self.system.model.membrane_law = between(&soft.membrane_law, &goal.membrane_law);
+        let (soft, target) = (&self.soft, &self.target);
+        self.system.model.grain_law = between(&soft.grain_law, &target.grain_law);
+        self.system.model.membrane_law = between(&soft.membrane_law, &target.membrane_law);
         for (k, wall) in self.system.model.walls.iter_mut().enumerate() {
-            wall.law = between(&soft.walls[k].law, &goal.walls[k].law);
+            wall.law = between(&soft.walls[k].law, &target.walls[k].law);
         }
     }
 
-    /// Radii when `share` of the growing is over.
+    /// Sets the radii for a fraction `share` of the growth.
     fn grow(&mut self, share: Real) {
-        let scale = self.recipe.first.powf(1.0 - share);
+        let scale = self.recipe.initial_scale.powf(1.0 - share);
         for (i, &radius) in self.recipe.final_radii.iter().enumerate() {
             self.system.state.grains.radii[i] = scale * radius;
             self.system.state.grains.masses[i] =
                 sphere_volume(scale * radius) * self.recipe.density;
         }
-        update_pair_masses(&self.system.state, &mut self.system.scratch.neighbours);
+        update_pair_masses(&self.system.state, &mut self.system.scratch.neighbors);
     }
 
-    /// The stage after `stage`, without those that have nothing to do.
-    fn after(&self, stage: Stage) -> Stage {
+    /// The stage after `stage`, skipping stages without substeps.
+    fn stage_after(&self, stage: Stage) -> Stage {
         let next = stage.next();
-        let is_idle = |it: Stage| self.recipe.n_substeps.get(it as usize) == Some(&0);
-        if is_idle(next) { next.next() } else { next }
+        let is_empty = |it: Stage| self.recipe.n_substeps.get(it as usize) == Some(&0);
+        if is_empty(next) { next.next() } else { next }
     }
 
     fn step(&mut self) -> Result<(), Diverged> {
-        let Place { stage, k } = self.place;
+        let FillPosition { stage, k } = self.position;
         let n_substeps = self.recipe.n_substeps[stage as usize];
         let share = real(k + 1) / real(n_substeps);
         match stage {
@@ -332,27 +334,27 @@ impl Filling {
         }
         self.system.step();
         let mut is_over = k + 1 == n_substeps;
-        if k.is_multiple_of(LOOK_EVERY) {
+        if k.is_multiple_of(CHECK_INTERVAL) {
             self.system.check(0)?;
             is_over |= stage == Stage::Resting && speed(&self.system.state) < REST_SPEED;
         }
-        self.place.k += 1;
+        self.position.k += 1;
         if is_over {
-            self.place = Place { stage: self.after(stage), k: 0 };
-            self.enter();
+            self.position = FillPosition { stage: self.stage_after(stage), k: 0 };
+            self.enter_stage();
         }
         Ok(())
     }
 }
 
-/// Root mean square speed of the grains (m/s).
+/// Root-mean-square speed of the grains (m/s).
 fn speed(state: &State) -> Real {
     let velocities = &state.grains.velocities;
     let sum: Real = velocities.iter().map(|v| v.norm_squared()).sum();
     (sum / real(velocities.len().max(1))).sqrt()
 }
 
-/// The stretched shape in which the membrane is held, flange frame; the rim stays where it is.
+/// The stretched shape in which the membrane is held (m), flange frame. The rim is not stretched.
 fn held_shape(mesh: &Mesh, stretch: Real) -> Vec<Vec3> {
     let of = |v: usize| mesh.positions[v] * if mesh.is_on_rim[v] { 1.0 } else { stretch };
     (0..mesh.n_vertices()).map(of).collect()
@@ -364,38 +366,38 @@ fn final_radii(scene: &Scene) -> Vec<Real> {
     (0..grains.count).map(|_| random.between(grains.radius_min, grains.radius_max)).collect()
 }
 
-/// Share of their final radii at which the grains fill the bowl only thinly.
-fn first_scale(scene: &Scene, final_radii: &[Real]) -> Real {
-    let bowl = sphere_volume(scene.membrane.fill_stretch * scene.membrane.radius) / 2.0;
+/// Fraction of their final radii at which grains are placed, from their initial solid fraction.
+fn initial_scale(scene: &Scene, final_radii: &[Real]) -> Real {
+    let volume = sphere_volume(scene.membrane.fill_stretch * scene.membrane.radius) / 2.0;
     let grains: Real = final_radii.iter().map(|&r| sphere_volume(r)).sum();
-    (FIRST_SOLID_FRACTION * bowl / grains).cbrt().min(0.9)
+    (INITIAL_SOLID_FRACTION * volume / grains).cbrt().min(0.9)
 }
 
-/// Grains at random places in the held bowl, without contact, at rest.
+/// Grains at rest at random positions in the held membrane, without contact.
 fn scatter(scene: &Scene, recipe: &Recipe) -> State {
-    let (final_radii, scale) = (&recipe.final_radii, recipe.first);
+    let (final_radii, scale) = (&recipe.final_radii, recipe.initial_scale);
     let mut random = Random::new(scene.seed, Stream::Position);
     let pose = scene.flange.pose;
-    // One final diameter away from wall and plate: the growing grains reach them later.
+    // Grains start one final diameter away from membrane and plate and grow towards them.
     let margin = 2.0 * scene.grains.radius_max;
-    let reach = scene.membrane.fill_stretch * scene.membrane.radius - margin;
+    let limit = scene.membrane.fill_stretch * scene.membrane.radius - margin;
     let mut local: Vec<Vec3> = Vec::with_capacity(final_radii.len());
     for (i, &radius) in final_radii.iter().enumerate() {
-        let place = loop {
-            let place = Vec3::new(
-                random.between(-reach, reach),
-                random.between(-reach, reach),
-                random.between(-reach, -margin),
+        let position = loop {
+            let candidate = Vec3::new(
+                random.between(-limit, limit),
+                random.between(-limit, limit),
+                random.between(-limit, -margin),
             );
             let is_free = |(other, &position): (&Real, &Vec3)| {
-                let apart = scale * (radius + other);
-                (place - position).norm_squared() > apart * apart
+                let reach = scale * (radius + other);
+                (candidate - position).norm_squared() > reach * reach
             };
-            if place.norm() < reach && final_radii[..i].iter().zip(&local).all(is_free) {
-                break place;
+            if candidate.norm() < limit && final_radii[..i].iter().zip(&local).all(is_free) {
+                break candidate;
             }
         };
-        local.push(place);
+        local.push(position);
     }
     let n = local.len();
     let radii: Vec<Real> = final_radii.iter().map(|r| scale * r).collect();

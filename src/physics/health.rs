@@ -1,46 +1,46 @@
-//! Can the run go on? Looked at once per tick.
+//! Health check of a run, once per tick: speeds, finite numbers, leaks.
 
 use super::{Scratch, State};
 use crate::base::{Real, Vec3};
 
-/// Why a run cannot go on.
+/// Why a run cannot continue.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("tick {tick}: {what} {which} is at {value:e}{}; {remedy}", beyond(*limit))]
+#[error("tick {tick}: {what} {which} is at {value:e}{}; {remedy}", limit_text(*limit))]
 pub struct Diverged {
-    /// Tick in which it was seen.
+    /// Tick in which the problem was detected.
     pub tick: u64,
-    /// What went wrong, with its unit.
+    /// The quantity, with its unit.
     pub what: &'static str,
     /// Index of the grain or vertex.
     pub which: usize,
     /// Its value.
     pub value: Real,
-    /// The limit it exceeded; none of a leak, which the value does not tell.
+    /// The limit that the value exceeds; `None` for a leak, which has no limit.
     pub limit: Option<Real>,
-    /// What can be done.
+    /// What the user can do.
     pub remedy: &'static str,
 }
 
 impl Diverged {
-    /// True if a grain has left the membrane; all is finite then.
+    /// True if a grain has left the membrane; all numbers are finite then.
     pub fn is_leak(&self) -> bool {
         self.limit.is_none()
     }
 }
 
-fn beyond(limit: Option<Real>) -> String {
+fn limit_text(limit: Option<Real>) -> String {
     limit.map(|limit| format!(", beyond {limit:e}")).unwrap_or_default()
 }
 
-/// No grain and no vertex of a working gripper is faster than this (m/s).
+/// Largest speed of a grain or a vertex (m/s); a working gripper stays far below it.
 const SPEED_MAX: Real = 50.0;
 
 /// Checks speeds, finiteness and leaks at the end of `tick`.
 ///
 /// # Errors
-/// The first fault in a fixed order.
+/// The first problem found; grains are checked before vertices, and both before leaks.
 pub fn check(state: &State, scratch: &Scratch, tick: u64) -> Result<(), Diverged> {
-    let faster = |what, velocities: &[Vec3]| {
+    let check_speeds = |what, velocities: &[Vec3]| {
         let limit = SPEED_MAX;
         // The comparison is false for NaN, which must not pass.
         let bad = velocities.iter().position(|v| {
@@ -58,13 +58,13 @@ pub fn check(state: &State, scratch: &Scratch, tick: u64) -> Result<(), Diverged
             }),
         }
     };
-    faster("speed [m/s] of grain", &state.grains.velocities)?;
-    faster("speed [m/s] of membrane vertex", &state.membrane.velocities)?;
+    check_speeds("speed (m/s) of grain", &state.grains.velocities)?;
+    check_speeds("speed (m/s) of membrane vertex", &state.membrane.velocities)?;
     if let Some(which) = scratch.leaked {
         let from_carrier = state.grains.positions[which] - state.carrier_position();
         return Err(Diverged {
             tick,
-            what: "the membrane leaks: distance from the carrier [m] of grain",
+            what: "the membrane leaks: distance from the carrier (m) of grain",
             which,
             value: from_carrier.norm(),
             limit: None,

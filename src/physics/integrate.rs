@@ -1,4 +1,18 @@
-//! Motion: semi-implicit Euler, v += a dt and then x += v dt, second order in energy.
+//! Integrates the motion of grains and membrane with the semi-implicit Euler method.
+//!
+//! ```text
+//! v ← v + dt F/m + g dt + a,   x ← x + v dt,   ω ← ω + dt τ / (2/5 m R²)
+//! ```
+//!
+//! | symbol | meaning | unit |
+//! |---|---|---|
+//! | x, v, ω | position, velocity, angular velocity | m, m/s, rad/s |
+//! | F, τ, m, R | force, torque, mass, radius | N, N m, kg, m |
+//! | g | gravity | m/s² |
+//! | a | velocity gained with the carrier under density scaling, else 0 | m/s |
+//!
+//! The method is symplectic; its energy error is of second order in dt. Vertices held by a wall
+//! follow the wall instead.
 
 use super::{
     Controls, Model, Scratch, State,
@@ -12,31 +26,32 @@ use crate::base::{
     parallel::{self, PART},
 };
 
-/// Moves grains and membrane on by one substep.
+/// Advances grains and membrane by one substep.
 pub fn advance(model: &Model, controls: &Controls, scratch: &mut Scratch, state: &mut State) {
-    let to = carried_to(controls);
-    let carried = Carried {
-        gain: model.gravity * model.substep + carried_along(model, controls, state),
-        step: to - state.carrier_position(),
-        since_build: to - scratch.neighbours.carrier_position,
+    let target = carrier_target(controls);
+    let carrier = CarrierMotion {
+        gain: model.gravity * model.substep + velocity_gained_with_carrier(model, controls, state),
+        step: target - state.carrier_position(),
+        since_build: target - scratch.neighbors.carrier_position,
     };
-    let grains = advance_grains(model, scratch, state, &carried);
-    let vertices = advance_membrane(model, controls, scratch, state, &carried);
-    let lists = &mut scratch.neighbours;
+    let grains = advance_grains(model, scratch, state, &carrier);
+    let vertices = advance_membrane(model, controls, scratch, state, &carrier);
+    let lists = &mut scratch.neighbors;
     lists.displacement_squared_max = grains[0].max(vertices[0]);
     lists.travel += grains[1].sqrt() + vertices[1].sqrt();
     lists.vertex_travel += vertices[1].sqrt();
     state.walls.clone_from(&controls.walls);
 }
 
-/// Where the carrier is at the end of this substep (m).
-fn carried_to(controls: &Controls) -> Vec3 {
+/// Position of the carrier at the end of this substep (m).
+fn carrier_target(controls: &Controls) -> Vec3 {
     controls.walls.get(CARRIER).map_or_else(Vec3::zeros, |it| it.pose.translation.vector)
 }
 
-/// What grains and free vertices gain with the carrier in this substep (m/s), so that heavier ones
-/// follow it as the real ones do; see `cosim::compile::density_scaling`.
-fn carried_along(model: &Model, controls: &Controls, state: &State) -> Vec3 {
+/// Velocity that grains and free vertices gain with the carrier in this substep (m/s). With density
+/// scaling they have more inertia than the real ones, and this makes them follow the carrier as the real ones
+/// do; see `cosim::compile::density_scaling`.
+fn velocity_gained_with_carrier(model: &Model, controls: &Controls, state: &State) -> Vec3 {
     let gained = match (controls.walls.get(CARRIER), state.walls.get(CARRIER)) {
         (Some(to), Some(from)) => to.twist.linear - from.twist.linear,
         _ => Vec3::zeros(),
@@ -44,19 +59,19 @@ fn carried_along(model: &Model, controls: &Controls, state: &State) -> Vec3 {
     gained * (1.0 - model.density_scaling.recip())
 }
 
-/// What the carrier and gravity do to all.
-struct Carried {
+/// Effect of gravity and of the carrier's motion on all grains and free vertices.
+struct CarrierMotion {
     /// Velocity that grains and free vertices gain (m/s).
     gain: Vec3,
-    /// How far the carrier goes in this substep (m).
+    /// Displacement of the carrier in this substep (m).
     step: Vec3,
-    /// How far it has come since the lists were built (m).
+    /// Displacement of the carrier since the lists were built (m).
     since_build: Vec3,
 }
 
-impl Carried {
-    /// Squared displacements relative to the carrier (m²), since the lists were built and in this
-    /// substep, added to the largest ones. What is no number is the largest.
+impl CarrierMotion {
+    /// Updates `furthest`, the largest squared displacements relative to the carrier (m²): since the lists
+    /// were built, and in this substep. NaN counts as the largest.
     #[inline(always)]
     fn record_displacement(
         &self,
@@ -74,12 +89,12 @@ impl Carried {
     }
 }
 
-/// Returns the largest squared displacements (m²).
+/// Advances the grains. Returns the largest squared displacements (m²), see `record_displacement`.
 fn advance_grains(
     model: &Model,
     scratch: &Scratch,
     state: &mut State,
-    carried: &Carried,
+    carrier: &CarrierMotion,
 ) -> [Real; 2] {
     let dt = model.substep;
     let Grains { positions, velocities, angular_velocities, radii, masses } = &mut state.grains;
@@ -95,27 +110,27 @@ fn advance_grains(
             let mut furthest = [0.0; 2];
             for (k, of_pairs) in sums.iter().enumerate() {
                 let i = start + k;
-                let (force, torque) = sums::with_others(scratch, i, of_pairs);
+                let (force, torque) = sums::add_other_contacts(scratch, i, of_pairs);
                 let (mass, radius) = (masses[i], radii[i]);
                 let (before, velocity) = (positions[k], &mut velocities[k]);
-                *velocity += force * (dt / mass) + carried.gain;
+                *velocity += force * (dt / mass) + carrier.gain;
                 angular_velocities[k] += torque * (dt / (0.4 * mass * radius * radius));
                 positions[k] += *velocity * dt;
-                let built = &scratch.neighbours.grain_positions[i];
-                carried.record_displacement(built, &before, &positions[k], &mut furthest);
+                let built = &scratch.neighbors.grain_positions[i];
+                carrier.record_displacement(built, &before, &positions[k], &mut furthest);
             }
             furthest
         },
     )
 }
 
-/// Returns the largest squared displacements (m²).
+/// Advances the vertices. Returns the largest squared displacements (m²), see `record_displacement`.
 fn advance_membrane(
     model: &Model,
     controls: &Controls,
     scratch: &Scratch,
     state: &mut State,
-    carried: &Carried,
+    carrier: &CarrierMotion,
 ) -> [Real; 2] {
     let dt = model.substep;
     let MembraneState { positions, velocities } = &mut state.membrane;
@@ -135,11 +150,11 @@ fn advance_membrane(
                     *velocity = sums::wall_velocity(wall, position);
                 } else {
                     let force = scratch.membrane.forces[v] + scratch.vertex_forces[v];
-                    *velocity += force * (dt / model.membrane.masses[v]) + carried.gain;
+                    *velocity += force * (dt / model.membrane.masses[v]) + carrier.gain;
                     *position += *velocity * dt;
                 }
-                let built = &scratch.neighbours.vertex_positions[v];
-                carried.record_displacement(built, &before, position, &mut furthest);
+                let built = &scratch.neighbors.vertex_positions[v];
+                carrier.record_displacement(built, &before, position, &mut furthest);
             }
             furthest
         },

@@ -1,28 +1,28 @@
-//! Grains, membrane and chamber: pure, repeatable, without any input or output.
+//! Physics of grains, membranes, walls and air: deterministic, without input or output.
 //!
-//! `Model` is what the system is made of, `State` is what must be known to go on, `Controls` is
-//! what the outside wants during a substep, `Scratch` is what can be recomputed. A fifth noun,
-//! `Snapshot`, is what others may see. `substep` advances the state; it reads as a list of stages,
-//! and the stages live in the files of their names.
+//! `Model` is what the system consists of, `State` is everything needed to continue, `Controls` are
+//! the inputs of a substep, and `Scratch` is everything that can be recomputed. What is published is
+//! a `Snapshot`, which belongs to another module. `substep` advances the state; it is a list of
+//! stages, each in a file of the same name.
 
-pub mod boundary; // what grains and membrane meet besides each other
-pub mod chamber; // the air inside
-pub mod contact; // who touches, and how hard
+pub mod boundary; // walls and rigid bodies
+pub mod chamber; // the air inside the membranes
+pub mod contact; // contact forces
 pub mod controls;
-pub mod critical_step; // how long a substep may be
-pub mod fill; // grains into the bag
-pub mod health; // can the run go on?
+pub mod critical_step; // the longest stable substep
+pub mod fill; // fills a gripper with grains
+pub mod health; // detects divergence and leaks
 pub mod integrate;
 pub mod law; // contact laws
-pub mod membrane; // the flexible bag
+pub mod membrane; // membranes: springs, hinges, pressure
 pub mod model;
-pub mod neighbours; // who may touch whom
-pub mod packing; // grains made dense
+pub mod neighbors; // lists of possible contacts
+pub mod packing; // dense packings of grains
 pub mod scratch;
 pub mod state;
 pub mod substep;
 pub mod system;
-pub mod builder; // any system from its parts
+pub mod builder; // assembles a system from its parts
 
 pub use builder::SystemBuilder;
 pub use controls::Controls;

@@ -1,4 +1,4 @@
-//! State: all that must be known to go on. One `Vec` per quantity, index = id.
+//! State: everything needed to continue a run. There is one `Vec` per quantity; the index is the id.
 
 use super::{
     Model,
@@ -7,12 +7,12 @@ use super::{
 };
 use crate::base::{Real, Vec3, digest::Digest};
 
-/// Membrane patches that one grain can touch at the same time: the six faces around a vertex that
-/// the vacuum has drawn over it like a cup, and two more, for example in a fold. If one of them were
-/// left out, which one would change from substep to substep, and the membrane would ring.
+/// Largest number of membrane patches that one grain can touch at the same time: the six faces around a
+/// vertex that the vacuum has wrapped around it, and two more, for example in a fold. With a smaller limit, the
+/// omitted patch would change from substep to substep, and the membrane would oscillate.
 pub const N_PATCHES: usize = 8;
 
-/// Everything that evolves.
+/// Everything that changes during a run.
 #[derive(Clone, Debug)]
 pub struct State {
     /// The grains.
@@ -21,14 +21,13 @@ pub struct State {
     pub membrane: MembraneState,
     /// Friction springs of all contacts.
     pub springs: Springs,
-    /// Which pairs of grains the pair springs belong to. Written by `neighbours`.
+    /// Pairs of grains that the pair springs belong to. Written by `neighbors`.
     pub pair_ids: Vec<[u32; 2]>,
     /// Gauge pressure in the chamber, negative under vacuum (Pa). Written by `chamber`.
     pub gauge: Real,
-    /// Where the walls are and how they move. Written by `integrate` from the controls.
+    /// Pose and velocity of each wall. Written by `integrate` from the controls.
     pub walls: Vec<BodyMotion>,
-    /// What the motions of the walls go on from, one for each wall; empty where no wall needs it.
-    /// Written by `System::step`.
+    /// What each wall's motion needs to continue; empty if no wall needs it. Written by `System::step`.
     pub wall_memory: Vec<WallMemory>,
 }
 
@@ -71,28 +70,30 @@ impl Grains {
     }
 }
 
-/// What all contacts remember: their tangential springs, the history of friction, and whatever else
-/// their law asks for.
+/// History of all contacts: tangential springs, which are the history of friction, and what else the law
+/// stores.
 #[derive(Clone, Debug, Default)]
 pub struct Springs {
-    /// Of each listed pair of grains, zero without contact (m). Written by `contact::grains`.
+    /// Spring of each listed pair of grains (m), zero without contact. Written by `contact::grains`.
     pub pairs: Vec<Vec3>,
-    /// What else each listed pair of grains remembers; nothing under a law without cohesion. Written by
+    /// Other history of each listed pair of grains; empty for a law without cohesion. Written by
     /// `contact::grains`.
     pub pair_memories: Vec<Real>,
     /// Membrane contacts of each grain. Written by `contact::membrane`.
     pub patches: Vec<Patches>,
-    /// Contacts of grains with the membrane's vertex spheres.
+    /// Contacts of grains with the membrane's vertex spheres. Written by `contact::spheres`.
     pub spheres: ListedSprings,
     /// Contacts of walls with grains. Written by `contact::walls`.
     pub walls: ListedSprings,
-    /// Of membrane samples with bodies (m), body by body: all vertices, then all facets. Written
+    /// Contacts of grains with walls of triangles and with bodies. Written by `contact::surfaces`.
+    pub surfaces: SurfaceHistories,
+    /// Springs between membrane samples and bodies (m), body by body: all vertices, then all facets. Written
     /// by `contact::bodies`.
     pub bodies: Vec<Vec3>,
 }
 
 impl Springs {
-    /// No contact yet, for `n_grains` grains and `n_samples` samples of the membrane on all bodies.
+    /// No contacts, for `n_grains` grains and `n_samples` samples of the membrane on all bodies.
     pub fn none(n_grains: usize, n_samples: usize) -> Self {
         Self {
             pairs: Vec::new(),
@@ -100,24 +101,25 @@ impl Springs {
             patches: vec![Patches::NONE; n_grains],
             spheres: ListedSprings::default(),
             walls: ListedSprings::default(),
+            surfaces: SurfaceHistories::default(),
             bodies: vec![Vec3::zeros(); n_samples],
         }
     }
 }
 
-/// Springs of listed contacts: of grains with vertex spheres, or of walls with grains.
+/// Springs of listed contacts, between grains and vertex spheres or between walls and grains.
 #[derive(Clone, Debug, Default)]
 pub struct ListedSprings {
-    /// Grain and vertex of each, or wall and grain; ascending. Written by `neighbours`.
+    /// Ids of grain and vertex, or of wall and grain; ascending. Written by `neighbors`.
     pub ids: Vec<[u32; 2]>,
-    /// Zero without contact (m).
+    /// Spring of each contact (m), zero without contact.
     pub springs: Vec<Vec3>,
-    /// What else each contact remembers; nothing under a law without cohesion.
+    /// Other history of each contact; empty for a law without cohesion.
     pub memories: Vec<Real>,
 }
 
 impl ListedSprings {
-    /// The springs of contacts of walls with grains, wall by wall, zero for those that are not listed.
+    /// Springs between walls and grains for all grains, wall by wall; zero for contacts that are not listed.
     pub fn dense(&self, n_walls: usize, n_grains: usize) -> impl Iterator<Item = Vec3> {
         let mut listed = self.ids.iter().zip(&self.springs).peekable();
         let all = (0..n_walls).flat_map(move |wall| (0..n_grains).map(move |grain| [wall, grain]));
@@ -128,20 +130,42 @@ impl ListedSprings {
     }
 }
 
-/// One patch of membrane that a grain touches: the contact lives on while the grain slides from
+/// History of contacts of grains with walls of triangles and with bodies. A grain may have several contacts with
+/// the same surface.
+#[derive(Clone, Debug, Default)]
+pub struct SurfaceHistories {
+    /// Surface, as in `Model::surface`, and grain of each contact; ascending.
+    pub ids: Vec<[u32; 2]>,
+    /// History of each contact.
+    pub histories: Vec<SurfaceHistory>,
+}
+
+/// History of one contact of a grain with a surface. The contact persists while the grain slides or rolls from
 /// triangle to triangle.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SurfaceHistory {
+    /// Tangential spring (m).
+    pub spring: Vec3,
+    /// Unit normal in the last substep, from the surface to the grain.
+    pub normal: Vec3,
+    /// Other history; empty for a law without cohesion.
+    pub memory: Vec<Real>,
+}
+
+/// One patch of membrane that a grain touches. The contact persists while the grain slides from triangle to
+/// triangle.
 #[derive(Clone, Copy, Debug)]
 pub struct Patch {
     /// Tangential spring (m).
     pub spring: Vec3,
-    /// Normal at the last substep, from membrane to grain.
+    /// Unit normal in the last substep, from membrane to grain.
     pub normal: Vec3,
 }
 
 /// The membrane contacts of one grain.
 #[derive(Clone, Copy, Debug)]
 pub struct Patches {
-    /// How many of the slots are in use.
+    /// Number of slots in use.
     pub n: usize,
     /// The contacts.
     pub slots: [Patch; N_PATCHES],
@@ -157,8 +181,8 @@ impl Patches {
 }
 
 impl State {
-    /// Grains at rest in `model` without any contact, its membrane in its reference shape, walls at
-    /// `walls`, air at atmospheric pressure.
+    /// A state of `model` at rest without contacts: the membrane in its reference shape, the walls at
+    /// `walls`, the air at atmospheric pressure.
     pub fn at_rest(model: &Model, walls: Vec<BodyMotion>, grains: Grains) -> Self {
         let n_samples = model.n_samples() * model.bodies.len();
         Self {
@@ -172,12 +196,12 @@ impl State {
         }
     }
 
-    /// Position of the carrier, the first wall (m); zero without walls.
+    /// Position of the carrier, which is the first wall (m); zero without walls.
     pub fn carrier_position(&self) -> Vec3 {
         self.walls.get(CARRIER).map_or_else(Vec3::zeros, |it| it.pose.translation.vector)
     }
 
-    /// Adds every number of the state in a fixed order.
+    /// Adds every number of the state to `digest`, in a fixed order.
     pub fn digest(&self, digest: &mut Digest) {
         digest.vectors(&self.grains.positions);
         digest.vectors(&self.grains.velocities);
@@ -197,7 +221,7 @@ impl State {
         }
     }
 
-    /// Only loaded springs count: which empty pairs are listed is not part of the physics.
+    /// Adds only loaded springs: which pairs without contact are listed is not part of the physics.
     fn digest_springs(&self, digest: &mut Digest) {
         let Springs { pairs, pair_memories, spheres, walls, .. } = &self.springs;
         let id = |ids: &[u32; 2]| u64::from(ids[0]) << 32 | u64::from(ids[1]);
@@ -217,7 +241,7 @@ impl State {
                 digest.vectors(&[patch.spring, patch.normal]);
             }
         }
-        // As if every grain were listed with every wall: what is listed is not part of the physics.
+        // As if every grain were listed for every wall: which contacts are listed is not part of the physics.
         for spring in walls.dense(self.walls.len(), self.grains.len()) {
             digest.reals(spring.as_slice());
         }
@@ -230,6 +254,12 @@ impl State {
                     digest.reals(memory);
                 }
             }
+        }
+        let surfaces = &self.springs.surfaces;
+        for (ids, history) in surfaces.ids.iter().zip(&surfaces.histories) {
+            digest.integer(id(ids));
+            digest.vectors(&[history.spring, history.normal]);
+            digest.reals(&history.memory);
         }
     }
 }

@@ -1,21 +1,22 @@
-//! One substep: the stages in order.
+//! One substep, as a list of stages.
 
 use super::{
     Controls, Model, Scratch, State, chamber,
-    contact::{bodies, grains, membrane as membrane_contact, spheres, sums, walls},
-    integrate, membrane, neighbours,
+    contact::{bodies, grains, membrane as membrane_contact, spheres, sums, surfaces, walls},
+    integrate, membrane, neighbors,
 };
 
-/// A stage reads the state and writes its own part of state and scratch.
+/// One stage of a substep. It reads model, controls and state, and writes its own part of state and scratch.
 pub type Stage = fn(&Model, &Controls, &mut State, &mut Scratch);
 
-/// All stages of a substep in order, with the names under which their times are reported.
+/// All stages of a substep in order, with the names under which benchmarks report their times.
 pub static STAGES: &[(&str, Stage)] = &[
     ("chamber", |model, controls, state, _| chamber::advance(&model.chamber, controls, state)),
+    // This name is part of the JSON reports of benchmarks.
     ("neighbours", |model, controls, state, scratch| {
-        neighbours::refresh(model, controls, state, scratch);
+        neighbors::refresh(model, controls, state, scratch);
     }),
-    // Before the contacts with the membrane, which read the rows that it makes of the vertices.
+    // Before the contacts with the membrane, which read the rows of vertices that this stage writes.
     ("membrane", |model, _, state, scratch| {
         membrane::forces(&model.membrane, &state.membrane, state.gauge, &mut scratch.membrane);
     }),
@@ -32,19 +33,21 @@ pub static STAGES: &[(&str, Stage)] = &[
         let forces = &mut scratch.sphere_forces;
         spheres::forces(model, grains, membrane, &mut springs.spheres, forces);
     }),
-    ("contact_walls", |model, _, state, scratch| {
+    ("contact_walls", |model, controls, state, scratch| {
         let State { grains, walls, springs, .. } = state;
         walls::forces(model, walls, grains, &mut springs.walls, &mut scratch.wall_forces);
+        surfaces::forces(model, controls, state, scratch);
     }),
     ("contact_bodies", |model, controls, state, scratch| {
         let State { membrane, springs, .. } = state;
-        let Scratch { neighbours, sample_forces, .. } = scratch;
-        let samples = (&neighbours.bodies, &mut **sample_forces);
+        let Scratch { neighbors, sample_forces, .. } = scratch;
+        let samples = (&neighbors.bodies, &mut **sample_forces);
         bodies::forces(model, controls, membrane, &mut springs.bodies, samples);
     }),
     ("sums", |model, controls, state, scratch| {
         sums::on_membrane(model, controls, scratch);
         sums::on_walls(model, controls, state, scratch);
+        surfaces::react(model, controls, state, scratch);
     }),
     ("integrate", |model, controls, state, scratch| {
         integrate::advance(model, controls, scratch, state);

@@ -1,4 +1,4 @@
-//! One system: model, controls, state and scratch of grains, membranes, air and walls.
+//! A system of grains, membranes, air and walls: model, controls, state and scratch.
 
 use std::iter::repeat;
 
@@ -13,44 +13,44 @@ use super::{
 };
 use crate::base::{Real, Vec3};
 
-/// One system.
+/// A system of grains, membranes, air and walls.
 #[derive(Clone)]
 pub struct System {
-    /// What it is made of.
+    /// What the system consists of.
     pub model: Model,
-    /// Inputs of the next substeps.
+    /// Inputs of the next substep.
     pub controls: Controls,
-    /// What evolves.
+    /// Everything that changes.
     pub state: State,
-    /// What the last substep computed.
+    /// What the last substep has computed.
     pub scratch: Scratch,
 }
 
 impl System {
-    /// A system that has not moved yet.
+    /// A system at its initial state.
     pub fn new(model: Model, controls: Controls, state: State) -> Self {
         let scratch = Scratch::new(&model);
         Self { model, controls, state, scratch }
     }
 
-    /// Advances by one substep. Walls move as their motions say.
+    /// Advances by one substep. Walls move as their `WallMotion` prescribes.
     pub fn step(&mut self) {
         self.move_walls();
         substep(&self.model, &self.controls, &mut self.state, &mut self.scratch);
-        self.remember_walls();
+        self.update_wall_memory();
     }
 
-    /// The same, calling `after` with the number of each stage of `STAGES` that is over.
+    /// Like `step`, and calls `after` with the index in `STAGES` of each completed stage.
     pub fn step_by_stages(&mut self, mut after: impl FnMut(usize)) {
         self.move_walls();
         for (k, (_, stage)) in STAGES.iter().enumerate() {
             stage(&self.model, &self.controls, &mut self.state, &mut self.scratch);
             after(k);
         }
-        self.remember_walls();
+        self.update_wall_memory();
     }
 
-    /// Gives a wall another motion, which begins now, from where the wall is.
+    /// Replaces the motion of a wall. The new motion starts now, at the wall's current pose.
     ///
     /// # Panics
     /// If there is no such wall.
@@ -61,7 +61,7 @@ impl System {
         }
     }
 
-    /// Adds a grain at rest while a system is set up; returns its number. All contacts are forgotten.
+    /// Adds a grain at rest while a system is set up, and returns its index. Discards the history of all contacts.
     pub fn add_grain(&mut self, position: Vec3, radius: Real, mass: Real) -> usize {
         let Self { model, state, scratch, .. } = self;
         let grains = &mut state.grains;
@@ -101,7 +101,7 @@ impl System {
         }
     }
 
-    fn remember_walls(&mut self) {
+    fn update_wall_memory(&mut self) {
         let wrenches = &self.scratch.wall_wrenches;
         for (w, memory) in self.state.wall_memory.iter_mut().enumerate() {
             memory.time += self.model.substep;

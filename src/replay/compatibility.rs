@@ -1,8 +1,8 @@
-//! Which changes of this program altered results, as its changelog tells.
+//! Releases that changed results, from the changelog.
 
 const CHANGELOG: &str = include_str!("../../CHANGELOG.md");
 
-/// What changed results since `version`, newest first; empty if the changelog knows of nothing.
+/// Changes of results since `version`, newest first; empty if the changelog lists none.
 pub fn changes_since(version: &str) -> Vec<String> {
     changes(CHANGELOG, version)
 }
@@ -40,9 +40,9 @@ mod tests {
                         - Springs are\n  stiffer.\n\n## 0.2.0\n\n### Changes results\n- Grains roll.\n\
                         - Walls too.\n\n## 0.1.0\n\n### Changes results\n- First.\n";
 
-    /// Oracle: the text, read by a person.
+    /// Oracle: the text, read by hand.
     #[test]
-    fn entries_newer_than_a_version_are_told() {
+    fn entries_newer_than_a_version_are_returned() {
         let newer =
             ["Unreleased: Springs are stiffer.", "0.2.0: Grains roll.", "0.2.0: Walls too."];
         assert_eq!(changes(TEXT, "0.2.0"), newer[..1]);

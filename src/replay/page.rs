@@ -1,62 +1,62 @@
-//! A recording as a page for people: curves over time, what happened when, and how to run it again.
+//! An HTML page about a recording: plots over time, events, and how to simulate it again.
 
 use std::path::Path;
 
 use maud::{Markup, html};
 
-use crate::bag::{NotABag, recording::Recording};
-use crate::{replay::page_data::Course, report::page};
+use crate::bag::{OpenBagError, recording::Recording};
+use crate::{replay::page_data::PageData, report::page};
 
-/// The page as HTML, complete in itself.
+/// The self-contained page as HTML.
 ///
 /// # Errors
-/// If the path is no recording.
-pub fn html(path: &Path) -> Result<String, NotABag> {
+/// If the path is not a recording.
+pub fn html(path: &Path) -> Result<String, OpenBagError> {
     let recording = Recording::open(path)?;
-    let course = Course::read(path)?;
+    let data = PageData::read(path)?;
     let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    let plots = course.plots();
+    let plots = data.plots();
     let head = html! {
         p.kind { "jamgrip recording" }
         h1 { (name) }
         ul.badges {
-            li { (course.n_messages) " messages" }
-            @if course.damages.is_empty() { li.good { "whole" } }
+            li { (data.n_messages) " messages" }
+            @if data.damages.is_empty() { li.good { "undamaged" } }
             @else { li.bad { "damaged" } }
-            @if recording.scene_text.is_some() { li.good { "can be run again" } }
+            @if recording.scene_text.is_some() { li.good { "can be simulated again" } }
         }
     };
     let body = html! {
-        (damages(&course))
+        (damages(&data))
         (page::plots(&plots))
         @if plots.is_empty() {
-            section { p { "None of its topics is one that this page draws." } }
+            section { p { "This page draws none of its topics." } }
         }
-        (events(&course))
+        (events(&data))
         (origin(path, &recording))
     };
-    Ok(page::whole(&name, &head, &body))
+    Ok(page::render(&name, &head, &body))
 }
 
-fn damages(course: &Course) -> Markup {
+fn damages(data: &PageData) -> Markup {
     html! {
-        @if !course.damages.is_empty() {
+        @if !data.damages.is_empty() {
             section.warning {
                 h2 { "Read this first" }
-                ul { @for damage in &course.damages { li { (damage) } } }
+                ul { @for damage in &data.damages { li { (damage) } } }
             }
         }
     }
 }
 
-fn events(course: &Course) -> Markup {
+fn events(data: &PageData) -> Markup {
     html! {
-        @if !course.events.is_empty() {
+        @if !data.events.is_empty() {
             section {
                 h2 { "Events" }
                 div.wide { table {
                     thead { tr { th.number { "time [s]" } th { "what" } } }
-                    tbody { @for (time_s, text) in &course.events {
+                    tbody { @for (time_s, text) in &data.events {
                         tr { td.number { (format!("{time_s:.3}")) } td { (text) } }
                     } }
                 } }
@@ -68,7 +68,7 @@ fn events(course: &Course) -> Markup {
 fn origin(path: &Path, recording: &Recording) -> Markup {
     html! {
         section {
-            h2 { "Where it comes from" }
+            h2 { "Origin" }
             dl.facts {
                 dt { "written by" } dd { (recording.library) }
                 @for (key, value) in &recording.facts { dt { (key) } dd { (value) } }

@@ -1,11 +1,11 @@
-//! What a recording shows over time: forces, pressure, heights, and what happened when.
+//! The data of a page: time series of forces, pressure and heights, and events.
 
 use std::{collections::BTreeMap, path::Path};
 
 use crate::{
     bag::{
-        NotABag,
-        reader::{Channel, Item, Reader, Recorded},
+        OpenBagError,
+        reader::{Channel, Item, Reader, RecordedMessage},
         writer::CDR_HEADER,
     },
     experiments::findings::{Kind, Plot, Series},
@@ -22,26 +22,26 @@ use crate::{
     },
 };
 
-/// What a page shows.
+/// The data of a page.
 #[derive(Debug, Default)]
-pub(super) struct Course {
-    /// Full name of the node, once one of its topics was met.
+pub(super) struct PageData {
+    /// Full name of the node, once one of its topics was found.
     node: Option<String>,
-    /// Curves by picture and label.
-    curves: BTreeMap<(Picture, String), Vec<[f64; 2]>>,
-    /// What happened: simulated time (s) and what.
+    /// Time series by plot and label.
+    curves: BTreeMap<(PlotKind, String), Vec<[f64; 2]>>,
+    /// Events: simulation time (s) and text.
     pub(super) events: Vec<(f64, String)>,
-    /// What is wrong with the recording.
+    /// Damaged parts of the recording.
     pub(super) damages: Vec<String>,
-    /// Messages of all kinds.
+    /// Total number of messages.
     pub(super) n_messages: u64,
-    /// The last of what is told only when it changes.
+    /// The last text of events that are only listed when they change.
     last: BTreeMap<&'static str, String>,
 }
 
-/// The pictures, in the order of the page.
+/// The plots, in the order of the page.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Picture {
+enum PlotKind {
     Force,
     Object,
     Pressure,
@@ -50,15 +50,15 @@ enum Picture {
     Speed,
 }
 
-impl Picture {
+impl PlotKind {
     fn title(self) -> &'static str {
         match self {
             Self::Force => "Force on the gripper",
             Self::Object => "Contact force on objects",
-            Self::Pressure => "Gauge pressure in the bag",
+            Self::Pressure => "Gauge pressure in the gripper",
             Self::Height => "Heights",
             Self::Packing => "Packing",
-            Self::Speed => "Simulated over wall time",
+            Self::Speed => "Real-time factor",
         }
     }
 
@@ -67,38 +67,38 @@ impl Picture {
             Self::Force | Self::Object => "force [N]",
             Self::Pressure => "gauge pressure [kPa]",
             Self::Height => "height [mm]",
-            Self::Packing => "share",
+            Self::Packing => "fraction",
             Self::Speed => "real-time factor",
         }
     }
 }
 
-impl Course {
-    /// Reads all of a recording.
+impl PageData {
+    /// Reads a whole recording.
     ///
     /// # Errors
-    /// If there is none.
-    pub(super) fn read(path: &Path) -> Result<Self, NotABag> {
-        let mut course = Self::default();
+    /// If the path is not a recording.
+    pub(super) fn read(path: &Path) -> Result<Self, OpenBagError> {
+        let mut data = Self::default();
         for file in crate::bag::files(path)? {
             let reader = Reader::open(&file)
-                .map_err(|fault| NotABag::Unreadable { path: file.clone(), fault })?;
+                .map_err(|error| OpenBagError::Unreadable { path: file.clone(), error })?;
             for item in reader {
                 match item {
-                    Item::Channel(channel) => course.meet(&channel),
-                    Item::Message(message) => course.take(&message),
-                    Item::Damage(it) => course.damages.push(format!("{}: {it}", file.display())),
+                    Item::Channel(channel) => data.find_node(&channel),
+                    Item::Message(message) => data.add(&message),
+                    Item::Damage(it) => data.damages.push(format!("{}: {it}", file.display())),
                     _ => {}
                 }
             }
         }
-        Ok(course)
+        Ok(data)
     }
 
-    /// The pictures that have anything to show.
+    /// The plots that have data.
     pub(super) fn plots(&self) -> Vec<Plot> {
-        let mut plots: Vec<(Picture, Plot)> = Vec::new();
-        for ((picture, label), points) in &self.curves {
+        let mut plots: Vec<(PlotKind, Plot)> = Vec::new();
+        for ((plot_kind, label), points) in &self.curves {
             let series = Series {
                 label: label.clone(),
                 kind: Kind::Line,
@@ -106,18 +106,19 @@ impl Course {
                 deviations: Vec::new(),
             };
             match plots.last_mut() {
-                Some((last, plot)) if last == picture => plot.series.push(series),
-                _ => plots.push((*picture, empty_plot(*picture, series))),
+                Some((last, plot)) if last == plot_kind => plot.series.push(series),
+                _ => plots.push((*plot_kind, empty_plot(*plot_kind, series))),
             }
         }
         plots.into_iter().map(|(_, plot)| crate::report::plot::reduced(plot)).collect()
     }
 
-    /// A node may have another name than usual: two topics that no other node has tell it.
-    fn meet(&mut self, channel: &Channel) {
-        let own =
+    /// Finds the name of the node, which may differ from the default, by two topics that no other
+    /// node has.
+    fn find_node(&mut self, channel: &Channel) {
+        let known =
             [(Statistics::TYPE.name, "/statistics"), (VacuumState::TYPE.name, "/vacuum_state")];
-        for (type_name, end) in own {
+        for (type_name, end) in known {
             if channel.type_name() == type_name
                 && let Some(node) = channel.topic.strip_suffix(end)
             {
@@ -126,7 +127,7 @@ impl Course {
         }
     }
 
-    fn take(&mut self, message: &Recorded) {
+    fn add(&mut self, message: &RecordedMessage) {
         self.n_messages += 1;
         let Some(cdr) = message.data.strip_prefix(&CDR_HEADER) else { return };
         if message.channel.type_name() == WorldChange::TYPE.name {
@@ -136,8 +137,8 @@ impl Course {
         let Some(name) = message.channel.topic.strip_prefix(node) else { return };
         let time_s = seconds(message.log_time);
         match name {
-            "/wrench" => self.force(Picture::Force, "objects on the gripper", time_s, cdr),
-            "/flange/wrench" => self.force(Picture::Force, "gripper on its mount", time_s, cdr),
+            "/wrench" => self.force(PlotKind::Force, "objects on the gripper", time_s, cdr),
+            "/flange/wrench" => self.force(PlotKind::Force, "gripper on its mount", time_s, cdr),
             "/flange/pose" => self.height("flange", time_s, cdr),
             "/vacuum_state" => self.vacuum_state(time_s, cdr),
             "/statistics" => self.statistics(time_s, cdr),
@@ -148,76 +149,80 @@ impl Course {
                     self.detection(time_s, it.status);
                 }
             }
-            _ => self.of_object(name, time_s, cdr),
+            _ => self.object_message(name, time_s, cdr),
         }
     }
 
-    fn of_object(&mut self, name: &str, time_s: f64, cdr: &[u8]) {
+    fn object_message(&mut self, name: &str, time_s: f64, cdr: &[u8]) {
         let Some((object, rest)) = name.strip_prefix("/object/").and_then(|it| it.split_once('/'))
         else {
             return;
         };
         match rest {
             "pose" => self.height(object, time_s, cdr),
-            "contact_wrench" => self.force(Picture::Object, object, time_s, cdr),
+            "contact_wrench" => self.force(PlotKind::Object, object, time_s, cdr),
             _ => {}
         }
     }
 
-    fn point(&mut self, picture: Picture, label: &str, time_s: f64, value: f64) {
-        self.curves.entry((picture, label.to_owned())).or_default().push([time_s, value]);
+    fn point(&mut self, plot_kind: PlotKind, label: &str, time_s: f64, value: f64) {
+        self.curves.entry((plot_kind, label.to_owned())).or_default().push([time_s, value]);
     }
 
-    /// Tells of something unless it is as it was.
-    fn change(&mut self, kind: &'static str, time_s: f64, text: String) {
+    /// Adds an event unless its text is the same as before.
+    fn add_if_changed(&mut self, kind: &'static str, time_s: f64, text: String) {
         if self.last.get(kind) != Some(&text) {
             self.events.push((time_s, text.clone()));
             self.last.insert(kind, text);
         }
     }
 
-    fn force(&mut self, picture: Picture, label: &str, time_s: f64, cdr: &[u8]) {
+    fn force(&mut self, plot_kind: PlotKind, label: &str, time_s: f64, cdr: &[u8]) {
         if let Ok(it) = WrenchStamped::from_cdr(cdr) {
-            self.point(picture, &format!("{label}, z"), time_s, it.wrench.force.z);
+            self.point(plot_kind, &format!("{label}, z"), time_s, it.wrench.force.z);
         }
     }
 
     fn height(&mut self, label: &str, time_s: f64, cdr: &[u8]) {
         if let Ok(it) = PoseStamped::from_cdr(cdr) {
-            self.point(Picture::Height, label, time_s, 1e3 * it.pose.position.z);
+            self.point(PlotKind::Height, label, time_s, 1e3 * it.pose.position.z);
         }
     }
 
     fn vacuum_state(&mut self, time_s: f64, cdr: &[u8]) {
         let Ok(it) = VacuumState::from_cdr(cdr) else { return };
-        self.point(Picture::Pressure, "actual", time_s, it.gauge / 1e3);
-        self.point(Picture::Pressure, "commanded", time_s, it.gauge_setpoint / 1e3);
-        self.point(Picture::Packing, "jammed fraction", time_s, it.jammed_fraction);
-        self.point(Picture::Packing, "solid fraction", time_s, it.solid_fraction);
-        self.point(Picture::Packing, "sliding fraction", time_s, it.sliding_fraction);
+        self.point(PlotKind::Pressure, "actual", time_s, it.gauge / 1e3);
+        self.point(PlotKind::Pressure, "commanded", time_s, it.gauge_setpoint / 1e3);
+        self.point(PlotKind::Packing, "jammed fraction", time_s, it.jammed_fraction);
+        self.point(PlotKind::Packing, "solid fraction", time_s, it.solid_fraction);
+        self.point(PlotKind::Packing, "sliding fraction", time_s, it.sliding_fraction);
     }
 
     fn statistics(&mut self, time_s: f64, cdr: &[u8]) {
         let Ok(it) = Statistics::from_cdr(cdr) else { return };
-        self.point(Picture::Speed, "last second", time_s, it.real_time_factor);
+        self.point(PlotKind::Speed, "last second", time_s, it.real_time_factor);
         if !it.phase.is_empty() {
-            self.change("phase", time_s, format!("phase {}", it.phase));
+            self.add_if_changed("phase", time_s, format!("phase {}", it.phase));
         }
         if !it.is_valid {
-            self.change("validity", time_s, "grains overlap too much for the model".to_owned());
+            self.add_if_changed(
+                "validity",
+                time_s,
+                "grains overlap too much for the model".to_owned(),
+            );
         }
     }
 
     fn vacuum_command(&mut self, time_s: f64, cdr: &[u8]) {
         if let Ok(it) = Float64::from_cdr(cdr) {
             let text = format!("command: gauge pressure {} kPa", it.data / 1e3);
-            self.change("vacuum", time_s, text);
+            self.add_if_changed("vacuum", time_s, text);
         }
     }
 
     fn world_change(&mut self, time_ns: u64, cdr: &[u8]) {
         if let Ok(it) = WorldChange::from_cdr(cdr) {
-            let text = format!("changed from outside: {}", it.what);
+            let text = format!("world changed: {}", it.what);
             self.events.push((seconds(time_ns), text));
         }
     }
@@ -225,7 +230,7 @@ impl Course {
     fn object_command(&mut self, time_s: f64, cdr: &[u8]) {
         let Ok(it) = ObjectCommand::from_cdr(cdr) else { return };
         let verb = if it.mode == ObjectCommand::MODE_RELEASE { "release" } else { "drive" };
-        self.change("object", time_s, format!("command: {verb} {}", it.object));
+        self.add_if_changed("object", time_s, format!("command: {verb} {}", it.object));
     }
 
     fn detection(&mut self, time_s: f64, status: i8) {
@@ -236,10 +241,10 @@ impl Course {
             ObjectDetectionStatus::OBJECT_DETECTED_AT_MAX_PRESSURE => {
                 "object detected, full vacuum"
             }
-            ObjectDetectionStatus::NO_OBJECT_DETECTED => "nothing touches the bag",
-            _ => "touched, but not gripped",
+            ObjectDetectionStatus::NO_OBJECT_DETECTED => "nothing touches the gripper",
+            _ => "touched but not gripped",
         };
-        self.change("detection", time_s, text.to_owned());
+        self.add_if_changed("detection", time_s, text.to_owned());
     }
 }
 
@@ -247,12 +252,12 @@ fn seconds(time_ns: u64) -> f64 {
     std::time::Duration::from_nanos(time_ns).as_secs_f64()
 }
 
-fn empty_plot(picture: Picture, first: Series) -> Plot {
+fn empty_plot(plot_kind: PlotKind, first: Series) -> Plot {
     Plot {
-        title: picture.title().to_owned(),
+        title: plot_kind.title().to_owned(),
         source_says: String::new(),
-        x_label: "simulated time [s]".to_owned(),
-        y_label: picture.y_label().to_owned(),
+        x_label: "simulation time [s]".to_owned(),
+        y_label: plot_kind.y_label().to_owned(),
         log_x: false,
         log_y: false,
         series: vec![first],
@@ -266,20 +271,20 @@ mod tests {
     use super::*;
     use crate::bag::reader::Schema;
 
-    fn message(topic: &str, type_name: &str, cdr: &[u8]) -> Recorded {
+    fn message(topic: &str, type_name: &str, cdr: &[u8]) -> RecordedMessage {
         let (name, encoding) = (type_name.to_owned(), "ros2msg".to_owned());
         let schema = Some(Arc::new(Schema { id: 1, name, encoding, data: Vec::new() }));
         let (topic, encoding) = (topic.to_owned(), "cdr".to_owned());
         let channel = Channel { id: 1, topic, encoding, metadata: BTreeMap::new(), schema };
         let data = [&CDR_HEADER[..], cdr].concat();
         let channel = Arc::new(channel);
-        Recorded { channel, sequence: 0, log_time: 5_000_000, publish_time: 5_000_000, data }
+        RecordedMessage { channel, sequence: 0, log_time: 5_000_000, publish_time: 5_000_000, data }
     }
 
-    /// Oracle: the same messages of a node that has its usual name.
+    /// Oracle: the same messages from a node with the default name.
     #[test]
-    fn a_renamed_node_is_drawn_like_any_other() {
-        let course = |node: &str| {
+    fn a_renamed_node_gives_the_same_plots() {
+        let data = |node: &str| {
             let wrench = WrenchStamped::default().to_cdr();
             let messages = [
                 message(
@@ -295,16 +300,16 @@ mod tests {
                     &WorldChange::default().to_cdr(),
                 ),
             ];
-            let mut course = Course::default();
-            messages.iter().for_each(|it| course.meet(&it.channel));
-            messages.iter().for_each(|it| course.take(it));
-            (course.plots(), course.events)
+            let mut data = PageData::default();
+            messages.iter().for_each(|it| data.find_node(&it.channel));
+            messages.iter().for_each(|it| data.add(it));
+            (data.plots(), data.events)
         };
-        let (plots, events) = course("/left/grip");
+        let (plots, events) = data("/left/grip");
         let titles: Vec<&str> = plots.iter().map(|it| it.title.as_str()).collect();
-        assert_eq!(titles, ["Force on the gripper", "Gauge pressure in the bag", "Packing"]);
-        assert_eq!(plots[0].series[0].points.len(), 1, "what is on others' topics is not drawn");
+        assert_eq!(titles, ["Force on the gripper", "Gauge pressure in the gripper", "Packing"]);
+        assert_eq!(plots[0].series[0].points.len(), 1, "topics of other nodes are not drawn");
         assert_eq!(events.len(), 1);
-        assert_eq!(format!("{plots:?}"), format!("{:?}", course("/jamgrip").0));
+        assert_eq!(format!("{plots:?}"), format!("{:?}", data("/jamgrip").0));
     }
 }

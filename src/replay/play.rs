@@ -1,9 +1,9 @@
-//! Publishes a recording again with its original timing: faster or slower, in part, over and over,
-//! paused and wound by whoever gives the cues.
+//! Publishes a recording with its original timing: at any speed, in part, in a loop; it can be
+//! paused, stepped and sought by commands.
 //!
-//! Messages go out in the order of the files, each when its time has come. Late readers are served as
-//! in the run itself: before the first message of a part, the last ones before it on latched topics
-//! are published. What lies before a part is passed over where a file has an index.
+//! Messages are published in the order of the files, each at its time. Late joiners are served as
+//! in the run itself: before the first message of a part, the last earlier messages of the latched
+//! topics are published. If a file has an index, messages before a part are skipped.
 
 use std::{
     collections::{BTreeMap, VecDeque},
@@ -17,80 +17,80 @@ use std::{
     time::Duration,
 };
 
-use super::player_command::{Answer, Asked, PlayerCommand};
+use super::player_command::{CommandRequest, PlayerCommand, PlayerStatus};
 use crate::{
     bag::{
         index::Index,
-        reader::{Channel, Item, Reader, Recorded, items},
+        reader::{Channel, Item, Reader, RecordedMessage, items},
     },
     host::{clock::Playhead, shutdown::Shutdown},
 };
 
-/// Topic of simulated time.
+/// Topic of simulation time.
 pub const CLOCK: &str = "/clock";
 
-/// Where messages go.
+/// Receives the messages of a recording.
 pub trait PlayerOutput {
-    /// A topic that messages will come on. False if it cannot be played.
+    /// Opens a topic. Returns false if it cannot be played.
     fn open(&mut self, channel: &Channel) -> bool;
 
-    /// One message on an open topic.
-    fn publish(&mut self, message: &Recorded);
+    /// Publishes a message on an open topic.
+    fn publish(&mut self, message: &RecordedMessage);
 
-    /// Recorded time, for those who want it more or less often than it was recorded.
-    fn clock(&mut self, time_ns: u64);
+    /// Publishes recorded time, at another rate than it was recorded.
+    fn publish_clock(&mut self, time_ns: u64);
 }
 
-/// What is played, and how.
+/// What to play, and how.
 #[derive(Clone, Debug)]
 pub struct Options {
-    /// How many times as fast as recorded.
+    /// Speed relative to the recording.
     pub rate: f64,
-    /// Where to begin, from the first message on (ns).
+    /// Start time, from the first message (ns).
     pub start_ns: u64,
-    /// Where to end, from the first message on (ns).
+    /// End time, from the first message (ns).
     pub end_ns: Option<u64>,
-    /// True stands still at first.
+    /// True to start paused.
     pub is_paused: bool,
-    /// True begins again at the end.
+    /// True to restart at the end.
     pub is_loop: bool,
-    /// Only these topics; `*` at the end stands for any rest. Empty means all.
+    /// Only these topics; a `*` at the end matches any suffix. Empty means all topics.
     pub topics: Vec<String>,
-    /// Not these.
+    /// Topics to leave out, with the same patterns.
     pub exclude: Vec<String>,
-    /// Time between announcing the topics and the first message, for readers to find them.
+    /// Time between opening the topics and the first message, for readers to discover them.
     pub delay: Duration,
-    /// Publish recorded time this often in wall time, in place of the recorded clock (Hz).
+    /// Publish recorded time at this rate of wall-clock time instead of the recorded clock (Hz).
     pub clock_rate: Option<f64>,
 }
 
-/// What was played.
+/// The result of playing.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Played {
     /// Messages published.
     pub n_published: u64,
     /// Topics that could not be played.
-    pub refused: Vec<String>,
-    /// Damages met.
+    pub unplayable: Vec<String>,
+    /// Number of damaged parts.
     pub n_damages: u64,
 }
 
-/// Plays the files until the end, a cue, or `shutdown` ends it.
+/// Plays the files until the end, or until a command or `shutdown` ends it.
 ///
 /// # Errors
 /// If a file cannot be opened.
 pub fn play(
     files: &[PathBuf],
     options: &Options,
-    stage: &mut dyn PlayerOutput,
-    cues: &Receiver<Asked>,
+    output: &mut dyn PlayerOutput,
+    commands: &Receiver<CommandRequest>,
     shutdown: &Shutdown,
 ) -> io::Result<Played> {
     let mut player = Player {
         files,
         options,
-        stage,
-        cues,
+        output,
+        commands,
         shutdown,
         head: None,
         first_ns: 0,
@@ -101,10 +101,10 @@ pub fn play(
         is_open: BTreeMap::new(),
         played: Played::default(),
     };
-    player.announce()?;
+    player.open_topics()?;
     let mut start_ns = options.start_ns;
     loop {
-        let ending = player.pass(start_ns)?;
+        let ending = player.play_from(start_ns)?;
         player.end_bursts();
         match ending {
             Ending::End if options.is_loop => start_ns = options.start_ns,
@@ -120,10 +120,10 @@ type FileReader = Reader<BufReader<File>>;
 struct Burst {
     n_left: u64,
     n_played: u64,
-    reply: Option<Sender<Answer>>,
+    reply: Option<Sender<PlayerStatus>>,
 }
 
-/// How one pass through the files ended.
+/// Why a pass through the files ended.
 enum Ending {
     End,
     Seek(u64),
@@ -133,19 +133,19 @@ enum Ending {
 struct Player<'a> {
     files: &'a [PathBuf],
     options: &'a Options,
-    stage: &'a mut dyn PlayerOutput,
-    cues: &'a Receiver<Asked>,
+    output: &'a mut dyn PlayerOutput,
+    commands: &'a Receiver<CommandRequest>,
     shutdown: &'a Shutdown,
     head: Option<Playhead>,
     /// Time of the recording's first message (ns).
     first_ns: u64,
-    /// Of each file, once it was looked for.
+    /// The index of each file, once it has been looked up.
     indexes: Vec<Option<Option<Index>>>,
-    /// Recorded time last told to the stage (ns).
+    /// Recorded time last published by `publish_time` (ns).
     clock_ns: Option<u64>,
-    /// Messages to play although it stands still.
+    /// Messages to play while paused.
     bursts: VecDeque<Burst>,
-    /// True if the message to come is one of them.
+    /// True if the next message belongs to a burst.
     is_step: bool,
     /// Whether each topic is played.
     is_open: BTreeMap<String, bool>,
@@ -153,8 +153,8 @@ struct Player<'a> {
 }
 
 impl Player<'_> {
-    /// Opens the topics that are known before the first message, and waits for readers.
-    fn announce(&mut self) -> io::Result<()> {
+    /// Opens the topics that come before the first message, and waits for readers.
+    fn open_topics(&mut self) -> io::Result<()> {
         for (_, item) in items(self.files)? {
             match item {
                 Item::Channel(channel) => drop(self.is_played(&channel)),
@@ -169,10 +169,10 @@ impl Player<'_> {
         Ok(())
     }
 
-    /// Plays once through the files from `start_ns` on.
-    fn pass(&mut self, start_ns: u64) -> io::Result<Ending> {
-        let mut latched: BTreeMap<String, Recorded> = BTreeMap::new();
-        let mut is_begun = false;
+    /// Plays once through the files, from `start_ns` on.
+    fn play_from(&mut self, start_ns: u64) -> io::Result<Ending> {
+        let mut latched: BTreeMap<String, RecordedMessage> = BTreeMap::new();
+        let mut has_begun = false;
         for item in self.readers(start_ns)?.into_iter().flatten() {
             let message = match item {
                 Item::Message(message) => message,
@@ -198,21 +198,21 @@ impl Player<'_> {
             if self.options.end_ns.is_some_and(|end_ns| end_ns < at_ns) {
                 break;
             }
-            if !is_begun {
+            if !has_begun {
                 self.begin(start_ns, &latched);
-                is_begun = true;
+                has_begun = true;
             }
             if let Some(ending) = self.wait_for(at_ns) {
                 return Ok(ending);
             }
-            self.stage.publish(&message);
+            self.output.publish(&message);
             self.played.n_published += 1;
             self.count_step();
         }
         Ok(Ending::End)
     }
 
-    /// Readers of all files that pass over what is before `start_ns`.
+    /// Readers of all files, which skip messages before `start_ns`.
     fn readers(&mut self, start_ns: u64) -> io::Result<Vec<FileReader>> {
         let is_kept = |channel: &Channel| {
             self.is_open.get(&channel.topic).copied().unwrap_or(true) && is_latched(channel)
@@ -226,7 +226,7 @@ impl Player<'_> {
                 match index.get_or_insert_with(|| Index::read(file)) {
                     Some(index) => {
                         let gaps = index.before(self.first_ns.saturating_add(start_ns), &is_kept);
-                        Reader::open_in_part(file, index, gaps)
+                        Reader::open_with_gaps(file, index, gaps)
                     }
                     None => Reader::open(file),
                 }
@@ -234,8 +234,8 @@ impl Player<'_> {
             .collect()
     }
 
-    /// Sets the head to the start of a part and serves late readers.
-    fn begin(&mut self, start_ns: u64, latched: &BTreeMap<String, Recorded>) {
+    /// Starts a part: moves the playhead and publishes the latched messages.
+    fn begin(&mut self, start_ns: u64, latched: &BTreeMap<String, RecordedMessage>) {
         match &mut self.head {
             Some(head) => head.jump(start_ns),
             None => {
@@ -245,18 +245,18 @@ impl Player<'_> {
             }
         }
         for message in latched.values() {
-            self.stage.publish(message);
+            self.output.publish(message);
             self.played.n_published += 1;
         }
     }
 
-    /// Waits until a message is due, and listens to cues meanwhile.
+    /// Waits until a message is due, and handles commands meanwhile.
     fn wait_for(&mut self, at_ns: u64) -> Option<Ending> {
         loop {
-            if let Some(ending) = self.listen() {
+            if let Some(ending) = self.handle_commands() {
                 return Some(ending);
             }
-            self.tell_time();
+            self.publish_time();
             if !self.bursts.is_empty() {
                 self.is_step = true;
                 self.head.as_mut()?.jump(at_ns);
@@ -268,11 +268,11 @@ impl Player<'_> {
         }
     }
 
-    fn listen(&mut self) -> Option<Ending> {
+    fn handle_commands(&mut self) -> Option<Ending> {
         if self.shutdown.is_requested() {
             return Some(Ending::Quit);
         }
-        while let Ok(Asked { command, reply }) = self.cues.try_recv() {
+        while let Ok(CommandRequest { command, reply }) = self.commands.try_recv() {
             let head = self.head.as_mut()?;
             let is_paused = head.is_paused();
             let (mut is_done, mut ending) = (true, None);
@@ -297,10 +297,10 @@ impl Player<'_> {
                     let to_ns = time_ns.saturating_sub(self.first_ns);
                     ending = is_done.then_some(Ending::Seek(to_ns));
                 }
-                PlayerCommand::Look => {}
+                PlayerCommand::Status => {}
                 PlayerCommand::Quit => ending = Some(Ending::Quit),
             }
-            self.answer(reply.as_ref(), is_done, 0);
+            self.send_status(reply.as_ref(), is_done, 0);
             if let Some(Ending::Seek(to_ns)) = ending {
                 self.head.as_mut()?.jump(to_ns);
                 self.clock_ns = None;
@@ -312,16 +312,16 @@ impl Player<'_> {
         None
     }
 
-    /// Tells whoever asked; nobody may listen any more.
-    fn answer(&self, reply: Option<&Sender<Answer>>, is_done: bool, n_played: u64) {
+    /// Sends the status to the sender of a command.
+    fn send_status(&self, reply: Option<&Sender<PlayerStatus>>, is_done: bool, n_played: u64) {
         let (Some(reply), Some(head)) = (reply, &self.head) else { return };
         let (is_paused, rate) = (head.is_paused(), head.rate());
-        let answer = Answer { is_done, is_paused, rate, n_played };
-        // An asker that has gone needs no answer.
-        let _ = reply.send(answer);
+        let status = PlayerStatus { is_done, is_paused, rate, n_played };
+        // The receiver may be gone.
+        let _ = reply.send(status);
     }
 
-    /// A message was published.
+    /// Counts a published message, and ends its burst if it was the last.
     fn count_step(&mut self) {
         if !std::mem::take(&mut self.is_step) {
             return;
@@ -330,16 +330,16 @@ impl Player<'_> {
         burst.n_played += 1;
         burst.n_left -= 1;
         if burst.n_left == 0 {
-            self.answer(burst.reply.as_ref(), true, burst.n_played);
+            self.send_status(burst.reply.as_ref(), true, burst.n_played);
         } else {
             self.bursts.push_front(burst);
         }
     }
 
-    /// Nothing is left to play at once: those who wait for it are told.
+    /// Ends all bursts, because no messages are left.
     fn end_bursts(&mut self) {
         for burst in std::mem::take(&mut self.bursts) {
-            self.answer(burst.reply.as_ref(), 0 < burst.n_played, burst.n_played);
+            self.send_status(burst.reply.as_ref(), 0 < burst.n_played, burst.n_played);
         }
     }
 
@@ -352,16 +352,16 @@ impl Player<'_> {
         ends.collect::<Option<Vec<_>>>()?.into_iter().max()
     }
 
-    /// Tells recorded time as often as asked for.
-    fn tell_time(&mut self) {
+    /// Publishes recorded time at the requested rate.
+    fn publish_time(&mut self) {
         let (Some(rate_hz), Some(head)) = (self.options.clock_rate, &self.head) else { return };
         let now_ns = head.now_ns();
         #[expect(clippy::cast_possible_truncation, reason = "it saturates")]
         #[expect(clippy::cast_sign_loss, reason = "rates are above zero")]
         let period_ns = (1e9 * self.options.rate / rate_hz) as u64;
-        if self.clock_ns.is_none_or(|told| told + period_ns <= now_ns || now_ns < told) {
+        if self.clock_ns.is_none_or(|last| last + period_ns <= now_ns || now_ns < last) {
             self.clock_ns = Some(now_ns);
-            self.stage.clock(self.first_ns + now_ns);
+            self.output.publish_clock(self.first_ns + now_ns);
         }
     }
 
@@ -369,17 +369,17 @@ impl Player<'_> {
         if let Some(is_open) = self.is_open.get(&channel.topic) {
             return *is_open;
         }
-        let is_chosen = is_chosen(&channel.topic, self.options);
-        let is_open = is_chosen && self.stage.open(channel);
-        if is_chosen && !is_open {
-            self.played.refused.push(channel.topic.clone());
+        let is_selected = is_selected(&channel.topic, self.options);
+        let is_open = is_selected && self.output.open(channel);
+        if is_selected && !is_open {
+            self.played.unplayable.push(channel.topic.clone());
         }
         self.is_open.insert(channel.topic.clone(), is_open);
         is_open
     }
 }
 
-fn is_chosen(topic: &str, options: &Options) -> bool {
+fn is_selected(topic: &str, options: &Options) -> bool {
     let matches = |pattern: &String| match pattern.strip_suffix('*') {
         Some(start) => topic.starts_with(start),
         None => topic == pattern,
@@ -390,9 +390,9 @@ fn is_chosen(topic: &str, options: &Options) -> bool {
         && !is_own_clock
 }
 
-/// True for topics whose last message late readers get.
+/// True for latched topics, whose last message late joiners receive.
 pub fn is_latched(channel: &Channel) -> bool {
     channel.metadata.get("offered_qos_profiles").is_some_and(|qos| {
-        crate::bag::metadata::qos_in_words(qos).contains("durability: transient_local")
+        crate::bag::metadata::qos_with_names(qos).contains("durability: transient_local")
     })
 }

@@ -1,70 +1,70 @@
-//! What someone may want of a recording that plays, and what they are told.
+//! Commands for the player of a recording, and its replies.
 
 use std::sync::mpsc::Sender;
 
-/// What someone wants while it plays.
+/// A command for the player.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PlayerCommand {
-    /// Stand still.
+    /// Pause.
     Pause,
-    /// Go on.
+    /// Resume.
     Resume,
-    /// One of the two above.
+    /// Toggle between paused and playing.
     Toggle,
-    /// Play one message and stand still again.
+    /// Play one message, then pause.
     Next,
-    /// Play so many messages at once and stand still again; all that are left for zero. Only while it
-    /// stands still.
+    /// Play this many messages at once, then pause again; 0 plays all remaining ones. Only while
+    /// paused.
     Burst(u64),
-    /// Go to this place, from the first message on (ns).
+    /// Seek to this time after the first message (ns).
     Seek(u64),
-    /// Go to this time of the recording (ns).
+    /// Seek to this recorded time (ns).
     SeekTo(u64),
-    /// Play so many times as fast as recorded.
+    /// Set the speed relative to the recording.
     Rate(f64),
-    /// Nothing but to know how it stands.
-    Look,
-    /// End.
+    /// Only report the status.
+    Status,
+    /// Quit.
     Quit,
 }
 
-/// A cue, and who wants to know what became of it.
+/// A command, and where to send the reply.
 #[derive(Debug)]
-pub struct Asked {
-    /// The cue.
+pub struct CommandRequest {
+    /// The command.
     pub command: PlayerCommand,
-    /// Where the answer goes once it has been followed.
-    pub reply: Option<Sender<Answer>>,
+    /// Receives the status after the player has acted.
+    pub reply: Option<Sender<PlayerStatus>>,
 }
 
-/// What became of a cue.
+/// The status of the player after a command.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Answer {
-    /// True if it could be followed.
+pub struct PlayerStatus {
+    /// True if the command succeeded.
     pub is_done: bool,
-    /// True if it stands still now.
+    /// True if the player is now paused.
     pub is_paused: bool,
-    /// How many times as fast as recorded it plays.
+    /// Speed relative to the recording.
     pub rate: f64,
-    /// Messages that were played for it.
+    /// Number of messages played for the command.
     pub n_played: u64,
 }
 
-impl From<PlayerCommand> for Asked {
+impl From<PlayerCommand> for CommandRequest {
     fn from(command: PlayerCommand) -> Self {
         Self { command, reply: None }
     }
 }
 
 impl PlayerCommand {
-    /// A cue as a line of text, such as `seek 1.5s`.
+    /// Parses a command line such as `seek 1.5s`.
     ///
     /// # Errors
-    /// If it is none; the text says which there are.
+    /// If it is not a command; the message lists the valid ones.
     pub fn parse(line: &str) -> Result<Self, String> {
-        const KNOWN: &str = "pause, resume, toggle, next, seek TIME, rate FACTOR, quit";
+        const COMMANDS: &str = "pause, resume, toggle, next, seek TIME, rate FACTOR, quit";
         let (word, rest) = line.trim().split_once(' ').unwrap_or((line.trim(), ""));
-        let unknown = || format!("`{}`: no cue; there are: {KNOWN}", line.trim());
+        let unknown = || format!("`{}` is not a command: use {COMMANDS}", line.trim());
         match (word, rest.trim()) {
             ("pause", "") => Ok(Self::Pause),
             ("resume", "") => Ok(Self::Resume),
@@ -74,7 +74,9 @@ impl PlayerCommand {
             ("seek", time) => {
                 let time = crate::scene::quantity::TIME.parse(time).map_err(|it| it.to_string())?;
                 if time < 0.0 {
-                    return Err(format!("seek {time} s: the recording begins at 0 s"));
+                    return Err(format!(
+                        "seek {time} s: the recording begins at 0 s, use a time from 0 s"
+                    ));
                 }
                 #[expect(clippy::cast_possible_truncation, reason = "it saturates")]
                 #[expect(clippy::cast_sign_loss, reason = "not negative, see above")]
@@ -82,7 +84,7 @@ impl PlayerCommand {
             }
             ("rate", factor) => match factor.parse() {
                 Ok(factor) if 0.0 < factor && f64::is_finite(factor) => Ok(Self::Rate(factor)),
-                _ => Err(format!("rate {factor}: write a number above zero, such as 2")),
+                _ => Err(format!("rate {factor}: use a number above zero, such as 2")),
             },
             _ => Err(unknown()),
         }

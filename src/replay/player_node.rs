@@ -1,5 +1,5 @@
-//! The ROS 2 node that plays a recording: a publisher for each topic, with the recorded quality of
-//! service.
+//! The ROS 2 node that plays a recording, with a publisher for each topic and the recorded quality
+//! of service.
 
 use std::{
     collections::BTreeMap,
@@ -8,13 +8,13 @@ use std::{
 
 use super::{
     play::{CLOCK, PlayerOutput},
-    player_command::Asked,
+    player_command::CommandRequest,
     player_services::PlayerServices,
 };
 use crate::{
     bag::{
-        metadata::qos_in_words,
-        reader::{Channel, Recorded},
+        metadata::qos_with_names,
+        reader::{Channel, RecordedMessage},
         writer::CDR_HEADER,
     },
     ros::{
@@ -29,40 +29,43 @@ use crate::{
 
 /// Name of the node, in the root namespace.
 pub const NODE_NAME: &str = "jamgrip_player";
-/// Depth of a history that was not recorded, or kept everything.
-const DEPTH: u32 = 10;
+/// History depth of topics for which none was recorded, or that kept all samples.
+const DEFAULT_DEPTH: u32 = 10;
 
-/// A node with the publishers of a recording.
+/// A node with publishers of the recorded topics.
 pub struct RosPlayerNode {
     node: Arc<RosNode>,
     publishers: BTreeMap<String, Publisher<Body>>,
     clock: Option<Publisher<Body>>,
-    /// Messages that could not be published, and why the last could not.
-    pub faults: (u64, Option<String>),
+    /// Number of messages that could not be published, and the last error.
+    pub errors: (u64, Option<String>),
 }
 
 impl RosPlayerNode {
-    /// Joins the graph; `tells_time` opens `/clock`.
+    /// Joins the graph. If `publishes_clock`, it opens `/clock`.
     ///
     /// # Errors
-    /// When there is no graph, or the topic cannot be opened.
-    pub fn join(reach: &DiscoveryRange, tells_time: bool) -> Result<Self, RosError> {
-        let node = RosNode::join_as(NODE_NAME, reach)?;
+    /// If the node cannot join, or the topic cannot be opened.
+    pub fn join(range: &DiscoveryRange, publishes_clock: bool) -> Result<Self, RosError> {
+        let node = RosNode::join_as(NODE_NAME, range)?;
         let topic = || Topic::output::<Clock>(CLOCK, Qos::reliable(1));
-        let clock = tells_time.then(|| node.publisher(&topic())).transpose()?;
-        Ok(Self { node, publishers: BTreeMap::new(), clock, faults: (0, None) })
+        let clock = publishes_clock.then(|| node.publisher(&topic())).transpose()?;
+        Ok(Self { node, publishers: BTreeMap::new(), clock, errors: (0, None) })
     }
 
-    /// Opens the services by which others give cues.
+    /// Opens the services that control the player.
     ///
     /// # Errors
-    /// When one cannot be opened.
-    pub fn prompted(&self, teller: Sender<Asked>) -> Result<PlayerServices, RosError> {
-        PlayerServices::open(&self.node, NODE_NAME, teller)
+    /// If a service cannot be opened.
+    pub fn open_services(
+        &self,
+        commands: Sender<CommandRequest>,
+    ) -> Result<PlayerServices, RosError> {
+        PlayerServices::open(&self.node, NODE_NAME, commands)
     }
 
-    fn fail(&mut self, fault: String) {
-        self.faults = (self.faults.0 + 1, Some(fault));
+    fn fail(&mut self, error: String) {
+        self.errors = (self.errors.0 + 1, Some(error));
     }
 }
 
@@ -82,42 +85,42 @@ impl PlayerOutput for RosPlayerNode {
                 true
             }
             Err(error) => {
-                self.faults.1 = Some(error.to_string());
+                self.errors.1 = Some(error.to_string());
                 false
             }
         }
     }
 
-    fn publish(&mut self, message: &Recorded) {
+    fn publish(&mut self, message: &RecordedMessage) {
         let topic = &message.channel.topic;
         let Some(publisher) = self.publishers.get(topic) else { return };
-        let sent = match message.data.strip_prefix(&CDR_HEADER) {
+        let result = match message.data.strip_prefix(&CDR_HEADER) {
             Some(cdr) => send(publisher, cdr),
             None => Err(format!("{topic}: not little-endian CDR")),
         };
-        sent.unwrap_or_else(|fault| self.fail(fault));
+        result.unwrap_or_else(|error| self.fail(error));
     }
 
-    fn clock(&mut self, time_ns: u64) {
+    fn publish_clock(&mut self, time_ns: u64) {
         let Some(publisher) = &self.clock else { return };
         let sec = i32::try_from(time_ns / 1_000_000_000).unwrap_or(i32::MAX);
         let nanosec = u32::try_from(time_ns % 1_000_000_000).unwrap_or(0);
-        let sent = send(publisher, &Clock { clock: Time { sec, nanosec } }.to_cdr());
-        sent.unwrap_or_else(|fault| self.fail(fault));
+        let result = send(publisher, &Clock { clock: Time { sec, nanosec } }.to_cdr());
+        result.unwrap_or_else(|error| self.fail(error));
     }
 }
 
-/// A topic as it was recorded.
+/// A topic with its recorded name, type and quality of service.
 fn topic(channel: &Channel) -> Topic {
-    // Names of types live as long as the program; there are few, and each is opened once.
+    // Type names live as long as the program. There are few, and each is leaked once.
     let type_name: &'static str = channel.type_name().to_owned().leak();
-    let qos = qos_in_words(channel.metadata.get("offered_qos_profiles").map_or("", |it| it));
+    let qos = qos_with_names(channel.metadata.get("offered_qos_profiles").map_or("", |it| it));
     let depth = |line: &str| line.trim_start().strip_prefix("depth: ")?.trim().parse().ok();
-    let depth = qos.lines().find_map(depth).filter(|depth| *depth != 0).unwrap_or(DEPTH);
-    let no_details = MessageType { name: type_name, dds_name: "", type_hash: "", definition: "" };
+    let depth = qos.lines().find_map(depth).filter(|depth| *depth != 0).unwrap_or(DEFAULT_DEPTH);
+    let message_type = MessageType { name: type_name, dds_name: "", type_hash: "", definition: "" };
     Topic {
         name: channel.topic.clone(),
-        message_type: no_details,
+        message_type,
         qos: Qos {
             is_reliable: !qos.contains("reliability: best_effort"),
             depth,

@@ -1,7 +1,7 @@
-//! Services by which others pause, wind and step a player, as those of rosbag2's own player.
+//! The services that control a player: those of rosbag2's own player.
 //!
-//! Each question becomes a cue; it is answered when the player has followed it, so that who has an
-//! answer knows that the messages are out.
+//! Each request becomes a command for the player. The response is sent after the player has acted,
+//! so a client that has received it knows that the messages are published.
 
 use std::{
     sync::{
@@ -13,7 +13,7 @@ use std::{
     time::Duration,
 };
 
-use super::player_command::{Answer, Asked, PlayerCommand};
+use super::player_command::{CommandRequest, PlayerCommand, PlayerStatus};
 use crate::{
     io::{
         published::PublishedUpTo,
@@ -40,12 +40,12 @@ use crate::{
     },
 };
 
-/// Longest time until a question is seen, or an answer of the player.
+/// Longest delay until a request or a reply of the player is noticed.
 const POLL_PERIOD: Duration = Duration::from_millis(5);
-/// Questions that are taken at a time.
-const AT_ONCE: usize = 16;
+/// Largest number of requests taken at a time.
+const N_REQUESTS_MAX: usize = 16;
 
-/// Name below the node, type.
+/// Names relative to the node, and types.
 pub const SERVICES: [(&str, ServiceType); 10] = [
     ("pause", Pause::TYPE),
     ("resume", Resume::TYPE),
@@ -59,39 +59,43 @@ pub const SERVICES: [(&str, ServiceType); 10] = [
     ("stop", Stop::TYPE),
 ];
 
-/// The services below a node.
-pub fn offers(node: &str) -> Vec<ServiceSpec> {
-    let offer = |(name, service_type): (&str, _)| {
+/// The services of a node.
+pub fn services(node: &str) -> Vec<ServiceSpec> {
+    let spec = |(name, service_type): (&str, _)| {
         let name = format!("/{node}/{name}");
         ServiceSpec { name, service_type }
     };
-    SERVICES.into_iter().map(offer).collect()
+    SERVICES.into_iter().map(spec).collect()
 }
 
-/// Serves until it is dropped.
+/// The services of a player, open until dropped.
 pub struct PlayerServices {
     stop: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
 }
 
 impl PlayerServices {
-    /// Opens the services of a player below the node's name; cues go to `teller`.
+    /// Opens the services of a player under the node's name; commands are sent to `commands`.
     ///
     /// # Errors
-    /// When one cannot be opened.
-    pub fn open(node: &RosNode, name: &str, teller: Sender<Asked>) -> Result<Self, RosError> {
-        // Answers follow no packets here: the player itself says when it is time.
-        let bench =
-            RosServiceServer::open(node, &offers(name), &[], &Arc::new(PublishedUpTo::default()))?;
+    /// If a service cannot be opened.
+    pub fn open(
+        node: &RosNode,
+        name: &str,
+        commands: Sender<CommandRequest>,
+    ) -> Result<Self, RosError> {
+        // Responses do not wait for packets here: the player replies when it has acted.
+        let published = Arc::new(PublishedUpTo::default());
+        let server = RosServiceServer::open(node, &services(name), &[], &published)?;
         let stop = Arc::new(AtomicBool::new(false));
-        let mut bridge = RequestBridge { bench, teller, open: Vec::new() };
+        let mut bridge = RequestBridge { server, commands, pending: Vec::new() };
         let stopped = Arc::clone(&stop);
-        let builder = std::thread::Builder::new().name("prompter".to_owned());
+        let builder = std::thread::Builder::new().name("player-services".to_owned());
         let thread = builder.spawn(move || {
             while !stopped.load(Ordering::SeqCst) {
-                bridge.serve();
+                bridge.forward();
             }
-            bridge.collect();
+            bridge.respond();
         });
         let thread = thread.map_err(|reason| RosError::Thread { reason })?;
         Ok(Self { stop, thread: Some(thread) })
@@ -108,39 +112,39 @@ impl Drop for PlayerServices {
     }
 }
 
-/// Questions on their way to the player and back.
+/// Passes requests to the player, and its replies back.
 struct RequestBridge {
-    bench: RosServiceServer,
-    teller: Sender<Asked>,
-    open: Vec<(RequestId, Receiver<Answer>)>,
+    server: RosServiceServer,
+    commands: Sender<CommandRequest>,
+    pending: Vec<(RequestId, Receiver<PlayerStatus>)>,
 }
 
 impl RequestBridge {
-    fn serve(&mut self) {
-        self.bench.wait(POLL_PERIOD);
-        for ServiceRequest { asker, body } in self.bench.take(AT_ONCE) {
-            let (name, _) = SERVICES[asker.offer % SERVICES.len()];
+    fn forward(&mut self) {
+        self.server.wait(POLL_PERIOD);
+        for ServiceRequest { id, body } in self.server.take(N_REQUESTS_MAX) {
+            let (name, _) = SERVICES[id.service % SERVICES.len()];
             match command(name, &body) {
                 Ok(Some(command)) => {
-                    let (reply, answer) = mpsc::channel();
-                    // A player that has ended answers nobody.
-                    drop(self.teller.send(Asked { command, reply: Some(reply) }));
-                    self.open.push((asker, answer));
+                    let (reply, status) = mpsc::channel();
+                    // A player that has ended does not reply.
+                    drop(self.commands.send(CommandRequest { command, reply: Some(reply) }));
+                    self.pending.push((id, status));
                 }
-                Ok(None) => self.bench.send(Outgoing::Response(asker, refusal(name)), 0),
-                Err(fault) => self.bench.report_malformed(format!("{name}: {fault}")),
+                Ok(None) => self.server.send(Outgoing::Response(id, rejection(name)), 0),
+                Err(error) => self.server.report_malformed(format!("{name}: {error}")),
             }
         }
-        self.collect();
+        self.respond();
     }
 
-    /// Sends what the player has answered.
-    fn collect(&mut self) {
-        let Self { bench, open, .. } = self;
-        open.retain(|(asker, answer)| match answer.try_recv() {
-            Ok(answer) => {
-                let (name, _) = SERVICES[asker.offer % SERVICES.len()];
-                bench.send(Outgoing::Response(asker.clone(), response(name, &answer)), 0);
+    /// Sends responses for the replies that have arrived.
+    fn respond(&mut self) {
+        let Self { server, pending, .. } = self;
+        pending.retain(|(id, status)| match status.try_recv() {
+            Ok(status) => {
+                let (name, _) = SERVICES[id.service % SERVICES.len()];
+                server.send(Outgoing::Response(id.clone(), response(name, &status)), 0);
                 false
             }
             Err(error) => error == mpsc::TryRecvError::Empty,
@@ -148,9 +152,9 @@ impl RequestBridge {
     }
 }
 
-/// What a question asks of the player; `None` if it asks for what cannot be.
+/// The command of a request; `None` if its arguments are out of range.
 fn command(name: &str, body: &Cdr) -> Result<Option<PlayerCommand>, String> {
-    let text = |fault: &dyn std::fmt::Display| fault.to_string();
+    let text = |error: &dyn std::fmt::Display| error.to_string();
     Ok(match name {
         "pause" => Some(PlayerCommand::Pause),
         "resume" => Some(PlayerCommand::Resume),
@@ -170,30 +174,30 @@ fn command(name: &str, body: &Cdr) -> Result<Option<PlayerCommand>, String> {
             Some(PlayerCommand::Burst(num_messages))
         }
         "stop" => Some(PlayerCommand::Quit),
-        _ => Some(PlayerCommand::Look),
+        _ => Some(PlayerCommand::Status),
     })
 }
 
-/// The player's answer in the words of a service.
-fn response(name: &str, answer: &Answer) -> Cdr {
-    let success = answer.is_done;
+/// The response of a service to the status of the player.
+fn response(name: &str, status: &PlayerStatus) -> Cdr {
+    let success = status.is_done;
     match name {
         "pause" => Cdr::of(&PauseResponse::default()),
         "resume" => Cdr::of(&ResumeResponse::default()),
         "toggle_paused" => Cdr::of(&TogglePausedResponse::default()),
-        "is_paused" => Cdr::of(&IsPausedResponse { paused: answer.is_paused }),
+        "is_paused" => Cdr::of(&IsPausedResponse { paused: status.is_paused }),
         "set_rate" => Cdr::of(&SetRateResponse { success }),
-        "get_rate" => Cdr::of(&GetRateResponse { rate: answer.rate }),
+        "get_rate" => Cdr::of(&GetRateResponse { rate: status.rate }),
         "seek" => Cdr::of(&SeekResponse { success }),
         "play_next" => Cdr::of(&PlayNextResponse { success }),
-        "burst" => Cdr::of(&BurstResponse { actually_burst: answer.n_played }),
+        "burst" => Cdr::of(&BurstResponse { actually_burst: status.n_played }),
         _ => Cdr::of(&StopResponse::default()),
     }
 }
 
-/// The answer to what cannot be.
-fn refusal(name: &str) -> Cdr {
-    response(name, &Answer::default())
+/// The response to an invalid request.
+fn rejection(name: &str) -> Cdr {
+    response(name, &PlayerStatus::default())
 }
 
 #[cfg(test)]
@@ -201,9 +205,9 @@ mod tests {
     use super::*;
     use crate::wire::messages::builtin_interfaces::Time;
 
-    /// Oracle: the meaning of the services in rosbag2_interfaces.
+    /// Oracle: the service definitions in rosbag2_interfaces.
     #[test]
-    fn questions_become_cues_and_nonsense_is_refused() {
+    fn requests_become_commands_and_invalid_ones_are_rejected() {
         let rate = |rate| command("set_rate", &Cdr::of(&SetRateRequest { rate }));
         assert_eq!(rate(2.5), Ok(Some(PlayerCommand::Rate(2.5))));
         for wrong in [0.0, -1.0, f64::NAN, f64::INFINITY] {
@@ -216,7 +220,7 @@ mod tests {
         let nothing = Cdr { bytes: Vec::new(), is_big_endian: false };
         assert!(command("burst", &nothing).is_err(), "a burst without a number");
         assert_eq!(command("play_next", &nothing), Ok(Some(PlayerCommand::Burst(1))));
-        let refused: SetRateResponse = refusal("set_rate").read().unwrap();
-        assert!(!refused.success);
+        let rejected: SetRateResponse = rejection("set_rate").read().unwrap();
+        assert!(!rejected.success);
     }
 }

@@ -1,5 +1,5 @@
-//! A run from what is in a recording alone: the scene with the files it names, a checkpoint or a
-//! start settled anew, and the commands, each in its tick.
+//! A run set up from a recording alone: the scene with its files, a checkpoint or a newly settled
+//! start, and the commands, each in its tick.
 
 use std::{
     fs, io,
@@ -8,8 +8,8 @@ use std::{
 
 use crate::{
     bag::{
-        NotABag,
-        recording::{Alteration, Course, Order, Place, Recording},
+        OpenBagError,
+        recording::{CheckpointLocation, RecordedChange, RecordedCommand, Recording, RunHistory},
         source::Script,
     },
     base::parallel,
@@ -23,140 +23,140 @@ use crate::{
     scene::{self, Scene, SceneError},
     session::Session,
     wire::{
-        from_ros::{CommandCodec, NotACommand},
+        from_ros::{CommandCodec, CommandDecodeError},
         topics::topics,
     },
 };
 
-/// Why a recording cannot be run again.
+/// Why a recorded run cannot be simulated again.
 #[derive(Debug, thiserror::Error)]
 pub enum ReplayError {
-    /// The path is no recording.
+    /// The path is not a recording.
     #[error(transparent)]
-    NotABag(#[from] NotABag),
-    /// A file of it cannot be read.
-    #[error("{}: {fault}; check the disk", path.display())]
+    Open(#[from] OpenBagError),
+    /// A file of the recording cannot be read.
+    #[error("{}: {error}; check the disk", path.display())]
     Unreadable {
         /// The recording.
         path: PathBuf,
-        /// What the system says.
-        fault: io::Error,
+        /// The error of the operating system.
+        error: io::Error,
     },
-    /// There is no scene in it.
+    /// The recording contains no scene.
     #[error(
-        "{}: no scene.yaml is attached to it (written by `{library}`): it is no recording of \
-         jamgrip's and cannot be run again, only played",
+        "{}: no scene.yaml is attached (written by `{library}`): this is not a recording by \
+         jamgrip, so it can be played but not simulated",
         path.display()
     )]
     NoScene {
         /// The recording.
         path: PathBuf,
-        /// What wrote it.
+        /// The program that wrote it.
         library: String,
     },
-    /// The scene in it is not one that this version reads.
-    #[error("{}: its scene, recorded by jamgrip {version}, cannot be read:\n{fault}", path.display())]
-    OtherScene {
+    /// This version cannot read the recorded scene.
+    #[error("{}: the scene, recorded by jamgrip {version}, cannot be read:\n{error}", path.display())]
+    UnreadableScene {
         /// The recording.
         path: PathBuf,
         /// The version that recorded it.
         version: String,
-        /// What is wrong with it.
-        fault: SceneError,
+        /// The error in the scene.
+        error: SceneError,
     },
     /// The scene cannot be compiled.
     #[error(transparent)]
     Compile(#[from] CompileError),
-    /// A checkpoint is of no use.
+    /// A checkpoint cannot be used.
     #[error(
-        "checkpoint at tick {tick} (recorded by jamgrip {version}): {fault}; \
-         with --settle --jobs 1 the run starts from the scene and takes up none"
+        "checkpoint at tick {tick} (recorded by jamgrip {version}): {error}; \
+         with --settle --jobs 1 the run starts from the scene and uses no checkpoint"
     )]
     Checkpoint {
         /// Its tick.
         tick: u64,
         /// The version that recorded it.
         version: String,
-        /// What is wrong with it.
-        fault: SavedStateError,
+        /// The error in the checkpoint.
+        error: SavedStateError,
     },
-    /// The run did not begin at the scene's start, and where it began was not kept.
-    #[error("{}: it begins at tick {tick}, but no checkpoint of that start is in it", path.display())]
+    /// The run did not start with the scene, and the state at its start was not recorded.
+    #[error("{}: it starts at tick {tick}, but contains no checkpoint of that state", path.display())]
     NoStart {
         /// The recording.
         path: PathBuf,
         /// Its first tick.
         tick: u64,
     },
-    /// A recorded command cannot be read.
-    #[error("command in tick {tick}: {fault}")]
+    /// A recorded command cannot be decoded.
+    #[error("command in tick {tick}: {error}")]
     Command {
         /// Its tick.
         tick: u64,
-        /// What is wrong with it.
-        fault: NotACommand,
+        /// The error in the command.
+        error: CommandDecodeError,
     },
-    /// The world cannot be changed as it was.
-    #[error("after tick {tick} (recorded by jamgrip {version}): {what}: {fault}")]
+    /// A recorded change cannot be applied.
+    #[error("after tick {tick} (recorded by jamgrip {version}): {what}: {reason}")]
     Change {
-        /// The tick before.
+        /// The tick before the change.
         tick: u64,
-        /// What was done to the world.
+        /// Description of the change.
         what: String,
         /// The version that recorded it.
         version: String,
-        /// Why not.
-        fault: String,
+        /// Why it cannot be applied.
+        reason: String,
     },
-    /// The bag cannot be filled.
+    /// The start state cannot be prepared.
     #[error(transparent)]
     Start(#[from] StartError),
-    /// The filling or the run broke off where the recorded one did not.
+    /// The simulation diverged, unlike the recorded one.
     #[error(transparent)]
     Diverged(#[from] Diverged),
 }
 
-/// A recording with its scene read and its course known.
+/// A recording with its scene and history.
 pub struct RecordedRun {
-    /// Where it is.
+    /// Path of the recording.
     pub path: PathBuf,
-    /// What it says of itself.
+    /// The part of the recording before its first message.
     pub recording: Recording,
-    /// Its scene.
+    /// The scene.
     pub scene: Scene,
-    /// What happened.
-    pub course: Course,
+    /// The history of the run.
+    pub history: RunHistory,
 }
 
 impl RecordedRun {
     /// Reads a recording.
     ///
     /// # Errors
-    /// If it is none, or its scene cannot be read.
+    /// If the path is not a recording, or the scene cannot be read.
     pub fn open(path: &Path) -> Result<Self, ReplayError> {
         let recording = Recording::open(path)?;
         let scene = read_scene(path, &recording, &[])?;
-        let course = recording.course(&topics(&scene), scene.time.tick_ns);
+        let history = recording.history(&topics(&scene), scene.time.tick_ns);
         let path = path.to_owned();
-        let course =
-            course.map_err(|fault| ReplayError::Unreadable { path: path.clone(), fault })?;
-        Ok(Self { path, recording, scene, course })
+        let history =
+            history.map_err(|error| ReplayError::Unreadable { path: path.clone(), error })?;
+        Ok(Self { path, recording, scene, history })
     }
 
-    /// The scene with changes of the form `key=value`.
+    /// The scene with overrides of the form `key=value`.
     ///
     /// # Errors
-    /// If a change is wrong.
+    /// If an override is invalid.
     pub fn changed_scene(&self, overrides: &[String]) -> Result<Scene, SceneError> {
         match read_scene(&self.path, &self.recording, overrides) {
             Ok(scene) => Ok(scene),
-            Err(ReplayError::OtherScene { fault, .. }) => Err(fault),
-            // It could be read a moment ago.
+            Err(ReplayError::UnreadableScene { error, .. }) => Err(error),
+            // It could be read before.
             Err(_) => Ok(self.scene.clone()),
         }
     }
 
-    /// A session of `scene` at the last checkpoint at or before `tick`; `None` without one.
+    /// A session of `scene` at the last checkpoint up to `tick`; `None` if there is none.
     ///
     /// # Errors
     /// If the checkpoint cannot be used.
@@ -166,8 +166,8 @@ impl RecordedRun {
         scene: &Scene,
         n_threads: usize,
     ) -> Result<Option<Session>, ReplayError> {
-        let place = self.course.checkpoint_before(tick);
-        place.map(|it| self.session_at(it, scene, n_threads)).transpose()
+        let checkpoint = self.history.checkpoint_before(tick);
+        checkpoint.map(|it| self.session_at(it, scene, n_threads)).transpose()
     }
 
     /// A session of `scene` at a checkpoint.
@@ -176,25 +176,26 @@ impl RecordedRun {
     /// If the checkpoint cannot be used.
     pub fn session_at(
         &self,
-        place: &Place,
+        checkpoint: &CheckpointLocation,
         scene: &Scene,
         n_threads: usize,
     ) -> Result<Session, ReplayError> {
-        let mut session = self.resume(place.tick, &self.read(place)?, scene, n_threads)?;
-        if let Some(start) = self.course.checkpoints.first()
-            && (start.tick, self.course.changes.is_empty()) == (0, false)
-            && 0 < place.tick
+        let mut session =
+            self.resume(checkpoint.tick, &self.read(checkpoint)?, scene, n_threads)?;
+        if let Some(start) = self.history.checkpoints.first()
+            && (start.tick, self.history.changes.is_empty()) == (0, false)
+            && 0 < checkpoint.tick
         {
-            let told = session.remember_start(&self.read(start)?);
-            told.map_err(|fault| self.of_no_use(start.tick, fault))?;
+            let remembered = session.remember_start(&self.read(start)?);
+            remembered.map_err(|error| self.checkpoint_error(start.tick, error))?;
         }
         Ok(session)
     }
 
-    /// A session of `scene` from what a session of it saved after `tick`.
+    /// A session of `scene` from a state saved after `tick`.
     ///
     /// # Errors
-    /// If the bytes cannot be used.
+    /// If the state cannot be used.
     pub fn resume(
         &self,
         tick: u64,
@@ -204,36 +205,42 @@ impl RecordedRun {
     ) -> Result<Session, ReplayError> {
         let pool = parallel::ThreadPool::new(n_threads).map_err(StartError::from)?;
         let session = Session::resume(Compiled::new(scene, &pool)?, bytes);
-        session.map_err(|fault| self.of_no_use(tick, fault))
+        session.map_err(|error| self.checkpoint_error(tick, error))
     }
 
-    fn read(&self, place: &Place) -> Result<Vec<u8>, ReplayError> {
-        place.read().map_err(|fault| ReplayError::Unreadable { path: self.path.clone(), fault })
+    fn read(&self, checkpoint: &CheckpointLocation) -> Result<Vec<u8>, ReplayError> {
+        checkpoint
+            .read()
+            .map_err(|error| ReplayError::Unreadable { path: self.path.clone(), error })
     }
 
-    fn of_no_use(&self, tick: u64, fault: SavedStateError) -> ReplayError {
-        ReplayError::Checkpoint { tick, version: self.recording.version().to_owned(), fault }
+    fn checkpoint_error(&self, tick: u64, error: SavedStateError) -> ReplayError {
+        ReplayError::Checkpoint { tick, version: self.recording.version().to_owned(), error }
     }
 
-    /// Changes the world as it was changed in the recorded run.
+    /// Applies a recorded change.
     ///
     /// # Errors
-    /// If the change cannot be read, or not be made.
-    pub fn change(&self, session: &mut Session, recorded: &Alteration) -> Result<(), ReplayError> {
-        let refused = |fault: String| ReplayError::Change {
+    /// If the change cannot be decoded or applied.
+    pub fn change(
+        &self,
+        session: &mut Session,
+        recorded: &RecordedChange,
+    ) -> Result<(), ReplayError> {
+        let to_error = |reason: String| ReplayError::Change {
             tick: recorded.tick,
             what: recorded.what.clone(),
             version: self.recording.version().to_owned(),
-            fault,
+            reason,
         };
-        let change = Change::from_bytes(&recorded.change).map_err(|it| refused(it.to_string()))?;
-        session.change(&change).map_err(|it| refused(it.to_string()))
+        let change = Change::from_bytes(&recorded.change).map_err(|it| to_error(it.to_string()))?;
+        session.change(&change).map_err(|it| to_error(it.to_string()))
     }
 
-    /// The recorded commands.
+    /// The recorded commands as a script.
     ///
     /// # Errors
-    /// If one cannot be read.
+    /// If a command cannot be decoded.
     pub fn script(&self) -> Result<Script, ReplayError> {
         let mut topics = topics(&self.scene);
         let inputs = self.recording.inputs().unwrap_or_default();
@@ -242,18 +249,18 @@ impl RecordedRun {
         }
         let objects = self.scene.objects.iter().map(|it| it.name.clone()).collect();
         let codec = CommandCodec::new(topics.clone(), objects);
-        let mut commands = Vec::with_capacity(self.course.commands.len());
-        for Order { tick, topic, cdr } in &self.course.commands {
+        let mut commands = Vec::with_capacity(self.history.commands.len());
+        for RecordedCommand { tick, topic, cdr } in &self.history.commands {
             let Some(index) = topics.iter().position(|it| it.name == *topic) else { continue };
             let command = codec.decode(index, cdr);
-            let command = command.map_err(|fault| ReplayError::Command { tick: *tick, fault })?;
+            let command = command.map_err(|error| ReplayError::Command { tick: *tick, error })?;
             commands.push((*tick, command));
         }
         Ok(Script::new(commands))
     }
 }
 
-/// The scene in a recording; the files it names are put into a folder for as long as it is read.
+/// Parses the scene of a recording, with the files it refers to in a temporary folder.
 fn read_scene(
     path: &Path,
     recording: &Recording,
@@ -263,25 +270,25 @@ fn read_scene(
         let library = recording.library.clone();
         return Err(ReplayError::NoScene { path: path.to_owned(), library });
     };
-    let unreadable = |fault| ReplayError::Unreadable { path: path.to_owned(), fault };
-    let folder = Unpacked::new(&recording.scene_files).map_err(unreadable)?;
+    let unreadable = |error| ReplayError::Unreadable { path: path.to_owned(), error };
+    let folder = TempFiles::new(&recording.scene_files).map_err(unreadable)?;
     let mut all = folder.overrides();
     all.extend_from_slice(overrides);
     let source = format!("{}: scene.yaml", path.display());
-    scene::parse(text, &source, Path::new(""), &all).map_err(|fault| ReplayError::OtherScene {
+    scene::parse(text, &source, Path::new(""), &all).map_err(|error| ReplayError::UnreadableScene {
         path: path.to_owned(),
         version: recording.version().to_owned(),
-        fault,
+        error,
     })
 }
 
-/// A folder of files that goes when it is dropped.
-struct Unpacked {
+/// Files in a temporary folder, which is removed on drop.
+struct TempFiles {
     folder: PathBuf,
     files: Vec<PathBuf>,
 }
 
-impl Unpacked {
+impl TempFiles {
     fn new(files: &[(String, Vec<u8>)]) -> io::Result<Self> {
         use std::sync::atomic::{AtomicU64, Ordering};
         static COUNT: AtomicU64 = AtomicU64::new(0);
@@ -294,7 +301,7 @@ impl Unpacked {
         }
         fs::create_dir_all(&this.folder)?;
         for (name, contents) in files {
-            // A name from a recording is a name, not a path to somewhere else.
+            // Only the file name is used, so that a recording cannot write to other folders.
             let name = Path::new(name).file_name().unwrap_or("file".as_ref());
             let file = this.folder.join(name);
             fs::write(&file, contents)?;
@@ -303,10 +310,10 @@ impl Unpacked {
         Ok(this)
     }
 
-    /// Changes of a scene that make it read these files.
+    /// Overrides that make the scene read these files.
     fn overrides(&self) -> Vec<String> {
         let change = |file: &PathBuf| {
-            // A JSON string is a YAML string, whatever stands in it.
+            // A JSON string is also a YAML string.
             let file = serde_json::Value::from(file.to_string_lossy());
             format!("object.shape.mesh.file={file}")
         };
@@ -314,10 +321,10 @@ impl Unpacked {
     }
 }
 
-impl Drop for Unpacked {
+impl Drop for TempFiles {
     fn drop(&mut self) {
         if !self.files.is_empty() {
-            // What stays behind is small and in the folder for such things.
+            // Best effort: the files are small and in the folder for temporary files.
             drop(fs::remove_dir_all(&self.folder));
         }
     }

@@ -1,203 +1,210 @@
-//! A part of a recording, simulated again from one checkpoint to the next.
+//! Segments of a recorded run, simulated again from one checkpoint to the next.
 //!
-//! At its end the whole simulated state is compared with the checkpoint from which the next part
-//! begins, so parts that are proved one by one prove the run from the start of the first.
+//! At the end of a segment, the whole simulated state is compared with the checkpoint at which the
+//! next segment starts. Verified segments therefore prove the whole run from the start of the first
+//! one.
 
 use std::{borrow::Cow, mem};
 
 use super::recorded_run::{RecordedRun, ReplayError};
 use crate::{
     bag::{
-        recording::{Alteration, Place},
+        recording::{CheckpointLocation, RecordedChange},
         source::Script,
     },
     session::Session,
 };
 
-/// Shorter parts are simulated with the one before (ticks): to begin one costs as much as a tick.
-const SHORTEST: u64 = 100;
+/// Segments shorter than this (ticks) are joined with the one before, because starting a segment
+/// costs as much as a tick.
+const N_TICKS_MIN: u64 = 100;
 
-/// Something that did not come out as recorded.
+/// A difference from the recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Difference {
-    /// The tick.
+    /// The tick after which the states differ.
     pub tick: u64,
-    /// What differs.
-    pub kind: Kind,
+    /// The kind of difference.
+    pub kind: DifferenceKind,
 }
 
-/// What differs.
+/// The kind of difference.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum DifferenceKind {
     /// The digest of the state.
     Digest {
-        /// In the recording.
+        /// The recorded digest.
         recorded: u64,
-        /// Found.
+        /// The simulated digest.
         simulated: u64,
     },
-    /// This part of the checkpoint, although the digests are equal.
+    /// This part of the checkpoint differs, although the digests are equal.
     Checkpoint(&'static str),
 }
 
-/// Where a part begins.
+/// The start of a segment.
 #[derive(Clone)]
 pub(super) enum Start<'a> {
-    /// At a recorded checkpoint.
-    Recorded(&'a Place),
-    /// At a state that was made now, after this tick.
-    Made(u64, Cow<'a, [u8]>),
+    /// A recorded checkpoint.
+    Recorded(&'a CheckpointLocation),
+    /// A state saved after this tick in the present process.
+    Saved(u64, Cow<'a, [u8]>),
 }
 
 impl Start<'_> {
     pub(super) fn tick(&self) -> u64 {
         match self {
-            Self::Recorded(place) => place.tick,
-            Self::Made(tick, _) => *tick,
+            Self::Recorded(checkpoint) => checkpoint.tick,
+            Self::Saved(tick, _) => *tick,
         }
     }
 }
 
-/// A part of a recording.
+/// A segment of a recorded run.
 pub(super) struct Segment<'a> {
     pub(super) start: Start<'a>,
-    /// Its last tick.
+    /// The last tick.
     pub(super) end: u64,
     is_first: bool,
     is_last: bool,
 }
 
-/// Cuts a recording, from `start` to the tick `last`, at its checkpoints.
-pub(super) fn cut<'a>(start: Start<'a>, last: u64, checkpoints: &'a [Place]) -> Vec<Segment<'a>> {
+/// Splits a recorded run at its checkpoints, from `start` to the tick `last`.
+pub(super) fn split<'a>(
+    start: Start<'a>,
+    last: u64,
+    checkpoints: &'a [CheckpointLocation],
+) -> Vec<Segment<'a>> {
     let mut starts = vec![start];
-    for place in checkpoints {
-        let begun = starts.last().map_or(0, Start::tick);
-        if begun + SHORTEST <= place.tick && place.tick + SHORTEST <= last {
-            starts.push(Start::Recorded(place));
+    for checkpoint in checkpoints {
+        let segment_start = starts.last().map_or(0, Start::tick);
+        if segment_start + N_TICKS_MIN <= checkpoint.tick && checkpoint.tick + N_TICKS_MIN <= last {
+            starts.push(Start::Recorded(checkpoint));
         }
     }
     let ends: Vec<u64> = starts[1..].iter().map(Start::tick).chain([last]).collect();
     let n = starts.len();
-    let parts = starts.into_iter().zip(ends).enumerate();
-    parts
+    let segments = starts.into_iter().zip(ends).enumerate();
+    segments
         .map(|(i, (start, end))| Segment { start, end, is_first: i == 0, is_last: i + 1 == n })
         .collect()
 }
 
-/// What was found in parts of a recording.
+/// The result of simulating one or more segments.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub(super) struct Found {
-    /// Ticks that were simulated.
+pub(super) struct SegmentResult {
+    /// Number of simulated ticks.
     pub(super) n_ticks: u64,
-    /// Digests that were compared.
+    /// Number of compared digests.
     pub(super) n_compared: u64,
-    /// Checkpoints that were compared.
+    /// Number of compared checkpoints.
     pub(super) n_checkpoints: u64,
     pub(super) first_difference: Option<Difference>,
     pub(super) remarks: Vec<String>,
-    /// True if it was left before its end.
-    pub(super) is_left: bool,
+    /// True if it was interrupted before its end.
+    pub(super) is_interrupted: bool,
 }
 
-impl Found {
-    /// Adds what was found in the part behind.
-    pub(super) fn append(&mut self, behind: Self) {
-        self.n_ticks += behind.n_ticks;
-        self.n_compared += behind.n_compared;
-        self.n_checkpoints += behind.n_checkpoints;
-        self.first_difference = self.first_difference.or(behind.first_difference);
-        self.remarks.extend(behind.remarks);
-        self.is_left |= behind.is_left;
+impl SegmentResult {
+    /// Adds the result of the next segment.
+    pub(super) fn append(&mut self, next: Self) {
+        self.n_ticks += next.n_ticks;
+        self.n_compared += next.n_compared;
+        self.n_checkpoints += next.n_checkpoints;
+        self.first_difference = self.first_difference.or(next.first_difference);
+        self.remarks.extend(next.remarks);
+        self.is_interrupted |= next.is_interrupted;
     }
 
-    fn goes_on(&self) -> bool {
-        self.first_difference.is_none() && !self.is_left
+    fn may_continue(&self) -> bool {
+        self.first_difference.is_none() && !self.is_interrupted
     }
 
-    /// Compares the state with what is recorded of it, if anything is.
+    /// Compares the state with its recorded digest, if there is one.
     fn compare(&mut self, recorded: Option<u64>, session: &Session) {
         let (Some(recorded), simulated) = (recorded, session.digest()) else { return };
         self.n_compared += 1;
         if recorded != simulated {
             let tick = session.run_tick().0;
-            let kind = Kind::Digest { recorded, simulated };
+            let kind = DifferenceKind::Digest { recorded, simulated };
             self.first_difference = self.first_difference.or(Some(Difference { tick, kind }));
         }
     }
 
-    /// The same after a change between two ticks.
-    fn compare_after(&mut self, change: &Alteration, session: &Session) {
+    /// Compares the state after a change between two ticks.
+    fn compare_after(&mut self, change: &RecordedChange, session: &Session) {
         let was_equal = self.first_difference.is_none();
         self.compare(change.digest, session);
         if was_equal && self.first_difference.is_some() {
-            let Alteration { tick, what, .. } = change;
-            self.remarks
-                .push(format!("the difference is behind a change after tick {tick}: {what}"));
+            let RecordedChange { tick, what, .. } = change;
+            self.remarks.push(format!("the difference follows a change after tick {tick}: {what}"));
         }
     }
 
-    /// Compares everything with a checkpoint.
-    fn compare_all(&mut self, place: &Place, session: &Session) {
-        let tick = place.tick;
-        let differs = place.read().map_err(|it| it.to_string());
+    /// Compares the whole state with a checkpoint.
+    fn compare_all(&mut self, checkpoint: &CheckpointLocation, session: &Session) {
+        let tick = checkpoint.tick;
+        let differs = checkpoint.read().map_err(|it| it.to_string());
         let differs =
-            differs.and_then(|it| session.differs_from(&it).map_err(|fault| fault.to_string()));
+            differs.and_then(|it| session.differs_from(&it).map_err(|error| error.to_string()));
         match differs {
             Ok(differs) => {
                 self.n_checkpoints += 1;
-                let difference = differs.map(|it| Difference { tick, kind: Kind::Checkpoint(it) });
+                let difference =
+                    differs.map(|it| Difference { tick, kind: DifferenceKind::Checkpoint(it) });
                 self.first_difference = self.first_difference.or(difference);
             }
-            Err(fault) => {
-                self.remarks.push(format!("checkpoint at tick {tick} not compared: {fault}"));
+            Err(error) => {
+                self.remarks
+                    .push(format!("checkpoint at tick {tick} could not be compared: {error}"));
             }
         }
     }
 }
 
 impl Segment<'_> {
-    /// Simulates the part; `leaves` is asked before every tick whether to leave it.
+    /// Simulates the segment. `interrupts` is called before every tick; it returns true to stop.
     pub(super) fn simulate(
         &self,
-        again: &RecordedRun,
+        run: &RecordedRun,
         mut script: Script,
         n_threads: usize,
-        leaves: &dyn Fn() -> bool,
-    ) -> Result<Found, ReplayError> {
+        interrupts: &dyn Fn() -> bool,
+    ) -> Result<SegmentResult, ReplayError> {
         let mut session = match &self.start {
-            Start::Recorded(place) => again.session_at(place, &again.scene, n_threads)?,
-            Start::Made(tick, bytes) => again.resume(*tick, bytes, &again.scene, n_threads)?,
+            Start::Recorded(checkpoint) => run.session_at(checkpoint, &run.scene, n_threads)?,
+            Start::Saved(tick, bytes) => run.resume(*tick, bytes, &run.scene, n_threads)?,
         };
-        let mut found = Found::default();
-        // The part before ends where this one begins, and says what there is to say.
-        let mut is_told = !self.is_first;
+        let mut result = SegmentResult::default();
+        // The segment before compares the state at which this one starts.
+        let mut is_compared = !self.is_first;
         loop {
             let tick = session.run_tick().0;
-            if !mem::take(&mut is_told) {
-                found.compare(again.course.digest_of(tick), &session);
-                let place = again.course.checkpoint_at(tick).filter(|_| !self.is_from(tick));
-                if let Some(place) = place.filter(|_| found.goes_on()) {
-                    found.compare_all(place, &session);
+            if !mem::take(&mut is_compared) {
+                result.compare(run.history.digest_of(tick), &session);
+                let checkpoint = run.history.checkpoint_at(tick).filter(|_| !self.starts_at(tick));
+                if let Some(checkpoint) = checkpoint.filter(|_| result.may_continue()) {
+                    result.compare_all(checkpoint, &session);
                 }
             }
-            found.is_left = leaves();
-            if !found.goes_on() || (tick == self.end && !self.is_last) {
-                return Ok(found);
+            result.is_interrupted = interrupts();
+            if !result.may_continue() || (tick == self.end && !self.is_last) {
+                return Ok(result);
             }
-            for it in again.course.changes_after(tick) {
-                again.change(&mut session, it)?;
-                found.compare_after(it, &session);
+            for it in run.history.changes_after(tick) {
+                run.change(&mut session, it)?;
+                result.compare_after(it, &session);
             }
-            if !found.goes_on() || self.end <= tick {
-                return Ok(found);
+            if !result.may_continue() || self.end <= tick {
+                return Ok(result);
             }
-            session.tick(&script.of(tick + 1))?;
-            found.n_ticks += 1;
+            session.tick(&script.commands_in(tick + 1))?;
+            result.n_ticks += 1;
         }
     }
 
-    /// True if the part began at the recorded checkpoint of this tick.
-    fn is_from(&self, tick: u64) -> bool {
-        matches!(&self.start, Start::Recorded(place) if place.tick == tick)
+    /// True if the segment starts at the recorded checkpoint of this tick.
+    fn starts_at(&self, tick: u64) -> bool {
+        matches!(&self.start, Start::Recorded(checkpoint) if checkpoint.tick == tick)
     }
 }

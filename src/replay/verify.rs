@@ -1,4 +1,4 @@
-//! Is every tick as it was recorded? The run is simulated again, and every digest compared.
+//! Verification: simulates a recorded run again and compares every digest.
 
 use super::{
     compatibility,
@@ -7,7 +7,7 @@ use super::{
     workers::{CpuBudget, Workers},
 };
 use crate::{
-    bag::recording::Alteration,
+    bag::recording::RecordedChange,
     base::parallel,
     command::change::Change,
     cosim::compile::Compiled,
@@ -16,54 +16,54 @@ use crate::{
     session::Session,
 };
 
-/// How to verify.
+/// Options of the verification.
 pub struct Options<'a> {
-    /// How the machine is shared out; it does not change the result.
-    pub hands: CpuBudget,
-    /// True fills the bag anew from scene and seed; false takes the start that was recorded.
+    /// How to divide the processors; it does not affect the result.
+    pub cpu_budget: CpuBudget,
+    /// True to settle a new start state from scene and seed; false to start from the recorded one.
     pub settles: bool,
-    /// Simulated time from which on to verify (ns); from the last checkpoint before it.
+    /// Simulation time from which to verify (ns); it starts at the last checkpoint before.
     pub from_ns: u64,
-    /// Simulated time at which to end (ns).
+    /// Simulation time at which to end (ns).
     pub to_ns: Option<u64>,
-    /// Where settled start states are kept, for recordings without checkpoints.
+    /// Cache of settled start states, for recordings without checkpoints.
     pub cache: Cache,
-    /// What a person sees.
+    /// Receives the progress.
     pub progress: &'a Progress,
-    /// Whether someone asked to end.
+    /// Set when the user requests to stop.
     pub shutdown: &'a Shutdown,
 }
 
-/// What verification found.
+/// The result of the verification.
 #[derive(Clone, Debug)]
 pub struct VerifyReport {
-    /// Ticks that were simulated.
+    /// Number of simulated ticks.
     pub n_ticks: u64,
-    /// Digests that were compared.
+    /// Number of compared digests.
     pub n_compared: u64,
-    /// Checkpoints that were compared, all of the state to the bit.
+    /// Number of checkpoints whose whole state was compared.
     pub n_checkpoints: u64,
-    /// The first that differed.
+    /// The first difference.
     pub first_difference: Option<Difference>,
-    /// Simulated over wall time, of all parts together.
+    /// Simulation time over wall-clock time, of all segments together.
     pub real_time_factor: f64,
-    /// Parts that were simulated at a time, and threads of each.
-    pub shared_out: (usize, usize),
-    /// The tick it began with.
+    /// Number of parallel simulations, and threads of each.
+    pub jobs_and_threads: (usize, usize),
+    /// The first tick.
     pub start_tick: u64,
-    /// What is to be said about the recording, for people.
+    /// Remarks about the recording, for the user.
     pub remarks: Vec<String>,
-    /// True if someone asked to end before the end.
+    /// True if the user stopped the verification.
     pub is_interrupted: bool,
 }
 
 impl VerifyReport {
-    /// True if something was compared and all of it was equal.
+    /// True if at least one digest was compared and everything was equal.
     pub fn is_equal(&self) -> bool {
         self.first_difference.is_none() && 0 < self.n_compared && !self.is_interrupted
     }
 
-    /// The verdict for machines.
+    /// The report as JSON.
     pub fn to_json(&self) -> serde_json::Value {
         serde_json::json!({
             "ticks": self.n_ticks,
@@ -76,77 +76,77 @@ impl VerifyReport {
     }
 }
 
-/// Simulates a recording again.
+/// Verifies a recorded run.
 ///
 /// # Errors
-/// If it cannot be run again. A difference is no error.
-pub fn verify(again: &RecordedRun, options: &Options<'_>) -> Result<VerifyReport, ReplayError> {
-    let (course, tick_ns) = (&again.course, again.scene.time.tick_ns);
-    let mut remarks = remarks(again);
+/// If the run cannot be simulated again. A difference is not an error.
+pub fn verify(run: &RecordedRun, options: &Options<'_>) -> Result<VerifyReport, ReplayError> {
+    let (history, tick_ns) = (&run.history, run.scene.time.tick_ns);
+    let mut remarks = remarks(run);
     if options.settles {
-        remarks.extend(again.course.changes.iter().filter_map(not_settled));
+        remarks.extend(run.history.changes.iter().filter_map(not_settled));
     }
-    let start = start(again, options, &mut remarks)?;
+    let start = start(run, options, &mut remarks)?;
     let start_tick = start.tick();
-    // Beyond a gap commands are missing.
-    let last = course.gap_after.unwrap_or(u64::MAX).min(course.last_tick());
+    // After a gap, commands are missing.
+    let last = history.gap_after.unwrap_or(u64::MAX).min(history.last_tick());
     let last = options.to_ns.map_or(last, |end_ns| last.min(end_ns / tick_ns));
-    let mut parts = segment::cut(start.clone(), last, &course.checkpoints);
-    let (n_jobs, n_threads) = options.hands.shared_out(parts.len());
+    let mut segments = segment::split(start.clone(), last, &history.checkpoints);
+    let (n_jobs, n_threads) = options.cpu_budget.jobs_and_threads(segments.len());
     if n_jobs == 1 {
-        parts = segment::cut(start, last, &[]);
+        segments = segment::split(start, last, &[]);
     }
     options.progress.running(Some(last * tick_ns));
     let stopwatch = Stopwatch::start();
     let (progress, shutdown) = (options.progress, options.shutdown);
-    let workers = Workers { again, script: again.script()?, n_jobs, n_threads, progress, shutdown };
-    let found = workers.simulate(&parts)?;
+    let workers = Workers { run, script: run.script()?, n_jobs, n_threads, progress, shutdown };
+    let result = workers.simulate(&segments)?;
     options.progress.end();
     let wall_s = stopwatch.total_s();
-    remarks.extend(found.remarks);
-    if found.first_difference.is_some() {
-        remarks.extend(blame(again));
+    remarks.extend(result.remarks);
+    if result.first_difference.is_some() {
+        remarks.extend(possible_causes(run));
     }
     Ok(VerifyReport {
-        n_ticks: found.n_ticks,
-        n_compared: found.n_compared,
-        n_checkpoints: found.n_checkpoints,
-        first_difference: found.first_difference,
-        real_time_factor: super::seconds(found.n_ticks * tick_ns) / wall_s.max(1e-9),
-        shared_out: (n_jobs, n_threads),
+        n_ticks: result.n_ticks,
+        n_compared: result.n_compared,
+        n_checkpoints: result.n_checkpoints,
+        first_difference: result.first_difference,
+        real_time_factor: super::seconds(result.n_ticks * tick_ns) / wall_s.max(1e-9),
+        jobs_and_threads: (n_jobs, n_threads),
         start_tick,
         remarks,
-        is_interrupted: found.is_left,
+        is_interrupted: result.is_interrupted,
     })
 }
 
-/// What is to be said of a scene that was loaded later, when bags are filled anew.
-fn not_settled(change: &Alteration) -> Option<String> {
-    let Alteration { tick, what, .. } = change;
+/// A remark about a scene that was loaded later, when start states are settled again.
+fn not_settled(change: &RecordedChange) -> Option<String> {
+    let RecordedChange { tick, what, .. } = change;
     matches!(Change::from_bytes(&change.change), Ok(Change::LoadScene(_))).then(|| {
-        format!("after tick {tick}: {what}: it begins as recorded, only the first is filled anew")
+        format!("after tick {tick}: {what}: this scene starts as recorded; only the first scene is settled again")
     })
 }
 
-/// The start, or the checkpoint before the time asked for.
+/// The start of the verification: the checkpoint before the requested time, or a settled start.
 fn start<'a>(
-    again: &'a RecordedRun,
+    run: &'a RecordedRun,
     options: &Options<'_>,
     remarks: &mut Vec<String>,
 ) -> Result<Start<'a>, ReplayError> {
-    // A run that branched off another begins later than at zero.
-    let first = again.course.digests.first().map_or(0, |(tick, _)| *tick);
-    let tick = first.max(options.from_ns / again.scene.time.tick_ns);
-    let recorded = again.course.checkpoint_before(tick).filter(|_| !options.settles);
-    if let Some(place) = recorded {
-        return Ok(Start::Recorded(place));
+    // A run that branched from another one does not start at tick 0.
+    let first = run.history.digests.first().map_or(0, |(tick, _)| *tick);
+    let tick = first.max(options.from_ns / run.scene.time.tick_ns);
+    let recorded = run.history.checkpoint_before(tick).filter(|_| !options.settles);
+    if let Some(checkpoint) = recorded {
+        return Ok(Start::Recorded(checkpoint));
     }
-    if again.course.is_every_tick && 1 < first {
-        return Err(ReplayError::NoStart { path: again.path.clone(), tick: first });
+    if run.history.is_every_tick && 1 < first {
+        return Err(ReplayError::NoStart { path: run.path.clone(), tick: first });
     }
-    let (_, n_threads) = options.hands.shared_out(1);
+    let (_, n_threads) = options.cpu_budget.jobs_and_threads(1);
     let pool = parallel::ThreadPool::new(n_threads).map_err(StartError::from)?;
-    let compiled = Compiled::new(&again.scene, &pool)?;
+    let compiled = Compiled::new(&run.scene, &pool)?;
     let session = if options.settles {
         let on_progress = &mut |it: crate::physics::fill::Progress| {
             options.progress.settling(it.stage, it.share);
@@ -155,56 +155,57 @@ fn start<'a>(
     } else {
         let started = start::start(compiled, &options.cache, options.progress);
         let Started { session, origin } = started.map_err(ReplayError::from)?;
-        let start = format!("no checkpoint is recorded: the start was {origin} from the scene");
+        let start =
+            format!("the recording has no checkpoint: the start was {origin} from the scene");
         remarks.push(start);
         session
     };
     let bytes = session.save().expect("a start has the scene's own objects");
-    Ok(Start::Made(session.run_tick().0, bytes.into()))
+    Ok(Start::Saved(session.run_tick().0, bytes.into()))
 }
 
-/// What is wrong with a recording before anything is simulated.
-fn remarks(again: &RecordedRun) -> Vec<String> {
-    let course = &again.course;
-    let mut remarks: Vec<String> = course
+/// Problems of the recording that are known before the simulation.
+fn remarks(run: &RecordedRun) -> Vec<String> {
+    let history = &run.history;
+    let mut remarks: Vec<String> = history
         .damages
         .iter()
         .map(|(file, damage)| format!("{}: {damage}", file.display()))
         .collect();
-    if let Some(tick) = course.broken_at {
+    if let Some(tick) = history.broken_at {
         remarks.push(format!(
             "the chain of digests is broken at tick {tick}: a command, a digest or the scene was \
              altered after it was recorded"
         ));
     }
-    if let Some(tick) = course.gap_after {
+    if let Some(tick) = history.gap_after {
         remarks.push(format!(
-            "ticks after {tick} are missing (a queue that was full, or damage): \
-             it can be verified up to there"
+            "ticks after {tick} are missing (because of a full queue or damage): \
+             the run can be verified up to there"
         ));
     }
-    if !course.is_every_tick {
-        let n = course.digests.len();
+    if !history.is_every_tick {
+        let n = history.digests.len();
         remarks.push(format!(
-            "recorded by jamgrip {}, before recordings held the digest of every tick: \
-             only {n} digests, those of its statistics, can be compared",
-            again.recording.version()
+            "recorded by jamgrip {}, which did not record the digest of every tick: \
+             only the {n} digests in its statistics can be compared",
+            run.recording.version()
         ));
     }
     remarks
 }
 
-/// What may be the reason of a difference.
-fn blame(again: &RecordedRun) -> Vec<String> {
-    let version = again.recording.version();
-    let mut found = vec![format!(
-        "recorded by jamgrip {version} on {}, simulated again by {} on {} {}",
-        again.recording.facts.get("machine").map_or("an unknown machine", String::as_str),
+/// Possible causes of a difference.
+fn possible_causes(run: &RecordedRun) -> Vec<String> {
+    let version = run.recording.version();
+    let mut result = vec![format!(
+        "recorded by jamgrip {version} on {}, simulated by {} on {} {}",
+        run.recording.facts.get("machine").map_or("an unknown machine", String::as_str),
         env!("CARGO_PKG_VERSION"),
         std::env::consts::OS,
         std::env::consts::ARCH
     )];
     let changes = compatibility::changes_since(version);
-    found.extend(changes.into_iter().map(|it| format!("what changed results since then: {it}")));
-    found
+    result.extend(changes.into_iter().map(|it| format!("results have changed since: {it}")));
+    result
 }

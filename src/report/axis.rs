@@ -1,4 +1,4 @@
-//! An axis of a plot: where numbers lie, and which of them are written beside it.
+//! An axis of a plot: the positions of values, and the tick labels.
 
 use std::ops::Range;
 
@@ -6,9 +6,9 @@ use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, Value
 
 use crate::report::format::number;
 
-/// Room beyond the outermost points, as a share of the axis.
+/// Space beyond the outermost points, as a fraction of the axis.
 const MARGIN: f64 = 0.04;
-/// Numbers written on an axis, about.
+/// Approximate number of ticks on an axis.
 const N_TICKS: f64 = 6.0;
 
 /// An axis, linear or logarithmic.
@@ -20,20 +20,20 @@ pub(super) struct Axis {
 }
 
 impl Axis {
-    /// An axis on which all `values` lie that it can show.
+    /// An axis that covers all of `values` that it can show.
     pub(super) fn around(values: impl Iterator<Item = f64>, is_log: bool) -> Self {
         let mut axis = Self { low: f64::INFINITY, high: f64::NEG_INFINITY, is_log };
         for value in values {
-            let place = axis.place(value);
-            if place.is_finite() {
-                axis.low = axis.low.min(place);
-                axis.high = axis.high.max(place);
+            let position = axis.position(value);
+            if position.is_finite() {
+                axis.low = axis.low.min(position);
+                axis.high = axis.high.max(position);
             }
         }
         if axis.high < axis.low {
             (axis.low, axis.high) = (0.0, 1.0);
         }
-        // A linear axis whose numbers lie near zero begins there.
+        // A linear axis that starts near zero is extended to zero.
         let touches_zero = !is_log && 0.0 <= axis.low && axis.low <= 0.3 * axis.high;
         let mut margin = MARGIN * (axis.high - axis.low);
         if margin <= 1e-9 * axis.high.abs() {
@@ -45,25 +45,25 @@ impl Axis {
     }
 
     /// True if the axis can show `value`.
-    pub(super) fn shows(&self, value: f64) -> bool {
-        self.place(value).is_finite()
+    pub(super) fn can_show(&self, value: f64) -> bool {
+        self.position(value).is_finite()
     }
 
-    /// The smallest value that the axis shows.
+    /// The smallest value on the axis.
     pub(super) fn lowest(&self) -> f64 {
         self.value(self.low)
     }
 
-    /// Where a value lies, before scaling.
-    fn place(&self, value: f64) -> f64 {
+    /// The position of a value on the axis, before scaling.
+    fn position(&self, value: f64) -> f64 {
         if self.is_log { if 0.0 < value { value.log10() } else { f64::NAN } } else { value }
     }
 
-    fn value(&self, place: f64) -> f64 {
-        if self.is_log { 10_f64.powf(place) } else { place }
+    fn value(&self, position: f64) -> f64 {
+        if self.is_log { 10_f64.powf(position) } else { position }
     }
 
-    /// The values that are written beside the axis.
+    /// The values of the ticks.
     fn ticks(&self) -> Vec<f64> {
         let decades = self.high - self.low;
         if !self.is_log || decades < 0.7 {
@@ -82,12 +82,12 @@ impl Axis {
             ticks.extend(factors.iter().map(|factor| factor * 10_f64.powf(decade)));
             decade += step;
         }
-        ticks.retain(|tick| (self.low..=self.high).contains(&self.place(*tick)));
+        ticks.retain(|tick| (self.low..=self.high).contains(&self.position(*tick)));
         ticks
     }
 }
 
-/// Multiples of 1, 2 or 5 times a power of ten.
+/// Multiples of 1, 2 or 5 times a power of ten, between `low` and `high`.
 fn round_numbers(low: f64, high: f64) -> Vec<f64> {
     let rough = (high - low) / N_TICKS;
     let power = 10_f64.powf(rough.log10().floor());
@@ -110,10 +110,10 @@ impl Ranged for Axis {
     type ValueType = f64;
 
     fn map(&self, value: &f64, limit: (i32, i32)) -> i32 {
-        let share = (self.place(*value) - self.low) / (self.high - self.low);
+        let fraction = (self.position(*value) - self.low) / (self.high - self.low);
         let (from, to) = (f64::from(limit.0), f64::from(limit.1));
         #[expect(clippy::cast_possible_truncation, reason = "pixels; the cast saturates")]
-        let pixel = (from + share * (to - from)).round() as i32;
+        let pixel = (from + fraction * (to - from)).round() as i32;
         pixel
     }
 
@@ -170,7 +170,7 @@ mod tests {
         axis.ticks().iter().map(|tick| axis.format_ext(tick)).collect()
     }
 
-    /// Oracle: what a person would write beside such an axis.
+    /// Oracle: ticks chosen by hand.
     #[test]
     fn ticks_are_round_and_few() {
         assert_eq!(labels(&[0.0, 1.0], false), ["0", "0.2", "0.4", "0.6", "0.8", "1"]);
@@ -182,7 +182,7 @@ mod tests {
         assert_eq!(labels(&[100.0, 102.0], false), ["100", "100.5", "101", "101.5", "102"]);
     }
 
-    /// Oracle: the axis itself; whatever is given, it can be drawn.
+    /// Oracle: the axis itself: it can be drawn for any input.
     #[test]
     fn every_axis_has_an_extent() {
         for is_log in [false, true] {

@@ -1,16 +1,16 @@
-//! Numbers and durations as people read them.
+//! Formats numbers and durations for people.
 
-/// Digits that a reader can use.
+/// Number of significant digits.
 const DIGITS: usize = 4;
 
-/// A number with four significant digits, by powers of ten where it is very large or small.
+/// A number with four significant digits, in scientific notation if it is very large or small.
 pub fn number(value: f64) -> String {
     if !value.is_finite() || value == 0.0 {
         return if value.is_nan() { "none".to_owned() } else { format!("{value}") };
     }
     let scientific = format!("{value:.*e}", DIGITS - 1);
     let (mantissa, exponent) = scientific.split_once('e').expect("`{:e}` writes an exponent");
-    let exponent: i32 = exponent.parse().expect("`{:e}` writes a whole exponent");
+    let exponent: i32 = exponent.parse().expect("`{:e}` writes an integer exponent");
     if (-3..5).contains(&exponent) {
         let decimals = usize::try_from(3 - exponent).unwrap_or(0);
         return trimmed(&format!("{value:.decimals$}"));
@@ -18,13 +18,13 @@ pub fn number(value: f64) -> String {
     format!("{}e{exponent}", trimmed(mantissa))
 }
 
-/// A number with its unit; `1` is no unit.
+/// A number with its unit; the unit `1` is left out.
 pub fn with_unit(value: f64, unit: &str) -> String {
     if unit == "1" { number(value) } else { format!("{} {unit}", number(value)) }
 }
 
 /// A text on one line, with single spaces.
-pub fn flat(text: &str) -> String {
+pub fn one_line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
@@ -62,7 +62,7 @@ mod tests {
 
     /// Oracle: written by hand.
     #[test]
-    fn numbers_keep_four_digits_and_no_idle_zeros() {
+    fn numbers_keep_four_digits_and_no_trailing_zeros() {
         let expected = [
             (0.0, "0"),
             (1.0, "1"),
@@ -86,7 +86,7 @@ mod tests {
 
     /// Oracle: written by hand.
     #[test]
-    fn durations_name_two_units_at_most() {
+    fn durations_have_at_most_two_units() {
         let expected = [
             (0.04, "0.0 s"),
             (9.9, "9.9 s"),

@@ -1,5 +1,5 @@
-//! The frame of every HTML page, and plots with their legends. A page is self-contained: style and
-//! plots are inline, nothing is fetched.
+//! The frame of HTML pages, and plots with their legends. A page is self-contained: styles and
+//! plots are inline, nothing is loaded from elsewhere.
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
@@ -8,9 +8,9 @@ use crate::experiments::findings::{Kind, Plot};
 
 const STYLE: &str = include_str!("page.css");
 
-/// A self-contained page.
-pub fn whole(title: &str, head: &Markup, body: &Markup) -> String {
-    let style = format!("{STYLE}{}", dark_colours());
+/// Renders a self-contained page.
+pub fn render(title: &str, head: &Markup, body: &Markup) -> String {
+    let style = format!("{STYLE}{}", dark_colors());
     let page = html! {
         (DOCTYPE)
         html lang="en" {
@@ -51,39 +51,39 @@ pub fn plots(plots: &[Plot]) -> Markup {
 fn legend(plot: &Plot) -> Markup {
     html! {
         ul.legend {
-            @for (series, colour) in plot.series.iter().zip(plot::colours(plot)) {
-                li { (swatch(series.kind, colour)) (series.label) }
+            @for (series, color) in plot.series.iter().zip(plot::colors(plot)) {
+                li { (legend_sample(series.kind, color)) (series.label) }
             }
         }
     }
 }
 
-/// A small drawing of how a series looks.
-fn swatch(kind: Kind, colour: &str) -> Markup {
+/// A sample of how a series is drawn.
+fn legend_sample(kind: Kind, color: &str) -> Markup {
     html! {
         svg viewBox="0 0 36 14" width="36" height="14" aria-hidden="true" {
             @match kind {
                 Kind::Line => {
-                    line x1="1" y1="7" x2="35" y2="7" stroke=(colour) stroke-width="2.5";
+                    line x1="1" y1="7" x2="35" y2="7" stroke=(color) stroke-width="2.5";
                 }
                 Kind::Analytic => {
-                    line x1="1" y1="7" x2="35" y2="7" stroke=(colour) stroke-width="2.5"
+                    line x1="1" y1="7" x2="35" y2="7" stroke=(color) stroke-width="2.5"
                         stroke-dasharray="8 5";
                 }
-                Kind::Points => { circle cx="18" cy="7" r="4.5" fill=(colour); }
+                Kind::Points => { circle cx="18" cy="7" r="4.5" fill=(color); }
                 Kind::Source => {
-                    circle cx="18" cy="7" r="5" fill="none" stroke=(colour) stroke-width="2";
+                    circle cx="18" cy="7" r="5" fill="none" stroke=(color) stroke-width="2";
                 }
             }
         }
     }
 }
 
-/// Lighter colours for dark pages, in place of those that the pictures were drawn with.
-fn dark_colours() -> String {
-    let swap = |from: &str, to: &str| {
+/// Lighter colors for dark pages, which replace the colors of the plots.
+fn dark_colors() -> String {
+    let replace = |from: &str, to: &str| {
         format!("svg [stroke=\"{from}\"]{{stroke:{to}}}svg [fill=\"{from}\"]{{fill:{to}}}\n")
     };
-    let swaps: String = plot::dark().map(|(from, to)| swap(from, to)).collect();
-    format!("@media (prefers-color-scheme: dark) {{\n{swaps}}}\n")
+    let rules: String = plot::dark_colors().map(|(from, to)| replace(from, to)).collect();
+    format!("@media (prefers-color-scheme: dark) {{\n{rules}}}\n")
 }

@@ -1,7 +1,7 @@
-//! Pictures as SVG: measured lines and points with their deviations, analytic references dashed,
-//! the source's points hollow.
+//! Plots as SVG: measured series as lines and points with their deviations, analytic references as
+//! dashed lines, points of the source as circles.
 //!
-//! Colours are written as attributes; the style of the page replaces them where it is dark.
+//! Colors are written as attributes, so that the style of a dark page can replace them.
 
 use plotters::{
     backend::SVGBackend,
@@ -19,11 +19,11 @@ use plotters::{
 use super::axis::Axis;
 use crate::experiments::findings::{Kind, Plot, Series};
 
-/// Picture elements across and down; pages scale them.
+/// Width and height of a plot (pixels); pages scale it.
 const SIZE: (u32, u32) = (1440, 840);
-/// Colours of the series, told apart also by those who see no red or no green (Okabe & Ito 2008,
-/// the yellow darker), and what takes their place where the page is dark.
-const COLOURS: [(&str, &str); 8] = [
+/// Colors of the series, which people with color blindness can distinguish (Okabe & Ito 2008, with
+/// a darker yellow), and their replacements on dark pages.
+const COLORS: [(&str, &str); 8] = [
     ("#0072B2", "#5BB4F0"),
     ("#D55E00", "#FF9352"),
     ("#009E73", "#3ED6A8"),
@@ -33,34 +33,34 @@ const COLOURS: [(&str, &str); 8] = [
     ("#6A3D9A", "#B99AE0"),
     ("#7F4F24", "#C99B6D"),
 ];
-/// The colours of ink and grid where the page is dark.
-const DARK: [(&str, &str); 2] = [("#333A44", "#C3CBD4"), ("#E3E6EA", "#313943")];
-/// The colour of a series that belongs to all others.
-const NEUTRAL: &str = "#333A44";
-/// Axes and their numbers.
+/// Replacements of the colors of ink and grid on dark pages.
+const DARK_COLORS: [(&str, &str); 2] = [("#333A44", "#C3CBD4"), ("#E3E6EA", "#313943")];
+/// Color of a series that refers to all others.
+const NEUTRAL_COLOR: &str = "#333A44";
+/// Color of axes and labels.
 const INK: RGBColor = RGBColor(0x33, 0x3a, 0x44);
-/// Lines of the grid.
+/// Color of grid lines.
 const GRID: RGBColor = RGBColor(0xe3, 0xe6, 0xea);
-/// Width of a line.
-const LINE: u32 = 4;
-/// Radius of a point.
-const POINT: u32 = 7;
-/// Height of a line of the legend.
+/// Width of a line (pixels).
+const LINE_WIDTH: u32 = 4;
+/// Radius of a point (pixels).
+const POINT_RADIUS: u32 = 7;
+/// Height of a line of the legend (pixels).
 const LEGEND_LINE: u32 = 48;
-/// Where the legend begins, from the left.
+/// Left edge of the legend (pixels).
 const LEGEND_LEFT: u32 = 40;
-/// Room for the drawing before a label.
-const LEGEND_SWATCH: u32 = 76;
-/// Width of a letter, about.
-const LETTER: u32 = 17;
-/// Points of a line beyond which the picture would only grow, not get better.
+/// Space for the sample before a label (pixels).
+const LEGEND_SAMPLE: u32 = 76;
+/// Approximate width of a letter (pixels).
+const LETTER_WIDTH: u32 = 17;
+/// Points of a line above which a plot would only get larger, not better.
 const N_POINTS_MAX: usize = 500;
 
-type Fault<'a> =
+type DrawError<'a> =
     DrawingAreaErrorKind<<SVGBackend<'a> as plotters::prelude::DrawingBackend>::ErrorType>;
 type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<Axis, Axis>>;
 
-/// The picture as an `<svg>` element of a page that has the legend and the colours of paper.
+/// The plot as an `<svg>` element of a page that has the legend and the background.
 pub fn svg(plot: &Plot) -> String {
     let mut text = String::new();
     {
@@ -68,14 +68,14 @@ pub fn svg(plot: &Plot) -> String {
         draw(plot, &area).expect("memory is the only limit");
         area.present().expect("memory is the only limit");
     }
-    // As wide as the page allows, not as wide as its own picture elements.
+    // The width is set by the page.
     text.replacen(&format!("width=\"{}\" height=\"{}\" ", SIZE.0, SIZE.1), "", 1)
 }
 
-/// The picture as a file of its own: on white, with its legend above.
-pub fn picture(plot: &Plot) -> String {
-    let places = legend_places(plot);
-    let n_lines = places.last().map_or(0, |place| place.1 + 1);
+/// The plot as a file of its own: on white, with its legend above.
+pub fn standalone_svg(plot: &Plot) -> String {
+    let positions = legend_positions(plot);
+    let n_lines = positions.last().map_or(0, |position| position.1 + 1);
     let height = 20 + LEGEND_LINE * n_lines;
     let mut text = String::new();
     {
@@ -83,41 +83,41 @@ pub fn picture(plot: &Plot) -> String {
         let area = SVGBackend::with_string(&mut text, size).into_drawing_area();
         area.fill(&WHITE).expect("memory is the only limit");
         let (legend, rest) = area.split_vertically(height);
-        draw_legend(plot, &places, &legend).expect("memory is the only limit");
+        draw_legend(plot, &positions, &legend).expect("memory is the only limit");
         draw(plot, &rest).expect("memory is the only limit");
         area.present().expect("memory is the only limit");
     }
     text
 }
 
-/// Where the labels of the series begin: from the left, and in which line.
-fn legend_places(plot: &Plot) -> Vec<(u32, u32)> {
+/// The positions of the legend entries: from the left (pixels), and the line.
+fn legend_positions(plot: &Plot) -> Vec<(u32, u32)> {
     let (mut x, mut line) = (LEGEND_LEFT, 0);
-    let mut places = Vec::new();
+    let mut positions = Vec::new();
     for series in &plot.series {
         let n = u32::try_from(series.label.chars().count()).unwrap_or(0);
-        let width = LEGEND_SWATCH + LETTER * n + 50;
+        let width = LEGEND_SAMPLE + LETTER_WIDTH * n + 50;
         if SIZE.0 < x + width && LEGEND_LEFT < x {
             (x, line) = (LEGEND_LEFT, line + 1);
         }
-        places.push((x, line));
+        positions.push((x, line));
         x += width;
     }
-    places
+    positions
 }
 
 fn draw_legend<'b>(
     plot: &Plot,
-    places: &[(u32, u32)],
+    positions: &[(u32, u32)],
     area: &DrawingArea<SVGBackend<'b>, Shift>,
-) -> Result<(), Fault<'b>> {
+) -> Result<(), DrawError<'b>> {
     let pixel = |it: u32| i32::try_from(it).unwrap_or(i32::MAX);
     let label = TextStyle::from(("sans-serif", 37)).color(&INK);
     let label = label.pos(Pos::new(HPos::Left, VPos::Center));
-    for ((series, colour), (x, line)) in plot.series.iter().zip(colours(plot)).zip(places) {
-        let (colour, x, y) = (rgb(colour), pixel(*x), pixel(20 + LEGEND_LINE * line + 30));
+    for ((series, color), (x, line)) in plot.series.iter().zip(colors(plot)).zip(positions) {
+        let (color, x, y) = (rgb(color), pixel(*x), pixel(20 + LEGEND_LINE * line + 30));
         let (end, middle) = (x + 60, (x + 30, y));
-        let stroke = colour.stroke_width(LINE);
+        let stroke = color.stroke_width(LINE_WIDTH);
         match series.kind {
             Kind::Line => area.draw(&PathElement::new([(x, y), (end, y)], stroke))?,
             Kind::Analytic => {
@@ -125,46 +125,49 @@ fn draw_legend<'b>(
                     area.draw(&PathElement::new([(from, y), (from + 14, y)], stroke))?;
                 }
             }
-            Kind::Points => area.draw(&Circle::new(middle, POINT + 1, colour.filled()))?,
-            Kind::Source => area.draw(&Circle::new(middle, POINT + 2, colour.stroke_width(3)))?,
+            Kind::Points => area.draw(&Circle::new(middle, POINT_RADIUS + 1, color.filled()))?,
+            Kind::Source => {
+                area.draw(&Circle::new(middle, POINT_RADIUS + 2, color.stroke_width(3)))?
+            }
         }
-        area.draw(&Text::new(series.label.as_str(), (x + pixel(LEGEND_SWATCH), y), label.clone()))?;
+        area.draw(&Text::new(series.label.as_str(), (x + pixel(LEGEND_SAMPLE), y), label.clone()))?;
     }
     Ok(())
 }
 
-/// The colours of a plot's series. References and source points that are as many as the measured
-/// curves share their colours, one by one; a single one belongs to all.
-pub fn colours(plot: &Plot) -> Vec<&'static str> {
+/// The colors of a plot's series. If there are as many references or source points as measured
+/// series, they share colors one by one; a single one refers to all.
+pub fn colors(plot: &Plot) -> Vec<&'static str> {
     let is_measured = |kind: Kind| matches!(kind, Kind::Line | Kind::Points);
     let count = |is: &dyn Fn(Kind) -> bool| plot.series.iter().filter(|it| is(it.kind)).count();
     let n_measured = count(&is_measured);
     let mut n_others = n_measured;
-    let mut seen = Vec::new();
-    let mut colours = Vec::new();
+    let mut earlier = Vec::new();
+    let mut colors = Vec::new();
     for kind in plot.series.iter().map(|series| series.kind) {
         let same = |it: &Kind| *it == kind || is_measured(*it) && is_measured(kind);
-        let k = seen.iter().filter(|it| same(it)).count();
+        let k = earlier.iter().filter(|it| same(it)).count();
         let n = if is_measured(kind) { n_measured } else { count(&|it| it == kind) };
-        colours.push(if n == n_measured {
-            COLOURS[k % COLOURS.len()].0
+        colors.push(if n == n_measured {
+            COLORS[k % COLORS.len()].0
         } else if n == 1 {
-            NEUTRAL
+            NEUTRAL_COLOR
         } else {
             n_others += 1;
-            COLOURS[(n_others - 1) % COLOURS.len()].0
+            COLORS[(n_others - 1) % COLORS.len()].0
         });
-        seen.push(kind);
+        earlier.push(kind);
     }
-    colours
+    colors
 }
 
-/// What takes the place of each colour where the page is dark.
-pub fn dark() -> impl Iterator<Item = (&'static str, &'static str)> {
-    COLOURS.into_iter().chain(DARK)
+/// Pairs of a color and its replacement on dark pages.
+pub fn dark_colors() -> impl Iterator<Item = (&'static str, &'static str)> {
+    COLORS.into_iter().chain(DARK_COLORS)
 }
 
-/// A picture's numbers as they can be seen: long lines thinned, six digits. The curves keep all.
+/// A plot reduced to what is visible: long lines are thinned, numbers have six digits. The CSV
+/// files of the curves keep everything.
 pub fn reduced(mut plot: Plot) -> Plot {
     for series in &mut plot.series {
         let is_line = matches!(series.kind, Kind::Line | Kind::Analytic);
@@ -179,12 +182,12 @@ pub fn reduced(mut plot: Plot) -> Plot {
     plot
 }
 
-/// Of every short stretch the lowest and the highest point.
+/// Indices of the lowest and the highest point of every short section.
 fn extremes(points: &[[f64; 2]]) -> Vec<usize> {
-    let stretch = points.len().div_ceil(N_POINTS_MAX / 2);
+    let section = points.len().div_ceil(N_POINTS_MAX / 2);
     let mut kept = Vec::new();
-    for start in (0..points.len()).step_by(stretch) {
-        let here = start..points.len().min(start + stretch);
+    for start in (0..points.len()).step_by(section) {
+        let here = start..points.len().min(start + section);
         let by_height = |a: &usize, b: &usize| points[*a][1].total_cmp(&points[*b][1]);
         let low = here.clone().min_by(by_height).unwrap_or(start);
         let high = here.max_by(by_height).unwrap_or(start);
@@ -202,7 +205,7 @@ fn round(value: &mut f64) {
     }
 }
 
-fn draw<'b>(plot: &Plot, area: &DrawingArea<SVGBackend<'b>, Shift>) -> Result<(), Fault<'b>> {
+fn draw<'b>(plot: &Plot, area: &DrawingArea<SVGBackend<'b>, Shift>) -> Result<(), DrawError<'b>> {
     let (x, y) = axes(plot);
     let mut chart = ChartBuilder::on(area)
         .margin(10)
@@ -222,27 +225,27 @@ fn draw<'b>(plot: &Plot, area: &DrawingArea<SVGBackend<'b>, Shift>) -> Result<()
         .x_desc(plot.x_label.as_str())
         .y_desc(plot.y_label.as_str())
         .draw()?;
-    for (series, colour) in plot.series.iter().zip(colours(plot)) {
-        draw_series(&mut chart, series.kind, rgb(colour), &visible(series, &x, &y), y.lowest())?;
+    for (series, color) in plot.series.iter().zip(colors(plot)) {
+        draw_series(&mut chart, series.kind, rgb(color), &visible(series, &x, &y), y.lowest())?;
     }
     Ok(())
 }
 
-/// A point and the deviation of its height.
+/// A point and the deviation of its y value.
 type Dot = ((f64, f64), f64);
 
 fn draw_series<'b>(
     chart: &mut Chart<'_, 'b>,
     kind: Kind,
-    colour: RGBColor,
+    color: RGBColor,
     dots: &[Dot],
     lowest: f64,
-) -> Result<(), Fault<'b>> {
-    let line = colour.stroke_width(LINE);
+) -> Result<(), DrawError<'b>> {
+    let line = color.stroke_width(LINE_WIDTH);
     let path: Vec<(f64, f64)> = dots.iter().map(|dot| dot.0).collect();
     let bars = dots.iter().filter(|dot| 0.0 < dot.1).map(|&((x, y), deviation)| {
         let ends = vec![(x, (y - deviation).max(lowest)), (x, y + deviation)];
-        PathElement::new(ends, colour.stroke_width(3))
+        PathElement::new(ends, color.stroke_width(3))
     });
     chart.draw_series(bars)?;
     match kind {
@@ -253,12 +256,15 @@ fn draw_series<'b>(
             chart.draw_series(DashedLineSeries::new(path, 18, 12, line))?;
         }
         Kind::Points => {
-            chart
-                .draw_series(path.into_iter().map(|at| Circle::new(at, POINT, colour.filled())))?;
+            chart.draw_series(
+                path.into_iter().map(|at| Circle::new(at, POINT_RADIUS, color.filled())),
+            )?;
         }
         Kind::Source => {
-            let hollow = colour.stroke_width(3);
-            chart.draw_series(path.into_iter().map(|at| Circle::new(at, POINT + 2, hollow)))?;
+            let hollow = color.stroke_width(3);
+            chart.draw_series(
+                path.into_iter().map(|at| Circle::new(at, POINT_RADIUS + 2, hollow)),
+            )?;
         }
     }
     Ok(())
@@ -280,7 +286,7 @@ fn visible(series: &Series, x: &Axis, y: &Axis) -> Vec<Dot> {
     let dot = |(i, point): (usize, &[f64; 2])| {
         ((point[0], point[1]), series.deviations.get(i).copied().unwrap_or(0.0))
     };
-    let is_visible = |it: &Dot| x.shows(it.0.0) && y.shows(it.0.1);
+    let is_visible = |it: &Dot| x.can_show(it.0.0) && y.can_show(it.0.1);
     series.points.iter().enumerate().map(dot).filter(is_visible).collect()
 }
 
@@ -311,9 +317,9 @@ mod tests {
         }
     }
 
-    /// Oracle: what each kind looks like; what cannot be shown is left out.
+    /// Oracle: the look of each kind; points that cannot be shown are left out.
     #[test]
-    fn every_kind_has_its_own_look_and_nothing_breaks_a_picture() {
+    fn every_kind_is_drawn_and_invalid_points_are_left_out() {
         let points = vec![[1.0, 1.0], [10.0, 20.0], [f64::NAN, 3.0], [5.0, f64::INFINITY]];
         for log in [false, true] {
             let count = |kind: Kind, what: &str| {
@@ -332,7 +338,7 @@ mod tests {
         drop(svg(&plot(vec![series(Kind::Line, vec![[-1.0, 0.0]])], true)));
     }
 
-    /// Oracle: the extremes of the points themselves.
+    /// Oracle: the extremes of the input points.
     #[test]
     fn a_thinned_line_keeps_its_extremes() {
         let n = 100_000;
@@ -346,16 +352,16 @@ mod tests {
         assert!(kept.points.windows(2).all(|pair| pair[0][0] < pair[1][0]), "left to right");
     }
 
-    /// Oracle: the rule, by hand.
+    /// Oracle: the rule, applied by hand.
     #[test]
-    fn references_share_the_colours_of_what_they_belong_to() {
-        let colours = |kinds: &[Kind]| {
-            colours(&plot(kinds.iter().map(|kind| series(*kind, vec![])).collect(), false))
+    fn references_share_the_colors_of_their_series() {
+        let colors = |kinds: &[Kind]| {
+            colors(&plot(kinds.iter().map(|kind| series(*kind, vec![])).collect(), false))
         };
-        let palette = COLOURS.map(|it| it.0);
+        let palette = COLORS.map(|it| it.0);
         let [a, b, c, ..] = palette;
-        assert_eq!(colours(&[Kind::Line, Kind::Points, Kind::Analytic]), [a, b, NEUTRAL]);
-        assert_eq!(colours(&[Kind::Line, Kind::Source, Kind::Line, Kind::Source]), [a, a, b, b]);
-        assert_eq!(colours(&[Kind::Line, Kind::Analytic, Kind::Analytic]), [a, b, c]);
+        assert_eq!(colors(&[Kind::Line, Kind::Points, Kind::Analytic]), [a, b, NEUTRAL_COLOR]);
+        assert_eq!(colors(&[Kind::Line, Kind::Source, Kind::Line, Kind::Source]), [a, a, b, b]);
+        assert_eq!(colors(&[Kind::Line, Kind::Analytic, Kind::Analytic]), [a, b, c]);
     }
 }

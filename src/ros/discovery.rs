@@ -1,37 +1,37 @@
-//! How far ROS 2 discovery goes: this host only, unless someone asks for more.
+//! The discovery range of ROS 2: this host only, unless configured otherwise.
 //!
-//! The rules, first match wins. They differ from a stock ROS 2 node in one point: where nothing
-//! is said, the node stays on this host instead of announcing itself to the whole network.
+//! The first matching row wins. The rules differ from those of a stock ROS 2 node in one point: by
+//! default the node stays on this host instead of announcing itself to the whole network.
 //!
-//! | what is said                                            | reach                            |
-//! |---------------------------------------------------------|----------------------------------|
-//! | `ROS_AUTOMATIC_DISCOVERY_RANGE=OFF`                     | none: the run leaves ROS 2 out   |
-//! | `ROS_LOCALHOST_ONLY=1`                                  | this host                        |
-//! | `ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST`               | this host                        |
-//! | `ROS_AUTOMATIC_DISCOVERY_RANGE=SUBNET`                  | the local network                |
-//! | scene `outputs.ros.lan: true`                           | the local network                |
-//! | nothing, or `ROS_AUTOMATIC_DISCOVERY_RANGE=SYSTEM_DEFAULT` | this host                     |
+//! | setting                                                    | range                              |
+//! | ---------------------------------------------------------- | ---------------------------------- |
+//! | `ROS_AUTOMATIC_DISCOVERY_RANGE=OFF`                        | none: the run does not use ROS 2   |
+//! | `ROS_LOCALHOST_ONLY=1`                                     | this host                          |
+//! | `ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST`                  | this host                          |
+//! | `ROS_AUTOMATIC_DISCOVERY_RANGE=SUBNET`                     | the local network                  |
+//! | scene key `outputs.ros.lan: true`                          | the local network                  |
+//! | unset, or `ROS_AUTOMATIC_DISCOVERY_RANGE=SYSTEM_DEFAULT`   | this host                          |
 //!
-//! The domain is the scene's, else `ROS_DOMAIN_ID`, else 0.
+//! The domain ID comes from the scene, else from `ROS_DOMAIN_ID`, else it is 0.
 
 use crate::scene::Ros;
 
-/// The largest domain whose UDP ports exist.
+/// The largest domain ID; above it, the UDP ports of DDS do not exist.
 const DOMAIN_MAX: u16 = 232;
 
-/// Who may be found, and under which domain.
+/// The ROS 2 domain and how far discovery reaches in it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DiscoveryRange {
-    /// Domain of the graph; only equal domains see each other.
+    /// ID of the domain. Nodes only see nodes of the same domain.
     pub domain_id: u16,
-    /// How far discovery goes.
+    /// How far discovery reaches.
     pub extent: DiscoveryExtent,
 }
 
-/// How far discovery goes.
+/// How far discovery reaches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DiscoveryExtent {
-    /// Nowhere: ROS 2 is left out.
+    /// No discovery: ROS 2 is not used.
     Off,
     /// Processes on this host.
     Host,
@@ -39,32 +39,35 @@ pub enum DiscoveryExtent {
     Lan,
 }
 
-/// The environment says something that is not understood.
+/// A setting of the environment or the scene is invalid.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum DiscoveryRangeError {
-    /// A domain that is no number, or too large.
-    #[error("ROS 2 domain `{given}` ({place}) is no whole number from 0 to {DOMAIN_MAX}: use one")]
+    /// The domain ID is not a number, or too large.
+    #[error(
+        "ROS 2 domain ID `{given}` ({place}) is not an integer from 0 to {DOMAIN_MAX}: use one"
+    )]
     Domain {
-        /// Where it was said.
+        /// Where the value was set.
         place: &'static str,
-        /// What was said.
+        /// The value.
         given: String,
     },
-    /// A range that ROS 2 does not know.
+    /// The discovery range is not one of ROS 2.
     #[error(
         "ROS_AUTOMATIC_DISCOVERY_RANGE is `{given}`: use OFF, LOCALHOST, SUBNET or SYSTEM_DEFAULT"
     )]
     Range {
-        /// What was said.
+        /// The value.
         given: String,
     },
 }
 
 impl DiscoveryRange {
-    /// What scene and environment ask for; `variable` looks up the environment.
+    /// Chooses the range from the scene and the environment; `variable` looks up an environment
+    /// variable.
     ///
     /// # Errors
-    /// When a domain or a range is not understood.
+    /// If a domain ID or a discovery range is invalid.
     pub fn choose(
         scene: &Ros,
         variable: impl Fn(&str) -> Option<String>,
@@ -110,21 +113,21 @@ mod tests {
     fn choose(
         lan: bool,
         domain_id: Option<u16>,
-        said: &[(&str, &str)],
+        variables: &[(&str, &str)],
     ) -> Result<DiscoveryRange, String> {
         let scene = Ros { enabled: true, domain_id, lan, ..Ros::OFF };
         let variable = |name: &str| {
-            said.iter().find(|(key, _)| *key == name).map(|(_, value)| (*value).to_owned())
+            variables.iter().find(|(key, _)| *key == name).map(|(_, value)| (*value).to_owned())
         };
         DiscoveryRange::choose(&scene, variable).map_err(|it| it.to_string())
     }
 
-    /// Oracle: the table at the head of this file.
+    /// Oracle: the table in the module docs.
     #[test]
-    fn the_table_is_the_law() {
+    fn the_range_follows_the_table() {
         const RANGE: &str = "ROS_AUTOMATIC_DISCOVERY_RANGE";
         const ONLY: &str = "ROS_LOCALHOST_ONLY";
-        for (lan, said, extent) in [
+        for (lan, variables, extent) in [
             (false, vec![], DiscoveryExtent::Host),
             (true, vec![], DiscoveryExtent::Lan),
             (true, vec![(RANGE, "OFF")], DiscoveryExtent::Off),
@@ -137,22 +140,26 @@ mod tests {
             (false, vec![(RANGE, "SYSTEM_DEFAULT")], DiscoveryExtent::Host),
             (true, vec![(RANGE, "")], DiscoveryExtent::Lan),
         ] {
-            assert_eq!(choose(lan, None, &said).unwrap().extent, extent, "lan {lan}, {said:?}");
+            assert_eq!(
+                choose(lan, None, &variables).unwrap().extent,
+                extent,
+                "lan {lan}, {variables:?}"
+            );
         }
     }
 
-    /// Oracle: the stated order, scene before environment before 0.
+    /// Oracle: the documented order of precedence: scene, environment, 0.
     #[test]
-    fn the_scene_chooses_the_domain_before_the_environment() {
-        let said = [("ROS_DOMAIN_ID", " 7")];
-        assert_eq!(choose(false, Some(3), &said).unwrap().domain_id, 3);
-        assert_eq!(choose(false, None, &said).unwrap().domain_id, 7);
+    fn the_scene_takes_precedence_over_the_environment() {
+        let variables = [("ROS_DOMAIN_ID", " 7")];
+        assert_eq!(choose(false, Some(3), &variables).unwrap().domain_id, 3);
+        assert_eq!(choose(false, None, &variables).unwrap().domain_id, 7);
         assert_eq!(choose(false, None, &[]).unwrap().domain_id, 0);
     }
 
-    /// Oracle: house rule, an error names place, value, limit and remedy.
+    /// Oracle: the rule that an error names place, value, limit and remedy.
     #[test]
-    fn what_is_not_understood_is_refused() {
+    fn invalid_settings_are_rejected() {
         for given in ["233", "-1", "eight"] {
             let error = choose(false, None, &[("ROS_DOMAIN_ID", given)]).unwrap_err();
             assert!(error.contains(given) && error.contains("232"), "{error}");

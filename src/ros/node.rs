@@ -1,13 +1,13 @@
-//! ROS 2: the node `/jamgrip` and its publishers, which carry messages encoded once for all sinks.
+//! The ROS 2 node `/jamgrip` and its publishers. Messages are encoded once for all sinks.
 //!
-//! The node is made of ros2-client's parts, so that it is listed in `ros_discovery_info` with all
-//! its topics. Two of them are left out on purpose. Its `Spinner` would subscribe to `/clock` under
-//! a wrong type name, and tools refuse a topic that has two types; what it gives besides (the
-//! parameter services, and match counts that never go down) is not needed here. And its typed
-//! messages: a [`Body`] hands over bytes that are CDR already.
+//! The node is built from ros2-client's parts, so that it is listed in `ros_discovery_info` with
+//! all its topics. Two parts are left out on purpose. Its `Spinner` would subscribe to `/clock`
+//! under a wrong type name, and tools reject a topic that has two types; its other features
+//! (parameter services, and match counts that never decrease) are not needed here. Its typed
+//! messages are replaced by [`Body`], which passes on bytes that are already CDR.
 //!
-//! No write waits for a reader. A reliable reader that stops acknowledging costs memory for some
-//! seconds' worth of messages, then writes to it fail, are counted, and the run goes on.
+//! Writes never wait for a reader. A reliable reader that stops acknowledging costs memory for the
+//! messages of a few seconds. After that, writes to it fail and are counted, and the run continues.
 
 use std::{
     net::Ipv4Addr,
@@ -25,7 +25,7 @@ use serde::{Serialize, Serializer, ser::SerializeTuple};
 
 use crate::wire::{
     to_ros::Encoder,
-    topics::{Common, Message, Qos, Topic, common},
+    topics::{CommonTopic, Message, Qos, Topic, common},
 };
 use crate::{
     io::{
@@ -35,34 +35,34 @@ use crate::{
     ros::discovery::{DiscoveryExtent, DiscoveryRange},
 };
 
-/// What of the middleware's own log is worth a line, as a filter for `env_logger`: it warns about
-/// every larger datagram, and reports an error when it leaves a multicast group that a loopback
-/// interface never had.
+/// Filter for `env_logger` that hides useless messages of the middleware: it warns about every
+/// larger datagram, and reports an error when it leaves a multicast group that a loopback interface
+/// never had.
 pub const LOG_FILTER: &str = "rustdds=error,rustdds::network::udp_listener=off,ros2_client=error";
 
-/// Why the node could not join, or a topic could not be opened.
+/// Why the node could not join the graph, or a topic could not be opened.
 #[derive(Debug, thiserror::Error)]
 pub enum RosError {
-    /// Discovery is switched off; there is no graph to join.
+    /// Discovery is off, so there is no graph to join.
     #[error(
         "ROS_AUTOMATIC_DISCOVERY_RANGE=OFF disables ROS 2: unset it, or disable ROS 2 in the scene"
     )]
     Off,
-    /// The node could not be made.
+    /// The node could not be created.
     #[error(
         "the node could not join ROS 2 domain {domain_id}: {reason}; is there a network \
-         interface, and are there fewer than 120 participants in this domain?"
+        interface, and are there fewer than 120 participants in this domain?"
     )]
     Join {
-        /// The domain.
+        /// ID of the domain.
         domain_id: u16,
-        /// What the middleware says.
+        /// Reason given by the middleware.
         reason: String,
     },
-    /// The thread that listens could not be started.
+    /// A thread could not be started.
     #[error("no thread for ROS 2: {reason}; raise the process limit")]
     Thread {
-        /// What the system says.
+        /// Reason given by the operating system.
         reason: std::io::Error,
     },
     /// A topic could not be opened.
@@ -72,168 +72,168 @@ pub enum RosError {
         topic: String,
         /// Type of the topic.
         type_name: String,
-        /// What the middleware says.
+        /// Reason given by the middleware.
         reason: String,
     },
-    /// What never changes could not be published.
+    /// The constant messages could not be published.
     #[error(transparent)]
-    Write(#[from] WriteFault),
+    Write(#[from] WriteError),
 }
 
-/// One or more writes of a packet failed.
+/// One or more messages of a packet could not be written.
 #[derive(Debug, thiserror::Error)]
 #[error(
-    "{n_failed} of {n_messages} messages were not taken, first on `{topic}`: {reason}; is a reader \
-     too slow or stopped?"
+    "{n_failed} of {n_messages} messages could not be written, first on `{topic}`: {reason}; is a \
+    reader too slow or stopped?"
 )]
-pub struct WriteFault {
-    /// How many were not taken.
+pub struct WriteError {
+    /// Number of messages that could not be written.
     pub n_failed: usize,
-    /// How many there were.
+    /// Number of messages in the packet.
     pub n_messages: usize,
-    /// Topic of the first.
+    /// Topic of the first failed message.
     pub topic: String,
-    /// What the middleware says.
+    /// Reason given by the middleware.
     pub reason: String,
 }
 
-/// The node: one participant in the graph, shared by those who publish and those who listen.
+/// The node: one participant in the graph, shared by publishers, subscriptions and services.
 pub struct RosNode {
     node: Mutex<Node>,
     context: Context,
 }
 
-/// A message body that is CDR already.
+/// A message body that is already CDR.
 #[derive(Clone, Debug)]
 pub struct Body(Vec<u8>);
 
-/// The publishers of all topics that carry something out.
+/// The publishers of all output topics.
 pub struct RosSink {
     publishers: Vec<Option<(String, Publisher<Body>)>>,
     encoder: Arc<Encoder>,
     published: Arc<PublishedUpTo>,
-    /// The last clock message, repeated while time stands still.
+    /// The last clock message, repeated while simulation time does not advance.
     clock: Option<Message>,
     node: Arc<RosNode>,
 }
 
 impl RosNode {
-    /// Joins the graph as far as `reach` says.
+    /// Joins the graph as `/jamgrip` with this discovery range.
     ///
     /// # Errors
-    /// When discovery is off, or there is no socket to be had.
-    pub fn join(reach: &DiscoveryRange) -> Result<Arc<Self>, RosError> {
-        Self::join_as("/jamgrip", reach)
+    /// If discovery is off or no socket can be opened.
+    pub fn join(range: &DiscoveryRange) -> Result<Arc<Self>, RosError> {
+        Self::join_as("/jamgrip", range)
     }
 
     /// Joins under another name, with or without a namespace.
     ///
     /// # Errors
-    /// As for `join`.
-    pub fn join_as(name: &str, reach: &DiscoveryRange) -> Result<Arc<Self>, RosError> {
-        let refused = |it: &dyn std::fmt::Display| RosError::Join {
-            domain_id: reach.domain_id,
+    /// As for [`RosNode::join`].
+    pub fn join_as(name: &str, range: &DiscoveryRange) -> Result<Arc<Self>, RosError> {
+        let to_error = |it: &dyn std::fmt::Display| RosError::Join {
+            domain_id: range.domain_id,
             reason: it.to_string(),
         };
-        let builder = DomainParticipantBuilder::new(reach.domain_id);
-        let builder = match reach.extent {
+        let builder = DomainParticipantBuilder::new(range.domain_id);
+        let builder = match range.extent {
             DiscoveryExtent::Off => return Err(RosError::Off),
             DiscoveryExtent::Host => builder.with_only_networks([Ipv4Addr::LOCALHOST]),
             DiscoveryExtent::Lan => builder,
         };
-        let participant = builder.build().map_err(|it| refused(&it))?;
-        let context = Context::from_domain_participant(participant).map_err(|it| refused(&it))?;
+        let participant = builder.build().map_err(|it| to_error(&it))?;
+        let context = Context::from_domain_participant(participant).map_err(|it| to_error(&it))?;
         let (namespace, name) = name.rsplit_once('/').unwrap_or(("", name));
         let namespace = if namespace.is_empty() { "/" } else { namespace };
-        let name = NodeName::new(namespace, name).map_err(|it| refused(&format!("{it:?}")))?;
+        let name = NodeName::new(namespace, name).map_err(|it| to_error(&format!("{it:?}")))?;
         let options = NodeOptions::new().enable_rosout(true).start_parameter_services(false);
-        let node = context.new_node(name, options).map_err(|it| refused(&format!("{it:?}")))?;
+        let node = context.new_node(name, options).map_err(|it| to_error(&format!("{it:?}")))?;
         Ok(Arc::new(Self { node: Mutex::new(node), context }))
     }
 
-    /// Readers of a topic elsewhere in the graph, as far as discovered.
+    /// Number of discovered readers of a topic, without those of this participant.
     pub fn n_readers(&self, topic: &str) -> usize {
         let name = dds_name(topic);
         let readers = self.context.domain_participant().discovered_readers();
         readers.iter().filter(|it| it.subscription_topic_data.topic_name == name).count()
     }
 
-    /// Writers of a topic elsewhere in the graph, as far as discovered.
+    /// Number of discovered writers of a topic, without those of this participant.
     pub fn n_writers(&self, topic: &str) -> usize {
         let name = dds_name(topic);
         let writers = self.context.domain_participant().discovered_writers();
         writers.iter().filter(|it| it.publication_topic_data.topic_name == name).count()
     }
 
-    /// Opens a topic for writing. The port is good for as long as the node is kept.
+    /// Opens a publisher of a topic. It is valid as long as the node exists.
     ///
     /// # Errors
-    /// When its name or type is not one of ROS 2.
+    /// If the name or the type is not valid in ROS 2.
     pub fn publisher(&self, topic: &Topic) -> Result<Publisher<Body>, RosError> {
         self.open(topic, |node, it| node.create_publisher(it, None))
     }
 
-    /// Opens a topic for reading. The port is good for as long as the node is kept.
+    /// Opens a subscription to a topic. It is valid as long as the node exists.
     ///
     /// # Errors
-    /// When its name or type is not one of ROS 2.
+    /// If the name or the type is not valid in ROS 2.
     pub fn subscription<M: 'static>(&self, topic: &Topic) -> Result<Subscription<M>, RosError> {
         self.open(topic, |node, it| node.create_subscription(it, None))
     }
 
-    /// Says something on `/rosout`, as a warning.
-    pub fn say(&self, text: &str) {
+    /// Publishes a warning on `/rosout`.
+    pub fn warn(&self, text: &str) {
         let node = self.node.lock().unwrap_or_else(PoisonError::into_inner);
         ros2_client::rosout!((*node), ros2_client::ros2::LogLevel::Warn, "{text}");
     }
 
-    /// What ros2-client knows of the graph.
+    /// The context of ros2-client.
     pub(crate) fn context(&self) -> Context {
         self.context.clone()
     }
 
-    /// The participant itself, for services.
+    /// The DDS participant, for services.
     pub fn participant(&self) -> rustdds::DomainParticipant {
         self.context.domain_participant()
     }
 
-    fn open<Port>(
+    fn open<Entity>(
         &self,
         topic: &Topic,
-        make: impl FnOnce(&mut Node, &rustdds::Topic) -> ros2_client::CreateResult<Port>,
-    ) -> Result<Port, RosError> {
-        let refused = |reason: String| RosError::Topic {
+        make: impl FnOnce(&mut Node, &rustdds::Topic) -> ros2_client::CreateResult<Entity>,
+    ) -> Result<Entity, RosError> {
+        let to_error = |reason: String| RosError::Topic {
             topic: topic.name.clone(),
             type_name: topic.message_type.name.to_owned(),
             reason,
         };
         let (namespace, base) =
-            topic.name.rsplit_once('/').ok_or_else(|| refused("no leading `/`".to_owned()))?;
+            topic.name.rsplit_once('/').ok_or_else(|| to_error("no leading `/`".to_owned()))?;
         let namespace = if namespace.is_empty() { "/" } else { namespace };
-        let name = Name::new(namespace, base).map_err(|it| refused(format!("{it:?}")))?;
+        let name = Name::new(namespace, base).map_err(|it| to_error(format!("{it:?}")))?;
         let (package, rest) = topic
             .message_type
             .name
             .split_once("/msg/")
-            .ok_or_else(|| refused("the type is not `package/msg/Type`".to_owned()))?;
-        // A panic while another port was opened leaves the node as it was before that port.
+            .ok_or_else(|| to_error("the type is not `package/msg/Type`".to_owned()))?;
+        // A panic while another topic was opened leaves the node as it was before that topic.
         let mut node = self.node.lock().unwrap_or_else(PoisonError::into_inner);
-        let port = node
+        let entity = node
             .create_topic(&name, MessageTypeName::new(package, rest), &profile(topic.qos))
             .and_then(|it| make(&mut node, &it));
-        port.map_err(|it| refused(it.to_string()))
+        entity.map_err(|it| to_error(it.to_string()))
     }
 }
 
 impl Body {
-    /// A body of little-endian CDR, without the four bytes that name the encoding.
+    /// A body of little-endian CDR, without the encapsulation header of four bytes.
     pub fn new(cdr: Vec<u8>) -> Self {
         Self(cdr)
     }
 }
 
-/// Bytes in, the same bytes out. CDR aligns whole numbers to their size, counted from the start
-/// of the body, so a run of 16-byte numbers and then single bytes is written without padding.
+/// Writes the bytes unchanged. CDR aligns an integer to its size, counted from the start of the
+/// body, so a series of 16-byte integers followed by single bytes is written without padding.
 impl Serialize for Body {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let (blocks, rest) = self.0.as_chunks::<16>();
@@ -249,14 +249,14 @@ impl Serialize for Body {
 }
 
 impl RosSink {
-    /// Opens a publisher for every topic that is not an input, and publishes what never changes.
+    /// Opens a publisher for every topic that is not an input, and publishes the constant messages.
     ///
     /// # Errors
-    /// When a topic cannot be opened.
+    /// If a topic cannot be opened.
     pub fn new(node: &Arc<RosNode>, encoder: &Arc<Encoder>) -> Result<Self, RosError> {
         let open = |(index, topic): (usize, &Topic)| {
-            let is_others = index == common(Common::Clock) && encoder.follows_clock();
-            if topic.is_input || is_others {
+            let is_external = index == common(CommonTopic::Clock) && encoder.follows_clock();
+            if topic.is_input || is_external {
                 return Ok(None);
             }
             node.publisher(topic).map(|it| Some((topic.name.clone(), it)))
@@ -273,17 +273,17 @@ impl RosSink {
         Ok(sink)
     }
 
-    /// Notes what has been published, for answers that must stay behind it.
-    pub fn announcing(self, published: &Arc<PublishedUpTo>) -> Self {
+    /// Reports published packets to `published`, so that responses can wait for them.
+    pub fn reporting_to(self, published: &Arc<PublishedUpTo>) -> Self {
         Self { published: Arc::clone(published), ..self }
     }
 
-    /// Tries all messages, also behind one that fails.
-    fn send(&self, messages: &[Message]) -> Result<(), WriteFault> {
+    /// Tries to publish all messages, even if one fails.
+    fn send(&self, messages: &[Message]) -> Result<(), WriteError> {
         let mut n_failed = 0;
         let mut first = None;
         for message in messages {
-            // Inputs are recorded by bags; here they would echo what was heard.
+            // Inputs are in the list only because bags record them; they are not published again.
             let Some(Some((topic, publisher))) = self.publishers.get(message.topic) else {
                 continue;
             };
@@ -293,7 +293,7 @@ impl RosSink {
             }
         }
         let Some((topic, reason)) = first else { return Ok(()) };
-        Err(WriteFault { n_failed, n_messages: messages.len(), topic, reason })
+        Err(WriteError { n_failed, n_messages: messages.len(), topic, reason })
     }
 }
 
@@ -304,9 +304,9 @@ impl Sink for RosSink {
 
     fn write(&mut self, packet: &Packet) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
         for topic in packet.topics_beyond(self.publishers.len()) {
-            // One that cannot be opened is left out; the others go on.
+            // A topic that cannot be opened is skipped; the others continue.
             let opened = self.node.publisher(topic);
-            let opened = opened.inspect_err(|fault| log::warn!("{fault}"));
+            let opened = opened.inspect_err(|error| log::warn!("{error}"));
             self.publishers.push(opened.ok().map(|it| (topic.name.clone(), it)));
         }
         let messages = packet.messages(&self.encoder);
@@ -314,8 +314,8 @@ impl Sink for RosSink {
         if self.clock.is_none() {
             self.send(&self.encoder.ready(packet.snapshot.time_ns))?;
         }
-        self.published.note(packet.number);
-        self.clock = messages.iter().find(|it| it.topic == common(Common::Clock)).cloned();
+        self.published.report(packet.number);
+        self.clock = messages.iter().find(|it| it.topic == common(CommonTopic::Clock)).cloned();
         sent.map_err(Into::into)
     }
 
@@ -333,7 +333,7 @@ impl Sink for RosSink {
     }
 }
 
-/// The same for ports on bare DDS.
+/// The DDS policies of a topic.
 pub fn policies(qos: Qos) -> rustdds::QosPolicies {
     profile(qos).into()
 }
@@ -346,7 +346,7 @@ fn profile(qos: Qos) -> QosProfile {
         .history(History::KeepLast { depth: qos.depth as usize })
 }
 
-/// ROS 2's name of a topic on the DDS side.
+/// The DDS name of a ROS 2 topic.
 fn dds_name(topic: &str) -> String {
     format!("rt{topic}")
 }
@@ -355,9 +355,9 @@ fn dds_name(topic: &str) -> String {
 mod tests {
     use super::*;
 
-    /// Oracle: the identity, through the very serializer that the middleware uses.
+    /// Oracle: the identity, through the serializer that the middleware uses.
     #[test]
-    fn a_body_is_written_as_it_is() {
+    fn a_body_is_written_unchanged() {
         for length in [0, 1, 8, 15, 16, 17, 31, 32, 33, 1000] {
             let bytes: Vec<u8> = (0..length).map(|i| u8::try_from(i % 251).unwrap()).collect();
             let written =

@@ -1,6 +1,7 @@
-//! ROS 2 services on bare DDS, so that clients of both ways of carrying a request's identity are
-//! served at once: Fast DDS, Connext and RustDDS name it beside the body, Cyclone puts sixteen bytes
-//! before it. Which way a client goes is told by what it sends and by whose software it is.
+//! ROS 2 service servers on plain DDS, so that clients with either mapping of the request identity
+//! are served at the same time: Fast DDS, Connext and RustDDS send it beside the body, Cyclone DDS
+//! in a header of 16 bytes before the body. The sample and the vendor of its writer tell which
+//! mapping the client uses.
 
 use std::{
     collections::BTreeSet,
@@ -16,9 +17,9 @@ use rustdds::{
     no_key::{self, DataWriter, SimpleDataReader},
     rpc::SampleIdentity,
 };
-use smol::{LocalExecutor, channel, future, stream::StreamExt};
+use smol::{future, stream::StreamExt};
 
-pub use super::client::{RosClient, Way};
+pub use super::client::{RosClient, ServiceMapping};
 use crate::{
     io::published::PublishedUpTo,
     ros::node::{RosError, RosNode, policies},
@@ -26,44 +27,45 @@ use crate::{
 };
 use crate::{
     io::{
-        request_queue::Queue,
+        request_queue::RequestQueue,
         server::{
             Outgoing, RequestId, ServerCounters, ServiceRequest, ServiceServer, ServiceSpec,
             TopicSpec,
         },
     },
-    ros::discovery_info::Listed,
+    ros::{discovery_info::DiscoveryInfo, worker::Worker},
 };
 
-/// First bytes of the identity of everything that Cyclone DDS makes.
-const CYCLONE: [u8; 2] = [0x01, 0x10];
-/// Longest time that an answer stays behind its tick's messages.
-const TIMEOUT: Duration = Duration::from_secs(1);
-/// Answers that wait for their turn; a client that does not read them loses them.
-const OUTBOX: usize = 4096;
+/// Vendor bytes at the start of every GUID that Cyclone DDS creates.
+const CYCLONE_VENDOR: [u8; 2] = [0x01, 0x10];
+/// Longest time that a response waits for the messages of its tick.
+const PUBLISH_TIMEOUT: Duration = Duration::from_secs(1);
+/// Responses that can wait to be sent; further ones are dropped.
+const OUTBOX_DEPTH: usize = 4096;
 
-/// Longest time that one who leaves waits until its last answers have arrived, and the time that it
-/// then stays for them to be read.
+/// Longest time to wait on shutdown for the acknowledgment of the last responses.
 const ACK_TIMEOUT: Duration = Duration::from_secs(2);
+/// Time that the writers then stay open, so that clients can take the responses.
 const SHUTDOWN_GRACE: Duration = Duration::from_millis(200);
 
-/// How often is looked for a client's ears, and how long between two looks.
-const HEARING_TRIES: usize = 40;
+/// Number of polls for a client's response reader to be matched.
+const N_MATCH_POLLS: usize = 40;
+/// Time between two polls.
 const MATCH_POLL_PERIOD: Duration = Duration::from_millis(5);
-/// Clients without ears that are remembered, so that nobody waits for them again.
+/// Largest number of clients without a matched reader to remember, so as not to wait for them again.
 const UNMATCHED_MAX: usize = 1000;
 
-/// A body with its byte order.
+/// A message body with its byte order.
 #[derive(Clone, Debug)]
 pub struct Raw(pub(super) Cdr);
 
-/// Bytes in, bytes out.
+/// The adapter that passes bodies through unchanged.
 #[derive(Clone, Copy, Debug)]
 pub struct RawCdr;
 
-/// Nothing can go wrong in copying bytes.
+/// The error of an adapter that cannot fail: it only copies bytes.
 #[derive(Clone, Copy, Debug, thiserror::Error)]
-#[error("cannot happen")]
+#[error("copying bytes cannot fail")]
 pub struct Never;
 
 impl no_key::DeserializerAdapter<Raw> for RawCdr {
@@ -112,217 +114,215 @@ impl no_key::SerializerAdapter<Raw> for RawCdr {
 pub(super) type Reader = SimpleDataReader<Raw, RawCdr>;
 pub(super) type Writer = DataWriter<Raw, RawCdr>;
 
-/// The queue, and news of it.
+/// The request queue, shared with the thread that reads requests.
 #[derive(Default)]
-struct Waiting {
-    queue: Mutex<Queue>,
-    news: Condvar,
+struct SharedQueue {
+    queue: Mutex<RequestQueue>,
+    arrived: Condvar,
 }
 
 /// All services of a node.
 pub struct RosServiceServer {
-    waiting: Arc<Waiting>,
+    requests: Arc<SharedQueue>,
     outbox: Option<mpsc::SyncSender<(Outgoing, u64)>>,
-    stop: channel::Sender<()>,
-    threads: Vec<JoinHandle<()>>,
+    reader: Option<Worker>,
+    writer: Option<JoinHandle<()>>,
 }
 
 impl RosServiceServer {
-    /// Opens all services and channels, and lists them below the node. Answers stay behind what `published` counts.
+    /// Opens all services and topics, and lists them in `ros_discovery_info`. A response is sent
+    /// once `published` has reached its packet.
     ///
     /// # Errors
-    /// When one cannot be opened.
+    /// If a service or topic cannot be opened.
     pub fn open(
         node: &RosNode,
-        offers: &[ServiceSpec],
-        channels: &[TopicSpec],
+        services: &[ServiceSpec],
+        topics: &[TopicSpec],
         published: &Arc<PublishedUpTo>,
     ) -> Result<Self, RosError> {
         let participant = &node.participant();
-        let queue = Arc::new(Waiting::default());
-        let mut readers = Vec::new();
-        let (mut answers, mut mouths_of_channels) = (Vec::new(), Vec::new());
-        for offer in offers {
-            let (ask, answer) =
-                (format!("rq{}Request", offer.name), format!("rr{}Reply", offer.name));
-            let of = offer.service_type;
-            readers.push(reader(participant, &ask, of.request_dds_name)?);
-            let mouth = writer(participant, &answer, of.response_dds_name, SERVICE)?;
-            answers.push((mouth, BTreeSet::new()));
+        let mut request_readers = Vec::new();
+        let (mut response_writers, mut topic_writers) = (Vec::new(), Vec::new());
+        for ServiceSpec { name, service_type } in services {
+            let (request, response) = (format!("rq{name}Request"), format!("rr{name}Reply"));
+            request_readers.push(reader(participant, &request, service_type.request_dds_name)?);
+            let type_name = service_type.response_dds_name;
+            let writer = writer(participant, &response, type_name, SERVICE_QOS)?;
+            response_writers.push((writer, BTreeSet::new()));
         }
-        for channel in channels {
-            let qos = Qos { is_reliable: true, depth: 10, is_latched: channel.is_latched };
-            let name = format!("rt{}", channel.name);
-            mouths_of_channels.push(writer(participant, &name, &channel.dds_name, qos)?);
+        for topic in topics {
+            let qos = Qos { is_reliable: true, depth: 10, is_latched: topic.is_latched };
+            let name = format!("rt{}", topic.name);
+            topic_writers.push(writer(participant, &name, &topic.dds_name, qos)?);
         }
-        let listed = Listed::open(
+        let response_guids = response_writers.iter().map(|(writer, _)| writer.guid());
+        let info = DiscoveryInfo::open(
             node,
-            readers.iter().map(RTPSEntity::guid).collect(),
-            answers
-                .iter()
-                .map(|it| it.0.guid())
-                .chain(mouths_of_channels.iter().map(RTPSEntity::guid))
-                .collect(),
+            request_readers.iter().map(RTPSEntity::guid).collect(),
+            response_guids.chain(topic_writers.iter().map(RTPSEntity::guid)).collect(),
         )?;
-        let mut writers = Writers { answers, channels: mouths_of_channels, deaf: BTreeSet::new() };
-        let (stop, stopped) = channel::bounded(1);
-        let (outbox, waiting) = mpsc::sync_channel(OUTBOX);
-        let (kept, published) = (Arc::clone(&queue), Arc::clone(published));
-        let threads = vec![
-            thread("ros-questions", move || listen(readers, listed, &kept, &stopped))?,
-            thread("ros-answers", move || writers.run(&waiting, &published))?,
-        ];
-        Ok(Self { waiting: queue, outbox: Some(outbox), stop, threads })
+        let mut writers = Writers {
+            responses: response_writers,
+            topics: topic_writers,
+            unmatched_clients: BTreeSet::new(),
+        };
+        let requests = Arc::new(SharedQueue::default());
+        let (outbox, outgoing) = mpsc::sync_channel(OUTBOX_DEPTH);
+        let (queue, published) = (Arc::clone(&requests), Arc::clone(published));
+        let reader = Worker::start("ros-requests", move |executor| {
+            executor.spawn(info.run()).detach();
+            for (service, reader) in request_readers.into_iter().enumerate() {
+                executor.spawn(read_requests(service, reader, Arc::clone(&queue))).detach();
+            }
+            executor.spawn(log_malformed(queue)).detach();
+        })?;
+        let writer = std::thread::Builder::new()
+            .name("ros-responses".to_owned())
+            .spawn(move || writers.run(&outgoing, &published))
+            .map_err(|reason| RosError::Thread { reason })?;
+        Ok(Self { requests, outbox: Some(outbox), reader: Some(reader), writer: Some(writer) })
     }
 }
 
 impl ServiceServer for RosServiceServer {
-    fn take(&mut self, most: usize) -> Vec<ServiceRequest> {
-        lock(&self.waiting.queue).take(most)
+    fn take(&mut self, n_max: usize) -> Vec<ServiceRequest> {
+        lock(&self.requests.queue).take(n_max)
     }
 
-    fn wait(&mut self, at_most: Duration) {
-        let queue = lock(&self.waiting.queue);
-        let is_empty = |queue: &mut Queue| queue.is_empty();
-        let waited = self.waiting.news.wait_timeout_while(queue, at_most, is_empty);
+    fn wait(&mut self, timeout: Duration) {
+        let queue = lock(&self.requests.queue);
+        let is_empty = |queue: &mut RequestQueue| queue.is_empty();
+        let waited = self.requests.arrived.wait_timeout_while(queue, timeout, is_empty);
         drop(waited.unwrap_or_else(PoisonError::into_inner));
     }
 
     fn send(&mut self, outgoing: Outgoing, after_packet: u64) {
         if let Some(outbox) = &self.outbox {
-            // Full only if nothing leaves any more; the physics does not wait for that.
+            // The outbox is full only if responses are stuck; the physics does not wait for them.
             drop(outbox.try_send((outgoing, after_packet)));
         }
     }
 
-    fn report_malformed(&mut self, fault: String) {
-        lock(&self.waiting.queue).report_malformed(fault);
+    fn report_malformed(&mut self, error: String) {
+        lock(&self.requests.queue).report_malformed(error);
     }
 
     fn counters(&self) -> ServerCounters {
-        lock(&self.waiting.queue).counters()
+        lock(&self.requests.queue).counters()
     }
 }
 
 impl Drop for RosServiceServer {
     fn drop(&mut self) {
-        self.stop.close();
+        self.reader = None;
+        // Closing the outbox ends the writer thread.
         self.outbox = None;
-        for thread in self.threads.drain(..) {
+        if let Some(writer) = self.writer.take() {
             // A thread that panicked has nothing left to stop.
-            drop(thread.join());
+            drop(writer.join());
         }
     }
 }
 
-/// Everything that answers leave by.
+/// All DDS writers: of responses and of topics.
 struct Writers {
-    /// For each offer the writer of its answers and the readers that hear it.
-    answers: Vec<(Writer, BTreeSet<[u8; 16]>)>,
-    channels: Vec<Writer>,
-    /// Participants that asked and were not found to hear.
-    deaf: BTreeSet<[u8; 12]>,
+    /// For each service, the writer of its responses and the readers matched with it.
+    responses: Vec<(Writer, BTreeSet<[u8; 16]>)>,
+    topics: Vec<Writer>,
+    /// Participants whose response reader was not matched in time.
+    unmatched_clients: BTreeSet<[u8; 12]>,
 }
 
 impl Writers {
-    /// Waits a moment until the one who asked can hear: an ear may be found later than a question.
-    fn find(&mut self, asker: &RequestId) {
-        let (writer, ears) = &mut self.answers[asker.offer];
+    /// Waits a moment until the client's response reader is matched, because a reader may be
+    /// discovered later than the first request arrives.
+    fn wait_for_match(&mut self, request: &RequestId) {
+        let (writer, matched_readers) = &mut self.responses[request.service];
         let mut participant = [0; 12];
-        participant.copy_from_slice(&asker.writer[..12]);
-        let n_tries = if self.deaf.contains(&participant) { 1 } else { HEARING_TRIES };
-        for _ in 0..n_tries {
+        participant.copy_from_slice(&request.writer[..12]);
+        let n_polls = if self.unmatched_clients.contains(&participant) { 1 } else { N_MATCH_POLLS };
+        for _ in 0..n_polls {
             while let Some(status) = writer.try_recv_status() {
                 if let DataWriterStatus::PublicationMatched { current, reader, .. } = status {
                     if 0 < current.count_change() {
-                        ears.insert(reader.to_bytes());
+                        matched_readers.insert(reader.to_bytes());
                     } else {
-                        ears.remove(&reader.to_bytes());
+                        matched_readers.remove(&reader.to_bytes());
                     }
                 }
             }
-            // Ears and mouth of a client are of one participant: twelve bytes are the same.
-            if ears.iter().any(|ear| ear[..12] == participant) {
-                self.deaf.remove(&participant);
+            // A client's reader and writer belong to one participant, so 12 bytes are equal.
+            if matched_readers.iter().any(|reader| reader[..12] == participant) {
+                self.unmatched_clients.remove(&participant);
                 return;
             }
             std::thread::sleep(MATCH_POLL_PERIOD);
         }
-        if UNMATCHED_MAX <= self.deaf.len() {
-            self.deaf.clear();
+        if UNMATCHED_MAX <= self.unmatched_clients.len() {
+            self.unmatched_clients.clear();
         }
-        self.deaf.insert(participant);
+        self.unmatched_clients.insert(participant);
     }
 
-    fn run(&mut self, waiting: &mpsc::Receiver<(Outgoing, u64)>, published: &PublishedUpTo) {
-        let mut has_spoken = false;
-        while let Ok((outgoing, after_packet)) = waiting.recv() {
-            has_spoken = true;
-            published.wait_for(after_packet, TIMEOUT);
-            let said = match outgoing {
-                Outgoing::Response(asker, body) => {
-                    self.find(&asker);
-                    let (body, options) = addressed(&asker, body);
-                    self.answers[asker.offer].0.write_with_options(Raw(body), options).map(drop)
+    fn run(&mut self, outbox: &mpsc::Receiver<(Outgoing, u64)>, published: &PublishedUpTo) {
+        let mut has_written = false;
+        while let Ok((outgoing, after_packet)) = outbox.recv() {
+            has_written = true;
+            published.wait_for(after_packet, PUBLISH_TIMEOUT);
+            let result = match outgoing {
+                Outgoing::Response(request, body) => {
+                    self.wait_for_match(&request);
+                    let (body, options) = addressed(&request, body);
+                    let (writer, _) = &self.responses[request.service];
+                    writer.write_with_options(Raw(body), options).map(drop)
                 }
-                Outgoing::Message(channel, body) => self.channels[channel].write(Raw(body), None),
+                Outgoing::Message(topic, body) => self.topics[topic].write(Raw(body), None),
             };
-            if let Err(error) = said {
-                log::warn!("an answer was not taken: {error}; is its reader stopped?");
+            if let Err(error) = result {
+                log::warn!("a response could not be sent: {error}; is its reader stopped?");
             }
         }
-        if has_spoken {
+        if has_written {
             self.drain();
         }
     }
 
-    /// Waits until the last answers are with those who asked. What is still on its way goes with its
-    /// writer; some readers (those of RustDDS) even lose what they hold and have not handed out.
+    /// Waits until the last responses are acknowledged. Samples that are not acknowledged are lost
+    /// with their writer. Some readers, such as those of RustDDS, even lose samples that they have
+    /// received but not yet handed out.
     fn drain(&self) {
-        let has_arrived = |(writer, _): &(Writer, _)| {
-            writer.wait_for_acknowledgments(ACK_TIMEOUT).is_ok_and(|has_arrived| has_arrived)
+        let is_acknowledged = |(writer, _): &(Writer, _)| {
+            writer
+                .wait_for_acknowledgments(ACK_TIMEOUT)
+                .is_ok_and(|is_acknowledged| is_acknowledged)
         };
-        if !self.answers.iter().all(has_arrived) {
+        if !self.responses.iter().all(is_acknowledged) {
             log::warn!(
-                "the last answers did not arrive in {ACK_TIMEOUT:?}; did their readers stop?"
+                "the last responses were not acknowledged within {ACK_TIMEOUT:?}; are their \
+                 readers stopped?"
             );
         }
         std::thread::sleep(SHUTDOWN_GRACE);
     }
 }
 
-/// An answer with what leads it back to its asker.
-fn addressed(asker: &RequestId, body: Cdr) -> (Cdr, rustdds::with_key::WriteOptions) {
+/// The body and the write options that address a response to its request.
+fn addressed(request: &RequestId, body: Cdr) -> (Cdr, rustdds::with_key::WriteOptions) {
     let options = WriteOptionsBuilder::new().related_sample_identity(SampleIdentity {
-        writer_guid: GUID::from_bytes(asker.writer),
-        sequence_number: SequenceNumber::from(asker.number),
+        writer_guid: GUID::from_bytes(request.writer),
+        sequence_number: SequenceNumber::from(request.number),
     });
-    let body = match asker.header {
+    let body = match request.header {
         Some(header) => Cdr { bytes: [&header[..], &body.bytes].concat(), ..body },
         None => body,
     };
     (body, options.build())
 }
 
-/// Listens to all services until `stopped` closes.
-fn listen(
-    readers: Vec<Reader>,
-    listed: Listed,
-    waiting: &Waiting,
-    stopped: &channel::Receiver<()>,
-) {
-    let executor = LocalExecutor::new();
-    executor.spawn(listed.keep_told()).detach();
-    for (offer, reader) in readers.into_iter().enumerate() {
-        executor.spawn(attend(offer, reader, waiting)).detach();
-    }
-    executor.spawn(tell_faults(&waiting.queue)).detach();
-    // The channel carries nothing: its only news is that it was closed.
-    let _closed = smol::block_on(executor.run(stopped.recv()));
-}
-
-async fn attend(offer: usize, reader: Reader, waiting: &Waiting) {
-    let queue = &waiting.queue;
+/// Reads the requests of one service into the queue.
+async fn read_requests(service: usize, reader: Reader, requests: Arc<SharedQueue>) {
+    let queue = &requests.queue;
     let mut samples = std::pin::pin!(reader.as_async_stream());
     while let Some(sample) = samples.next().await {
         match sample {
@@ -330,107 +330,102 @@ async fn attend(offer: usize, reader: Reader, waiting: &Waiting) {
                 let id = (sample.writer_guid(), i64::from(sample.sequence_number));
                 let related = sample.related_sample_identity();
                 let related = related.map(|it| (it.writer_guid, i64::from(it.sequence_number)));
-                match call(offer, id, related, sample.into_value().0) {
-                    Some(call) => {
-                        lock(queue).offer(call);
-                        waiting.news.notify_all();
+                match request(service, id, related, sample.into_value().0) {
+                    Some(request) => {
+                        lock(queue).push(request);
+                        requests.arrived.notify_all();
                     }
                     None => lock(queue).report_malformed("a request without a body".to_owned()),
                 }
             }
             Err(error) => lock(queue).report_malformed(error.to_string()),
         }
-        // A flood on one service lets the others have their turn.
+        // A flood on one service must not starve the others.
         future::yield_now().await;
     }
 }
 
-/// Makes a call of what arrived: `id` is the sample's own writer and number, `related` what its
-/// sender wrote beside it.
-fn call(
-    offer: usize,
+/// The request in a received sample: `id` is the sample's own writer and sequence number,
+/// `related` its related identity. Returns nothing if the header is incomplete.
+fn request(
+    service: usize,
     id: (GUID, i64),
     related: Option<(GUID, i64)>,
     body: Cdr,
 ) -> Option<ServiceRequest> {
     let writer = id.0.to_bytes();
-    // Others that go Cyclone's way put half of their writer's identity first.
-    let is_headed =
-        related.is_none() && (writer[..2] == CYCLONE || body.bytes.starts_with(&writer[8..]));
-    let (header, body) = if is_headed {
+    // Other clients with Cyclone's mapping also begin with half of their writer's GUID.
+    let has_header = related.is_none()
+        && (writer[..2] == CYCLONE_VENDOR || body.bytes.starts_with(&writer[8..]));
+    let (header, body) = if has_header {
         let (header, rest) = body.bytes.split_first_chunk::<16>()?;
         (Some(*header), Cdr { bytes: rest.to_vec(), ..body })
     } else {
         (None, body)
     };
-    // Fast DDS names the reader that the answer shall go to, and leaves the number open.
+    // Fast DDS names the reader that the response is for, and leaves the number unknown.
     let (writer, number) = related.unwrap_or(id);
     let number = if number == i64::from(SequenceNumber::UNKNOWN) { id.1 } else { number };
-    let asker = RequestId { offer, writer: writer.to_bytes(), number, header };
-    Some(ServiceRequest { asker, body })
+    let id = RequestId { service, writer: writer.to_bytes(), number, header };
+    Some(ServiceRequest { id, body })
 }
 
-/// Says once a second what could not be read, if anything.
-async fn tell_faults(queue: &Mutex<Queue>) {
+/// Logs the last malformed request, at most once a second.
+async fn log_malformed(requests: Arc<SharedQueue>) {
     loop {
         smol::Timer::after(Duration::from_secs(1)).await;
-        let (counters, fault) = {
-            let mut queue = lock(queue);
-            (queue.counters(), queue.take_fault())
+        let (counters, error) = {
+            let mut queue = lock(&requests.queue);
+            (queue.counters(), queue.take_error())
         };
-        if let Some(fault) = fault {
+        if let Some(error) = error {
             let n = counters.n_malformed;
-            log::warn!("{n} requests could not be read so far, the last: {fault}");
+            log::warn!("{n} malformed requests so far, the last: {error}");
         }
     }
 }
 
-/// How services are offered and asked.
-pub(super) const SERVICE: Qos = Qos::reliable(100);
+/// Quality of service of requests and responses.
+pub(super) const SERVICE_QOS: Qos = Qos::reliable(100);
 
 pub(super) fn reader(
     participant: &DomainParticipant,
     name: &str,
-    kind: &str,
+    type_name: &str,
 ) -> Result<Reader, RosError> {
-    let qos: QosPolicies = policies(SERVICE);
-    let refused = |it: rustdds::dds::result::CreateError| refused(name, kind, &it);
+    let qos: QosPolicies = policies(SERVICE_QOS);
+    let to_error = |it: rustdds::dds::result::CreateError| to_error(name, type_name, &it);
     let topic = participant
-        .create_topic(name.to_owned(), kind.to_owned(), &qos, TopicKind::NoKey)
-        .map_err(refused)?;
-    let subscriber = participant.create_subscriber(&qos).map_err(refused)?;
-    subscriber.create_simple_datareader_no_key(&topic, Some(qos)).map_err(refused)
+        .create_topic(name.to_owned(), type_name.to_owned(), &qos, TopicKind::NoKey)
+        .map_err(to_error)?;
+    let subscriber = participant.create_subscriber(&qos).map_err(to_error)?;
+    subscriber.create_simple_datareader_no_key(&topic, Some(qos)).map_err(to_error)
 }
 
 pub(super) fn writer(
     participant: &DomainParticipant,
     name: &str,
-    kind: &str,
+    type_name: &str,
     qos: Qos,
 ) -> Result<Writer, RosError> {
     let qos: QosPolicies = policies(qos);
-    let refused = |it: rustdds::dds::result::CreateError| refused(name, kind, &it);
+    let to_error = |it: rustdds::dds::result::CreateError| to_error(name, type_name, &it);
     let topic = participant
-        .create_topic(name.to_owned(), kind.to_owned(), &qos, TopicKind::NoKey)
-        .map_err(refused)?;
-    let publisher = participant.create_publisher(&qos).map_err(refused)?;
-    publisher.create_datawriter_no_key(&topic, Some(qos)).map_err(refused)
+        .create_topic(name.to_owned(), type_name.to_owned(), &qos, TopicKind::NoKey)
+        .map_err(to_error)?;
+    let publisher = participant.create_publisher(&qos).map_err(to_error)?;
+    publisher.create_datawriter_no_key(&topic, Some(qos)).map_err(to_error)
 }
 
-fn refused(name: &str, kind: &str, reason: &dyn std::fmt::Display) -> RosError {
+fn to_error(name: &str, type_name: &str, reason: &dyn std::fmt::Display) -> RosError {
     RosError::Topic {
         topic: name.to_owned(),
-        type_name: kind.to_owned(),
+        type_name: type_name.to_owned(),
         reason: reason.to_string(),
     }
 }
 
-fn thread(name: &str, body: impl FnOnce() + Send + 'static) -> Result<JoinHandle<()>, RosError> {
-    let builder = std::thread::Builder::new().name(name.to_owned());
-    builder.spawn(body).map_err(|reason| RosError::Thread { reason })
-}
-
-/// A queue is whole between any two calls, so a panic elsewhere does not spoil it.
-fn lock(queue: &Mutex<Queue>) -> MutexGuard<'_, Queue> {
+/// Locks the queue. A panic elsewhere does not spoil it: every call leaves it consistent.
+fn lock(queue: &Mutex<RequestQueue>) -> MutexGuard<'_, RequestQueue> {
     queue.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -1,17 +1,16 @@
-//! Commands from ROS 2 topics: subscriptions that fill the inbox on a thread of their own.
+//! Commands from ROS 2 topics: subscriptions that fill the inbox, on their own thread.
 
 use std::{
     sync::{
         Arc, Mutex, MutexGuard, PoisonError,
         atomic::{AtomicU64, Ordering},
     },
-    thread::JoinHandle,
     time::Duration,
 };
 
 use ros2_client::Subscription;
 use serde::de::{DeserializeSeed, Deserializer};
-use smol::{LocalExecutor, channel, future, stream::StreamExt};
+use smol::{future, stream::StreamExt};
 
 use crate::io::{
     inbox::Inbox,
@@ -19,7 +18,10 @@ use crate::io::{
 };
 use crate::{
     command::Command,
-    ros::node::{RosError, RosNode},
+    ros::{
+        node::{RosError, RosNode},
+        worker::Worker,
+    },
     snapshot::Snapshot,
     wire::{
         messages::{
@@ -31,31 +33,30 @@ use crate::{
     },
 };
 
-/// A message's body as it came.
+/// The body of a received message, in little-endian CDR.
 struct Received(Vec<u8>);
 
-/// The subscriptions of all topics that carry commands.
+/// The subscriptions to all command topics.
 pub struct RosSource {
     inbox: Arc<Mutex<Inbox>>,
-    stop: channel::Sender<()>,
-    listener: Option<JoinHandle<()>>,
+    _worker: Worker,
     _node: Arc<RosNode>,
 }
 
 impl RosSource {
-    /// Opens a subscription for every topic that is an input and listens from now on.
+    /// Opens a subscription to every input topic.
     ///
     /// # Errors
-    /// When a topic cannot be opened.
+    /// If a topic cannot be opened.
     pub fn new(node: &Arc<RosNode>, encoder: &Arc<Encoder>) -> Result<Self, RosError> {
         let topics = encoder.topics();
         let inbox = Arc::new(Mutex::new(Inbox::new(topics.len())));
-        let mut ears = Vec::new();
+        let mut tasks = Vec::new();
         for (index, topic) in topics.iter().enumerate().filter(|(_, it)| it.is_input) {
             let subscription = node.subscription::<Received>(topic)?;
             let encoder = Arc::clone(encoder);
             let recode = Recode { type_name: topic.message_type.name };
-            ears.push(SubscriptionTask {
+            tasks.push(SubscriptionTask {
                 index,
                 name: topic.name.clone(),
                 recode,
@@ -63,13 +64,14 @@ impl RosSource {
                 encoder,
             });
         }
-        let (stop, stopped) = channel::bounded(1);
-        let kept = Arc::clone(&inbox);
-        let listener = std::thread::Builder::new()
-            .name("ros-commands".to_owned())
-            .spawn(move || listen(ears, &kept, &stopped))
-            .map_err(|it| RosError::Thread { reason: it })?;
-        Ok(Self { inbox, stop, listener: Some(listener), _node: Arc::clone(node) })
+        let shared = Arc::clone(&inbox);
+        let worker = Worker::start("ros-commands", move |executor| {
+            for task in tasks {
+                executor.spawn(task.run(Arc::clone(&shared))).detach();
+            }
+            executor.spawn(log_malformed(shared)).detach();
+        })?;
+        Ok(Self { inbox, _worker: worker, _node: Arc::clone(node) })
     }
 }
 
@@ -78,11 +80,11 @@ impl Source for RosSource {
         "ros"
     }
 
-    fn drain(&mut self, _seen: &Snapshot) -> Vec<Command> {
+    fn drain(&mut self, _snapshot: &Snapshot) -> Vec<Command> {
         lock(&self.inbox).drain()
     }
 
-    fn has_heard(&self) -> bool {
+    fn has_received(&self) -> bool {
         0 < lock(&self.inbox).counters().n_received
     }
 
@@ -91,63 +93,45 @@ impl Source for RosSource {
     }
 }
 
-impl Drop for RosSource {
-    fn drop(&mut self) {
-        self.stop.close();
-        if let Some(listener) = self.listener.take() {
-            // A listener that panicked has nothing left to stop.
-            drop(listener.join());
-        }
-    }
-}
-
 /// The clock of another simulator, for a run that follows it.
 pub struct RosClock {
     time_ns: Arc<AtomicU64>,
-    stop: channel::Sender<()>,
-    listener: Option<JoinHandle<()>>,
+    _worker: Worker,
     _node: Arc<RosNode>,
 }
 
 impl RosClock {
-    /// Listens to the clock of this name from now on.
+    /// Subscribes to the clock topic of this name.
     ///
     /// # Errors
-    /// When it cannot be opened.
+    /// If it cannot be opened.
     pub fn new(node: &Arc<RosNode>, name: &str) -> Result<Self, RosError> {
-        // Only the last one matters, and any publisher will do.
+        // Only the last message matters. Best effort matches any publisher.
         let qos = Qos { is_reliable: false, ..Qos::reliable(1) };
         let topic = Topic::input::<Clock>(name, qos);
         let subscription = node.subscription::<Clock>(&topic)?;
         let time_ns = Arc::new(AtomicU64::new(0));
-        let (stop, stopped) = channel::bounded(1);
-        let heard = Arc::clone(&time_ns);
-        let listener = std::thread::Builder::new()
-            .name("ros-clock".to_owned())
-            .spawn(move || {
-                let executor = LocalExecutor::new();
-                executor.spawn(hear_clock(subscription, heard)).detach();
-                // The channel carries nothing: its only news is that it was closed.
-                let _closed = smol::block_on(executor.run(stopped.recv()));
-            })
-            .map_err(|it| RosError::Thread { reason: it })?;
-        Ok(Self { time_ns, stop, listener: Some(listener), _node: Arc::clone(node) })
+        let received = Arc::clone(&time_ns);
+        let worker = Worker::start("ros-clock", move |executor| {
+            executor.spawn(follow_clock(subscription, received)).detach();
+        })?;
+        Ok(Self { time_ns, _worker: worker, _node: Arc::clone(node) })
     }
 
-    /// Its time, as it goes on (ns).
+    /// The last time received (ns); it is updated as messages arrive.
     pub fn time_ns(&self) -> Arc<AtomicU64> {
         Arc::clone(&self.time_ns)
     }
 }
 
-async fn hear_clock(subscription: Subscription<Clock>, heard: Arc<AtomicU64>) {
+async fn follow_clock(subscription: Subscription<Clock>, last_ns: Arc<AtomicU64>) {
     let mut messages = std::pin::pin!(subscription.async_stream());
     while let Some(message) = messages.next().await {
         if let Ok((Clock { clock }, _)) = message
             && let Ok(seconds) = u64::try_from(clock.sec)
         {
             let time_ns = seconds * 1_000_000_000 + u64::from(clock.nanosec);
-            heard.store(time_ns, Ordering::Release);
+            last_ns.store(time_ns, Ordering::Release);
         }
     }
 }
@@ -157,11 +141,11 @@ impl Source for RosClock {
         "clock"
     }
 
-    fn drain(&mut self, _seen: &Snapshot) -> Vec<Command> {
+    fn drain(&mut self, _snapshot: &Snapshot) -> Vec<Command> {
         Vec::new()
     }
 
-    fn has_heard(&self) -> bool {
+    fn has_received(&self) -> bool {
         0 < self.time_ns.load(Ordering::Acquire)
     }
 
@@ -170,17 +154,7 @@ impl Source for RosClock {
     }
 }
 
-impl Drop for RosClock {
-    fn drop(&mut self) {
-        self.stop.close();
-        if let Some(listener) = self.listener.take() {
-            // A listener that panicked has nothing left to stop.
-            drop(listener.join());
-        }
-    }
-}
-
-/// One subscription and what is done with its messages.
+/// One subscription and the decoding of its messages.
 struct SubscriptionTask {
     index: usize,
     name: String,
@@ -190,7 +164,8 @@ struct SubscriptionTask {
 }
 
 impl SubscriptionTask {
-    async fn listen(self, inbox: &Mutex<Inbox>) {
+    /// Decodes messages into the inbox.
+    async fn run(self, inbox: Arc<Mutex<Inbox>>) {
         let mut messages = std::pin::pin!(self.subscription.async_stream_seed(self.recode));
         while let Some(message) = messages.next().await {
             let command = match message {
@@ -201,50 +176,39 @@ impl SubscriptionTask {
                 Err(error) => Err(format!("`{}`: {error}", self.name)),
             };
             match command {
-                Ok(command) => lock(inbox).offer(self.index, command),
-                Err(fault) => lock(inbox).refuse(fault),
+                Ok(command) => lock(&inbox).push(self.index, command),
+                Err(error) => lock(&inbox).report_malformed(error),
             }
-            // A flood on one topic lets the others have their turn.
+            // A flood on one topic must not starve the others.
             future::yield_now().await;
         }
     }
 }
 
-/// Listens to all topics until `stopped` closes.
-fn listen(ears: Vec<SubscriptionTask>, inbox: &Mutex<Inbox>, stopped: &channel::Receiver<()>) {
-    let executor = LocalExecutor::new();
-    for ear in ears {
-        executor.spawn(ear.listen(inbox)).detach();
-    }
-    executor.spawn(report_malformed(inbox)).detach();
-    // The channel carries nothing: its only news is that it was closed.
-    let _closed = smol::block_on(executor.run(stopped.recv()));
-}
-
-/// Says once a second what could not be read, if anything.
-async fn report_malformed(inbox: &Mutex<Inbox>) {
-    let mut n_said = 0;
+/// Logs the last malformed message, at most once a second.
+async fn log_malformed(inbox: Arc<Mutex<Inbox>>) {
+    let mut n_logged = 0;
     loop {
         smol::Timer::after(Duration::from_secs(1)).await;
-        let (n_malformed, fault) = {
-            let mut inbox = lock(inbox);
-            (inbox.counters().n_malformed, inbox.take_fault())
+        let (n_malformed, error) = {
+            let mut inbox = lock(&inbox);
+            (inbox.counters().n_malformed, inbox.take_error())
         };
-        if let Some(fault) = fault {
-            let n_new = n_malformed - n_said;
-            log::warn!("{n_new} messages could not be read and were left out, the last: {fault}");
-            n_said = n_malformed;
+        if let Some(error) = error {
+            let n_new = n_malformed - n_logged;
+            log::warn!("{n_new} malformed messages were dropped, the last: {error}");
+            n_logged = n_malformed;
         }
     }
 }
 
-/// An inbox is whole between any two calls, so a panic elsewhere does not spoil it.
+/// Locks the inbox. A panic elsewhere does not spoil it: every call leaves it consistent.
 fn lock(inbox: &Mutex<Inbox>) -> MutexGuard<'_, Inbox> {
     inbox.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Reads one of the command types in the sender's byte order and keeps it in ours, so that all
-/// behind it sees little-endian bytes only.
+/// Reads one of the command types in the sender's byte order and encodes it as little-endian, so
+/// that later code only sees little-endian bytes.
 #[derive(Clone, Copy)]
 struct Recode {
     type_name: &'static str,
@@ -264,7 +228,7 @@ impl<'de> DeserializeSeed<'de> for Recode {
         } else if name == JointState::TYPE.name {
             recode::<JointState, D>(bytes)
         } else {
-            Err(serde::de::Error::custom(format_args!("no command is a `{name}`")))
+            Err(serde::de::Error::custom(format_args!("no command has the type `{name}`")))
         }
     }
 }
@@ -289,9 +253,9 @@ mod tests {
         received.map(|it| it.0).map_err(|it| it.to_string())
     }
 
-    /// Oracle: the other byte order's own encoding of the same message.
+    /// Oracle: the little-endian encoding of the same message.
     #[test]
-    fn both_byte_orders_arrive_as_one() {
+    fn both_byte_orders_give_the_same_bytes() {
         let mut pose = PoseStamped::default();
         pose.header.frame_id = "world".to_owned();
         pose.pose.position.z = 0.25;
@@ -303,9 +267,9 @@ mod tests {
         assert_eq!(recoded::<BigEndian>(name, &big).as_ref(), Ok(&little));
     }
 
-    /// Oracle: the contract: what is too short, or no command, is an error and not a panic.
+    /// Oracle: a message that is too short, or not a command, is an error and not a panic.
     #[test]
-    fn nonsense_is_an_error() {
+    fn malformed_messages_are_errors() {
         for length in 0..40 {
             for name in [Float64::TYPE.name, PoseStamped::TYPE.name, ObjectCommand::TYPE.name] {
                 let is_float = name == Float64::TYPE.name && 8 <= length;

@@ -1,4 +1,4 @@
-//! Why an experiment cannot be run. Every fault names its remedy.
+//! Why an experiment cannot be run. Every error names its remedy.
 
 use std::{io, path::PathBuf};
 
@@ -11,27 +11,27 @@ use crate::{
 #[derive(Debug, thiserror::Error)]
 pub enum RunnerError {
     /// No experiment has this name.
-    #[error("no experiment `{name}`; {}there are: {}", did_you_mean(.near), known())]
+    #[error("no experiment `{name}`; {}known experiments: {}", did_you_mean(.near), known_names())]
     Unknown {
-        /// What was asked for.
+        /// The requested name.
         name: String,
-        /// Names spelled alike.
+        /// Similar names.
         near: Vec<String>,
     },
-    /// The scene is wrong.
+    /// The scene is invalid.
     #[error(transparent)]
     Scene(#[from] SceneError),
     /// A file or folder cannot be written.
-    #[error("{}: cannot be written: {reason}; name a writable folder with --out", path.display())]
+    #[error("{}: cannot be written: {reason}; choose a writable folder with --out", path.display())]
     Unwritable {
-        /// Which.
+        /// The file or folder.
         path: PathBuf,
-        /// What the operating system said.
+        /// Reason given by the operating system.
         reason: io::Error,
     },
-    /// The folder holds something else.
+    /// The folder holds other files.
     #[error(
-        "{}: holds files, but no experiment; name a new or empty folder with --out",
+        "{}: contains files, but no experiment; choose a new or empty folder with --out",
         path.display()
     )]
     Foreign {
@@ -40,47 +40,47 @@ pub enum RunnerError {
     },
     /// The folder holds cases of another plan.
     #[error(
-        "{}: holds cases of something else: {}; begin anew with --fresh, or name another folder \
+        "{}: contains cases of another plan: {}; restart with --fresh, or choose another folder \
          with --out{}",
         path.display(),
         differences.join("; "),
-        if *is_program_only { "; --mixed-builds goes on, and the result says so" } else { "" }
+        if *is_program_only { "; --mixed-builds continues, and the result mentions it" } else { "" }
     )]
     OtherPlan {
         /// The folder.
         path: PathBuf,
-        /// What differs.
+        /// The differences.
         differences: Vec<String>,
         /// True if only the program differs.
         is_program_only: bool,
     },
-    /// Another process is at work in the folder.
-    #[error("{}: another jamgrip is at work there; wait, or name another folder with --out", path.display())]
+    /// Another process uses the folder.
+    #[error("{}: another jamgrip process is using it; wait, or choose another folder with --out", path.display())]
     Busy {
         /// The folder.
         path: PathBuf,
     },
-    /// A kept result cannot be read.
-    #[error("{}: cannot be read as a result: {reason}; run the experiment anew", path.display())]
+    /// A stored result cannot be read.
+    #[error("{}: cannot be read as a result: {reason}; run the experiment again", path.display())]
     Unreadable {
         /// The file.
         path: PathBuf,
-        /// What is wrong.
+        /// The reason.
         reason: String,
     },
-    /// The operating system refuses threads.
-    #[error("threads: {0}; ask for fewer with --threads")]
+    /// The operating system cannot start the threads.
+    #[error("threads: {0}; request fewer with --threads")]
     Threads(#[from] crate::base::parallel::ThreadPoolError),
 }
 
 impl RunnerError {
-    /// No experiment is called `name`.
+    /// The error for an unknown experiment.
     pub fn unknown(name: &str) -> Self {
         let near = near_matches(name, EXPERIMENTS.iter().map(|it| it.name()));
         Self::Unknown { name: name.to_owned(), near }
     }
 
-    /// True if the command line or the scene is at fault, not the machine.
+    /// True if the command line or the scene is invalid.
     pub fn is_of_command_line(&self) -> bool {
         matches!(self, Self::Unknown { .. } | Self::Scene(_))
     }
@@ -91,6 +91,6 @@ fn did_you_mean(near: &[String]) -> String {
     if near.is_empty() { String::new() } else { format!("did you mean {}? ", quoted.join(" or ")) }
 }
 
-fn known() -> String {
+fn known_names() -> String {
     EXPERIMENTS.iter().map(|it| it.name()).collect::<Vec<_>>().join(", ")
 }

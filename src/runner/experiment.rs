@@ -1,4 +1,4 @@
-//! An experiment to be run: its scene has been read, its cases are known.
+//! An experiment that is ready to run: its scene has been read, and its cases are known.
 
 use std::{collections::BTreeSet, fs, path::PathBuf};
 
@@ -12,49 +12,49 @@ use crate::{
     base::digest::Digest,
     experiments::{
         EXPERIMENTS, Experiment, Plan, SceneText, Size,
-        findings::{Expected, Findings, Report, Row},
+        findings::{Expected, Findings, Row, RowText},
         record::{Record, Validity},
     },
     scene::SceneError,
 };
 use crate::{report::plot, runner::error::RunnerError};
 
-/// What shall be run.
+/// What to run.
 #[derive(Clone)]
 pub struct RunRequest<'a> {
     /// The experiment.
     pub experiment: &'a dyn Experiment,
-    /// How much of it.
+    /// The size of the experiment.
     pub size: Size,
-    /// Changes of its scene, of the form `key=value`.
+    /// Overrides of its scene, of the form `key=value`.
     pub overrides: Vec<String>,
-    /// A scene file instead of the one that comes with the program.
+    /// A scene file that replaces the built-in one.
     pub scene: Option<PathBuf>,
 }
 
 impl std::fmt::Debug for RunRequest<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "Order({}, {:?}, {:?})", self.experiment.name(), self.size, self.overrides)
+        write!(f, "RunRequest({}, {:?}, {:?})", self.experiment.name(), self.size, self.overrides)
     }
 }
 
-/// The experiment of this name.
+/// The experiment with this name.
 ///
 /// # Errors
-/// If there is none; names spelled alike are told.
+/// If there is none; the error lists similar names.
 pub fn by_name(name: &str) -> Result<&'static dyn Experiment, RunnerError> {
     let found = EXPERIMENTS.iter().find(|it| it.name() == name);
     found.copied().ok_or_else(|| RunnerError::unknown(name))
 }
 
-/// All that decides what comes out.
+/// Everything that determines the results.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Identity {
     /// The experiment.
     pub experiment: String,
-    /// How much of it.
+    /// The size of the experiment.
     pub size: Size,
-    /// The scene and its changes.
+    /// The scene and its overrides.
     pub scene: SceneFacts,
     /// Version of the program.
     pub version: String,
@@ -63,12 +63,12 @@ pub struct Identity {
 }
 
 impl Identity {
-    /// What a folder of `other` holds that this does not want, in words; the program apart.
+    /// Describes how the stored identity `other` differs, without the program file.
     pub fn differences(&self, other: &Self) -> Vec<String> {
         let mut found = Vec::new();
-        let mut compare = |what: &str, here: &str, there: &str| {
-            if here != there {
-                found.push(format!("{what} is {there} there, {here} here"));
+        let mut compare = |what: &str, here: &str, stored: &str| {
+            if here != stored {
+                found.push(format!("{what} is {stored} in the folder, but {here} here"));
             }
         };
         let size = super::outcome::size_name;
@@ -84,7 +84,7 @@ impl Identity {
         found
     }
 
-    /// Digest of all but the program file.
+    /// Digest of everything except the program file.
     pub fn key(&self) -> u64 {
         let mut digest = Digest::new();
         let rest = Self { program: String::new(), ..self.clone() };
@@ -105,11 +105,11 @@ impl<'a> LoadedExperiment<'a> {
     /// Reads the scene.
     ///
     /// # Errors
-    /// If it is wrong.
-    pub fn read(order: &RunRequest<'a>) -> Result<Self, RunnerError> {
-        let (source, text) = match &order.scene {
+    /// If the scene is invalid.
+    pub fn read(request: &RunRequest<'a>) -> Result<Self, RunnerError> {
+        let (source, text) = match &request.scene {
             None => {
-                let (source, text) = order.experiment.scene();
+                let (source, text) = request.experiment.scene();
                 (source.to_owned(), text.to_owned())
             }
             Some(file) => {
@@ -125,23 +125,26 @@ impl<'a> LoadedExperiment<'a> {
         let scene = SceneText {
             text: &text,
             source: &source,
-            overrides: &order.overrides,
-            size: order.size,
+            overrides: &request.overrides,
+            size: request.size,
         };
-        let plan = order.experiment.read(&scene)?;
+        let plan = request.experiment.read(&scene)?;
         let mut digest = Digest::new();
         digest.bytes(text.as_bytes());
-        let scene =
-            SceneFacts { source, digest: hex(digest.finish()), overrides: order.overrides.clone() };
+        let scene = SceneFacts {
+            source,
+            digest: hex(digest.finish()),
+            overrides: request.overrides.clone(),
+        };
         let identity = Identity {
-            experiment: order.experiment.name().to_owned(),
-            size: order.size,
+            experiment: request.experiment.name().to_owned(),
+            size: request.size,
             scene,
             version: env!("CARGO_PKG_VERSION").to_owned(),
             program: program_digest(),
         };
         let cases = plan.cases();
-        Ok(Self { identity, plan, about: order.experiment.about(), cases })
+        Ok(Self { identity, plan, about: request.experiment.about(), cases })
     }
 
     /// Names of the cases.
@@ -149,21 +152,22 @@ impl<'a> LoadedExperiment<'a> {
         &self.cases
     }
 
-    /// What the cases show, given how each of them ended. A case that failed is a red row.
-    pub(super) fn conclude(&self, ends: Vec<CaseEnd>) -> (Outcome, Findings) {
+    /// Evaluates the cases, given how each of them ended. A failed case is reported as a row that
+    /// does not pass.
+    pub(super) fn evaluate(&self, ends: Vec<CaseEnd>) -> (Outcome, Findings) {
         let mut programs = BTreeSet::new();
         let (mut facts, mut records, mut failures) = (Vec::new(), Vec::new(), Vec::new());
         for (name, end) in self.cases.iter().zip(ends) {
             match end {
-                CaseEnd::Finished(kept) => {
-                    facts.push(facts_of(&kept.record));
-                    programs.extend(kept.programs);
-                    records.push(kept.record);
+                CaseEnd::Finished(finished) => {
+                    facts.push(facts_of(&finished.record));
+                    programs.extend(finished.programs);
+                    records.push(finished.record);
                 }
-                CaseEnd::Failed(fault) => {
-                    failures.push(self.failure(name, &fault));
+                CaseEnd::Failed(error) => {
+                    failures.push(self.failure(name, &error));
                     let record = Record { case: name.clone(), ..Record::default() };
-                    facts.push(CaseFacts { fault: Some(fault), ..facts_of(&record) });
+                    facts.push(CaseFacts { error: Some(error), ..facts_of(&record) });
                 }
                 CaseEnd::Stopped => {}
             }
@@ -178,16 +182,16 @@ impl<'a> LoadedExperiment<'a> {
         (outcome, findings)
     }
 
-    /// A case that did not come to its end, as a row.
-    fn failure(&self, case: &str, fault: &str) -> Row {
-        let told = Report {
+    /// A failed case as a row.
+    fn failure(&self, case: &str, error: &str) -> Row {
+        let report = RowText {
             id: &format!("{}.{case}.ran_to_its_end", self.identity.experiment),
             quantity: &format!("case {case} ran to its end"),
             unit: "1",
             oracle: "every case must",
-            reason: fault,
+            reason: error,
         };
-        Row::new(&told, Expected::at_least(1.0), 0.0)
+        Row::new(&report, Expected::at_least(1.0), 0.0)
     }
 
     fn outcome(
@@ -201,8 +205,8 @@ impl<'a> LoadedExperiment<'a> {
         let mut digest = Digest::new();
         for case in &cases {
             validity.join(&case.validity);
-            let faults = case.validity.faults();
-            left_validity.extend(faults.iter().map(|fault| format!("{}: {fault}", case.case)));
+            let violations = case.validity.violations();
+            left_validity.extend(violations.iter().map(|error| format!("{}: {error}", case.case)));
             digest.bytes(case.case.as_bytes());
             digest.bytes(case.digest.as_bytes());
         }
@@ -231,7 +235,7 @@ impl<'a> LoadedExperiment<'a> {
 fn facts_of(record: &Record) -> CaseFacts {
     CaseFacts {
         case: record.case.clone(),
-        fault: None,
+        error: None,
         seed: record.seed,
         digest: hex(record.digest),
         n_substeps: record.n_substeps.clone(),

@@ -1,10 +1,10 @@
-//! What an experiment keeps on disk.
+//! The files of an experiment.
 //!
 //! ```text
-//! plan.json          all that decides what comes out; another plan is refused
-//! states/CASE.state  a case on its way
-//! cases/CASE.json    a case that has come to its end
-//! result.json        what came of it, with report.html and curves/CURVE.csv
+//! plan.json          everything that determines the results; another plan is rejected
+//! states/CASE.state  a running case
+//! cases/CASE.json    a finished case
+//! result.json        the outcome, with report.html and curves/CURVE.csv
 //! ```
 
 use std::{
@@ -20,7 +20,7 @@ use crate::runner::{error::RunnerError, experiment::Identity};
 use crate::{
     base::digest::Digest,
     experiments::{findings::Curve, record::Record},
-    host::atomic_file::{self, Opened},
+    host::atomic_file::{self, Loaded},
 };
 
 const PLAN: &str = "plan.json";
@@ -29,54 +29,54 @@ const STATES: &str = "states";
 const CASES: &str = "cases";
 const CURVES: &str = "curves";
 
-/// What may be found in a folder.
+/// What to do with cases in the folder.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Policy {
-    /// True begins anew, whatever is there.
+    /// True to restart, whatever the folder contains.
     pub is_fresh: bool,
-    /// True goes on with cases of another build of the program.
+    /// True to continue cases of another build of the program.
     pub allows_mixed_builds: bool,
 }
 
-/// A case that has come to its end.
+/// A finished case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct KeptCase {
-    /// Digest of plan and case: a file under another's name is not taken for it.
+pub struct FinishedCase {
+    /// Digest of plan and case, so that a file under another name is not accepted.
     key: u64,
     /// Digests of the program files that ran it.
     pub programs: Vec<String>,
-    /// What it left.
+    /// The results.
     pub record: Record,
 }
 
-/// A case on its way.
+/// The saved state of a running case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct SavedCase {
-    /// Share of the work that is done.
+    /// Fraction of the work that is done.
     pub(super) share: f64,
-    /// Time on the clock so far, stage by stage (s).
+    /// Wall-clock time so far, by stage (s).
     pub(super) wall_s: BTreeMap<String, f64>,
     /// Digests of the program files that ran it.
     pub(super) programs: Vec<String>,
-    /// The run.
+    /// The state of the run.
     #[serde(with = "serde_bytes")]
     pub(super) run: Vec<u8>,
 }
 
-/// What is there of a case.
+/// What is stored of a case.
 #[derive(Debug)]
-pub(super) enum Found {
-    /// All.
-    Kept(Box<KeptCase>),
-    /// A beginning.
+pub(super) enum Stored {
+    /// The finished case.
+    Finished(Box<FinishedCase>),
+    /// A state in between.
     Saved(SavedCase),
-    /// A file that is cut off or changed.
+    /// A truncated or changed file.
     Damaged(PathBuf),
     /// Nothing.
     Nothing,
 }
 
-/// The folder of one experiment; nobody else is at work in it meanwhile.
+/// The folder of one experiment, locked against other processes.
 #[derive(Debug)]
 pub struct Folder {
     path: PathBuf,
@@ -85,41 +85,41 @@ pub struct Folder {
 }
 
 impl Folder {
-    /// Opens a new folder, an empty one, or one that holds cases of the same plan.
+    /// Opens a new folder, an empty one, or one with cases of the same plan.
     ///
     /// # Errors
-    /// If it holds something else, is in use, or cannot be written.
-    pub fn open(path: &Path, wanted: &Identity, policy: Policy) -> Result<Self, RunnerError> {
+    /// If it contains something else, is in use, or cannot be written.
+    pub fn open(path: &Path, requested: &Identity, policy: Policy) -> Result<Self, RunnerError> {
         let unwritable = |reason| RunnerError::Unwritable { path: path.to_owned(), reason };
         let plan = path.join(PLAN);
-        if !plan.exists() && holds_files(path) {
+        if !plan.exists() && contains_files(path) {
             return Err(RunnerError::Foreign { path: path.to_owned() });
         }
         fs::create_dir_all(path).map_err(unwritable)?;
         let lock = lock(path)?;
-        let folder = Self { path: path.to_owned(), key: wanted.key(), _lock: lock };
+        let folder = Self { path: path.to_owned(), key: requested.key(), _lock: lock };
         if policy.is_fresh {
             folder.clear().map_err(unwritable)?;
         } else if let Ok(text) = fs::read_to_string(&plan) {
-            folder.compare(wanted, &text, policy)?;
+            folder.compare(requested, &text, policy)?;
         }
         for name in [STATES, CASES, CURVES] {
             fs::create_dir_all(path.join(name)).map_err(unwritable)?;
         }
-        let text = serde_json::to_string_pretty(wanted).expect("all keys are texts");
+        let text = serde_json::to_string_pretty(requested).expect("all keys are texts");
         folder.write_text(PLAN, &(text + "\n"))?;
         Ok(folder)
     }
 
-    fn compare(&self, wanted: &Identity, plan: &str, policy: Policy) -> Result<(), RunnerError> {
+    fn compare(&self, requested: &Identity, plan: &str, policy: Policy) -> Result<(), RunnerError> {
         let path = self.path.clone();
-        let Ok(there) = serde_json::from_str::<Identity>(plan) else {
+        let Ok(stored) = serde_json::from_str::<Identity>(plan) else {
             let differences = vec![format!("{PLAN} is damaged")];
             return Err(RunnerError::OtherPlan { path, differences, is_program_only: false });
         };
-        let mut differences = wanted.differences(&there);
+        let mut differences = requested.differences(&stored);
         let is_program_only = differences.is_empty();
-        if wanted.program != there.program && !(is_program_only && policy.allows_mixed_builds) {
+        if requested.program != stored.program && !(is_program_only && policy.allows_mixed_builds) {
             differences.push("they were run by another build of jamgrip".to_owned());
         }
         if differences.is_empty() {
@@ -128,10 +128,10 @@ impl Folder {
         Err(RunnerError::OtherPlan { path, differences, is_program_only })
     }
 
-    /// Removes what was written here; other files stay.
+    /// Removes the files of the experiment; other files stay.
     fn clear(&self) -> io::Result<()> {
-        let ours = [(STATES, "state"), (CASES, "json"), (CURVES, "csv")];
-        for (name, ending) in ours {
+        let patterns = [(STATES, "state"), (CASES, "json"), (CURVES, "csv")];
+        for (name, ending) in patterns {
             let Ok(entries) = fs::read_dir(self.path.join(name)) else { continue };
             for entry in entries {
                 let file = entry?.path();
@@ -146,49 +146,53 @@ impl Folder {
         Ok(())
     }
 
-    /// What is there of `case`.
-    pub(super) fn find(&self, case: &str) -> Found {
+    /// What is stored of `case`.
+    pub(super) fn find(&self, case: &str) -> Stored {
         let (file, key) = (self.case_file(case), self.case_key(case));
         if let Ok(text) = fs::read_to_string(&file) {
-            return match serde_json::from_str::<KeptCase>(&text) {
-                Ok(kept) if kept.key == key => Found::Kept(Box::new(kept)),
-                _ => Found::Damaged(file),
+            return match serde_json::from_str::<FinishedCase>(&text) {
+                Ok(finished) if finished.key == key => Stored::Finished(Box::new(finished)),
+                _ => Stored::Damaged(file),
             };
         }
         let file = self.state_file(case);
-        match atomic_file::open(&file, key) {
-            Opened::Nothing => Found::Nothing,
-            Opened::Damaged => Found::Damaged(file),
-            Opened::Whole(bytes) => match postcard::from_bytes(&bytes) {
-                Ok(saved) => Found::Saved(saved),
-                Err(_) => Found::Damaged(file),
+        match atomic_file::load(&file, key) {
+            Loaded::Missing => Stored::Nothing,
+            Loaded::Damaged => Stored::Damaged(file),
+            Loaded::Complete(bytes) => match postcard::from_bytes(&bytes) {
+                Ok(saved) => Stored::Saved(saved),
+                Err(_) => Stored::Damaged(file),
             },
         }
     }
 
-    /// Saves a case on its way.
+    /// Saves the state of a running case.
     pub(super) fn save(&self, case: &str, saved: &SavedCase) -> Result<(), RunnerError> {
         let file = self.state_file(case);
         let bytes = postcard::to_stdvec(saved).expect("memory is the only limit");
-        atomic_file::seal(&file, self.case_key(case), &bytes)
+        atomic_file::store(&file, self.case_key(case), &bytes)
             .map_err(|reason| RunnerError::Unwritable { path: file, reason })
     }
 
-    /// Keeps a case that has come to its end; its saved state goes.
-    pub(super) fn keep(&self, case: &str, kept: &KeptCase) -> Result<(), RunnerError> {
-        let text = serde_json::to_string(kept).expect("all keys are texts");
+    /// Stores a finished case, and removes its saved state.
+    pub(super) fn store_finished(
+        &self,
+        case: &str,
+        finished: &FinishedCase,
+    ) -> Result<(), RunnerError> {
+        let text = serde_json::to_string(finished).expect("all keys are texts");
         self.write_text(&format!("{CASES}/{case}.json"), &(text + "\n"))?;
-        self.forget(case);
+        self.remove_state(case);
         Ok(())
     }
 
     /// Removes the saved state of a case.
-    pub(super) fn forget(&self, case: &str) {
-        // A state that stays is found and left behind by the next run.
+    pub(super) fn remove_state(&self, case: &str) {
+        // Best effort: a state that remains is ignored by later runs.
         drop(remove(&self.state_file(case)));
     }
 
-    /// Writes a file of this folder, whole or not at all.
+    /// Writes a file of this folder atomically.
     ///
     /// # Errors
     /// If it cannot be written.
@@ -198,7 +202,7 @@ impl Folder {
             .map_err(|reason| RunnerError::Unwritable { path, reason })
     }
 
-    /// Writes a curve as CSV: names with units above columns.
+    /// Writes a curve as CSV, with names and units in the header.
     pub(super) fn write_curve(&self, curve: &Curve) -> Result<(), RunnerError> {
         let name = format!("{CURVES}/{}.csv", curve.name);
         let text = csv_text(curve).map_err(|error| RunnerError::Unwritable {
@@ -225,14 +229,14 @@ impl Folder {
     }
 }
 
-impl KeptCase {
+impl FinishedCase {
     pub(super) fn new(key: u64, programs: Vec<String>, record: Record) -> Self {
         Self { key, programs, record }
     }
 }
 
-/// True if there is anything but a lock in `folder`.
-fn holds_files(folder: &Path) -> bool {
+/// True if `folder` contains anything but the lock.
+fn contains_files(folder: &Path) -> bool {
     fs::read_dir(folder)
         .is_ok_and(|entries| entries.flatten().any(|entry| entry.file_name() != LOCK))
 }
@@ -255,7 +259,7 @@ fn remove(file: &Path) -> io::Result<()> {
     }
 }
 
-/// A table with `name [unit]` in its head; columns that are too short leave cells empty.
+/// A table with `name [unit]` in its header; short columns are padded with empty cells.
 fn csv_text(curve: &Curve) -> Result<String, csv::Error> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     writer.write_record(curve.columns.iter().map(|it| format!("{} [{}]", it.name, it.unit)))?;

@@ -1,11 +1,11 @@
-//! Runs experiments: cases on threads, state on disk, findings in files and tables.
+//! Runs experiments: cases in parallel, with their state on disk, and results in files and tables.
 //!
-//! A `LoadedExperiment` is an experiment whose scene has been read. Its cases are carried out side by side,
-//! each on one thread; what they leave becomes an `Outcome`, and that is all that result files,
-//! tables, reports and documents are made of.
+//! A [`LoadedExperiment`] is an experiment whose scene has been read. Its cases run in parallel,
+//! each on one thread. Their results are combined into an [`Outcome`], from which result files,
+//! tables, reports and documents are made.
 
-mod case; // one case from start to end
-pub mod error; // why an experiment cannot be run
+mod case; // runs one case
+pub mod error; // errors
 pub mod eta; // estimated time of arrival
 pub mod experiment; // an experiment whose scene has been read
 pub mod folder; // files of an experiment
@@ -13,8 +13,8 @@ pub mod outcome; // results of an experiment
 pub mod progress; // progress bars
 pub mod report; // results as an HTML page
 pub mod table; // results on the terminal
-pub mod validation_doc; // kept results beside their sources, as Markdown
-mod workers; // cases on threads
+pub mod validation_doc; // the validation document, from stored results
+mod workers; // runs cases in parallel
 
 use std::path::{Path, PathBuf};
 
@@ -24,64 +24,64 @@ use self::{
     experiment::{LoadedExperiment, RunRequest},
     folder::{Folder, Policy},
     outcome::Outcome,
-    progress::ProgressBoard,
+    progress::ProgressDisplay,
     workers::Job,
 };
 use crate::{experiments::findings::Findings, host::shutdown::Shutdown};
 
-/// How experiments are run; nothing here changes what comes out.
+/// Options of a run; they do not affect the results.
 #[derive(Clone, Copy, Debug)]
 pub struct Options<'a> {
-    /// Cases at a time.
+    /// Number of cases that run at the same time.
     pub n_threads: usize,
-    /// True shows no progress.
+    /// True to show no progress.
     pub is_quiet: bool,
-    /// What may be found in a folder.
+    /// What to do with cases in the folder.
     pub policy: Policy,
-    /// Asks all cases to end early.
+    /// Set when the user requests to stop.
     pub shutdown: &'a Shutdown,
 }
 
-/// One experiment and where its files go, if they are wanted.
+/// An experiment to run, and the folder for its files, if any.
 #[derive(Debug)]
 pub struct Task<'a> {
-    /// What is run.
-    pub order: RunRequest<'a>,
+    /// What to run.
+    pub request: RunRequest<'a>,
     /// The folder.
     pub out: Option<PathBuf>,
 }
 
-/// How it ended.
+/// How the run ended.
 #[derive(Debug)]
 pub enum Ending {
-    /// All cases came to an end, of one kind or the other. In the order of the tasks.
+    /// All cases finished or failed. Outcomes are in the order of the tasks.
     Finished(Vec<Outcome>),
-    /// Someone asked it to end.
+    /// The user stopped the run.
     Interrupted {
-        /// Cases that had come to their end.
+        /// Number of cases that had ended.
         n_done: usize,
-        /// All cases.
+        /// Number of all cases.
         n_cases: usize,
     },
 }
 
-/// Runs experiments, all cases of all of them in one queue.
+/// Runs experiments. All cases of all experiments share one queue.
 ///
 /// # Errors
-/// If something is wrong before the first case, or the files cannot be written.
+/// If an experiment cannot be loaded, or its files cannot be written.
 pub fn run(tasks: &[Task<'_>], options: &Options<'_>) -> Result<Ending, RunnerError> {
-    let loaded_all = tasks
+    let experiments = tasks
         .iter()
-        .map(|task| LoadedExperiment::read(&task.order))
+        .map(|task| LoadedExperiment::read(&task.request))
         .collect::<Result<Vec<_>, RunnerError>>()?;
     let folders = tasks
         .iter()
-        .zip(&loaded_all)
+        .zip(&experiments)
         .map(|(task, loaded)| open(task.out.as_deref(), loaded, options.policy))
         .collect::<Result<Vec<_>, RunnerError>>()?;
-    let jobs = jobs(&loaded_all, &folders);
-    let progress = ProgressBoard::new(&jobs, options.n_threads, options.is_quiet);
-    let ends = workers::work(&jobs, options.n_threads, options.shutdown, &progress);
+    let jobs = jobs(&experiments, &folders);
+    let progress = ProgressDisplay::new(&jobs, options.n_threads, options.is_quiet);
+    let ends = workers::run_all(&jobs, options.n_threads, options.shutdown, &progress);
     progress.end();
     let ends = ends?;
     if ends.iter().any(|end| matches!(end, CaseEnd::Stopped)) {
@@ -90,9 +90,9 @@ pub fn run(tasks: &[Task<'_>], options: &Options<'_>) -> Result<Ending, RunnerEr
     }
     let mut ends = ends.into_iter();
     let mut outcomes = Vec::new();
-    for (loaded, folder) in loaded_all.iter().zip(&folders) {
-        let of_study = ends.by_ref().take(loaded.cases().len()).collect();
-        let (outcome, findings) = loaded.conclude(of_study);
+    for (loaded, folder) in experiments.iter().zip(&folders) {
+        let ends = ends.by_ref().take(loaded.cases().len()).collect();
+        let (outcome, findings) = loaded.evaluate(ends);
         if let Some(folder) = folder {
             write(folder, &outcome, &findings)?;
         }
@@ -109,12 +109,15 @@ fn open(
     out.map(|path| Folder::open(path, &loaded.identity, policy)).transpose()
 }
 
-/// All cases, in the order of the studies.
-fn jobs<'a>(loaded_all: &'a [LoadedExperiment<'a>], folders: &'a [Option<Folder>]) -> Vec<Job<'a>> {
-    let of_study = |(loaded, folder): (&'a LoadedExperiment<'a>, &'a Option<Folder>)| {
+/// All cases, in the order of the experiments.
+fn jobs<'a>(
+    experiments: &'a [LoadedExperiment<'a>],
+    folders: &'a [Option<Folder>],
+) -> Vec<Job<'a>> {
+    let of_experiment = |(loaded, folder): (&'a LoadedExperiment<'a>, &'a Option<Folder>)| {
         loaded.cases().iter().map(move |case| Job { loaded, folder: folder.as_ref(), case })
     };
-    loaded_all.iter().zip(folders).flat_map(of_study).collect()
+    experiments.iter().zip(folders).flat_map(of_experiment).collect()
 }
 
 fn write(folder: &Folder, outcome: &Outcome, findings: &Findings) -> Result<(), RunnerError> {

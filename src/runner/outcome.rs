@@ -1,5 +1,5 @@
-//! What came of an experiment: all that its result file says, and all that tables, reports and
-//! documents are made of.
+//! The outcome of an experiment: the contents of its result file, from which tables, reports and
+//! documents are made.
 
 use std::{collections::BTreeMap, fs};
 
@@ -15,112 +15,113 @@ use crate::{
     },
 };
 
-/// What came of an experiment.
+/// The outcome of an experiment.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Outcome {
     /// Name of the experiment.
     pub experiment: String,
-    /// What is done, and whose experiment it is.
+    /// What is done, and who did the experiment.
     pub about: String,
-    /// How much of it was run.
+    /// The size that was run.
     pub size: Size,
     /// The scene.
     pub scene: SceneFacts,
-    /// Measured against expected.
+    /// Comparisons of measured with expected values.
     pub rows: Vec<Row>,
     /// Named results.
     pub quantities: Vec<Quantity>,
-    /// What a reader must know.
+    /// Notes for the reader.
     pub notes: Vec<String>,
-    /// The worst of all cases.
+    /// The worst values of all cases.
     pub validity: Validity,
-    /// What left the validity of the model, case by case; empty if nothing did.
+    /// Violations of the model's validity, by case; empty if there are none.
     pub left_validity: Vec<String>,
     /// The cases.
     pub cases: Vec<CaseFacts>,
     /// Digest of all cases together.
     pub digest: String,
-    /// Time on the clock, summed over all cases, each on one thread (s).
+    /// Wall-clock time, summed over all cases, each on one thread (s).
     pub wall_s: f64,
     /// The program.
     pub build: Build,
-    /// The machine that ran the last of it.
+    /// The machine that ran the last part.
     pub machine: Machine,
-    /// Names of the curves, each a CSV file.
+    /// Names of the curves; each is a CSV file.
     pub curves: Vec<String>,
-    /// Pictures.
+    /// Plots.
     pub plots: Vec<Plot>,
 }
 
-/// Which scene it was.
+/// The scene of an experiment.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SceneFacts {
     /// Path of its file.
     pub source: String,
     /// Digest of its text.
     pub digest: String,
-    /// Changes of the form `key=value`.
+    /// Overrides of the form `key=value`.
     pub overrides: Vec<String>,
 }
 
-/// One case.
+/// The facts about a case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CaseFacts {
-    /// Its name.
+    /// Name of the case.
     pub case: String,
-    /// Why it did not come to its end, if it did not; all numbers below are then meaningless.
-    pub fault: Option<String>,
+    /// Why it failed, if it did; the other numbers are then meaningless.
+    #[serde(rename = "fault")]
+    pub error: Option<String>,
     /// Seed of its random numbers.
     pub seed: u64,
-    /// Digest of the state at its end.
+    /// Digest of its last state.
     pub digest: String,
-    /// Substeps of each stage.
+    /// Number of substeps of each stage.
     pub n_substeps: BTreeMap<String, u64>,
-    /// Time on the clock of each stage, on one thread (s).
+    /// Wall-clock time of each stage, on one thread (s).
     pub wall_s: BTreeMap<String, f64>,
-    /// How far it kept within the validity of the model.
+    /// How far it stayed within the validity of the model.
     pub validity: Validity,
 }
 
-/// The program.
+/// The build of the program.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Build {
-    /// Its version.
+    /// Version.
     pub version: String,
-    /// Its commit, if the build knew it.
+    /// Commit, if known to the build.
     pub commit: String,
-    /// Processor and system that it was built for.
+    /// Processor and operating system that it was built for.
     pub target: String,
-    /// Digests of the program files that ran the cases; more than one if it was rebuilt meanwhile.
+    /// Digests of the program files that ran the cases; several if it was rebuilt in between.
     pub programs: Vec<String>,
 }
 
 /// The machine.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Machine {
-    /// Its processor.
+    /// Name of the processor.
     pub cpu: String,
-    /// Processors that it offers.
+    /// Number of processors.
     pub n_processors: usize,
 }
 
 impl Outcome {
-    /// True if every case came to its end.
+    /// True if no case failed.
     pub fn is_complete(&self) -> bool {
-        self.cases.iter().all(|case| case.fault.is_none())
+        self.cases.iter().all(|case| case.error.is_none())
     }
 
-    /// Rows that are red.
-    pub fn n_red(&self) -> usize {
+    /// Number of rows that do not pass.
+    pub fn n_failed(&self) -> usize {
         self.rows.iter().filter(|row| !row.pass).count()
     }
 
-    /// Its name with its size, `slide_quick`: also the name of its folder.
+    /// The name with its size, such as `slide_quick`; also the name of its folder.
     pub fn name(&self) -> String {
         sized_name(&self.experiment, self.size)
     }
 
-    /// The result file: a line for each value, but one for each series of a picture.
+    /// The text of the result file: one line for each value, and for each series of a plot.
     pub fn to_text(&self) -> String {
         let rest = Self { plots: Vec::new(), ..self.clone() };
         let text = serde_json::to_string_pretty(&rest).expect("all keys are texts");
@@ -132,12 +133,12 @@ impl Outcome {
     /// Reads a result file.
     ///
     /// # Errors
-    /// If the text is no result.
+    /// If the text is not a result.
     pub fn from_text(text: &str) -> Result<Self, serde_json::Error> {
         serde_json::from_str(text)
     }
 
-    /// The outcome for machines, on one line: all but the pictures.
+    /// The outcome without plots as JSON on one line.
     pub fn to_line(&self) -> String {
         let mut value = serde_json::to_value(self).expect("all keys are texts");
         if let Some(map) = value.as_object_mut() {
@@ -146,8 +147,8 @@ impl Outcome {
         value.to_string()
     }
 
-    /// The rows for machines.
-    pub fn rows_for_machines(&self) -> impl Iterator<Item = Value> {
+    /// The rows as JSON.
+    pub fn rows_as_json(&self) -> impl Iterator<Item = Value> {
         self.rows.iter().map(|row| {
             let mut value = serde_json::to_value(row).expect("all keys are texts");
             value["experiment"] = json!(self.experiment);
@@ -162,7 +163,7 @@ fn json(it: &impl Serialize) -> String {
     serde_json::to_string(it).expect("all keys are texts")
 }
 
-/// A picture with one line for each series.
+/// A plot with one line for each series.
 fn plot_text(plot: &Plot) -> String {
     let series = |it: &Series| format!("\n    {}", json(it));
     let series: Vec<String> = plot.series.iter().map(series).collect();
@@ -171,7 +172,7 @@ fn plot_text(plot: &Plot) -> String {
     format!("\n   {head}[{}]}}", series.join(","))
 }
 
-/// `slide_quick`.
+/// Name and size, such as `slide_quick`.
 pub fn sized_name(experiment: &str, size: Size) -> String {
     format!("{experiment}_{}", size_name(size))
 }
@@ -184,19 +185,19 @@ pub fn size_name(size: Size) -> &'static str {
     }
 }
 
-/// A digest as text.
+/// A digest as hexadecimal text.
 pub fn hex(digest: u64) -> String {
     format!("{digest:016x}")
 }
 
 impl Build {
-    /// This program, with the program files that ran the cases.
+    /// The build of this program, with the program files that ran the cases.
     pub fn of_this_program(programs: Vec<String>) -> Self {
-        let kind = if cfg!(debug_assertions) { "debug" } else { "release" };
+        let profile = if cfg!(debug_assertions) { "debug" } else { "release" };
         Self {
             version: env!("CARGO_PKG_VERSION").to_owned(),
             commit: option_env!("JAMGRIP_COMMIT").unwrap_or("unknown").to_owned(),
-            target: format!("{}-{} {kind}", std::env::consts::ARCH, std::env::consts::OS),
+            target: format!("{}-{} {profile}", std::env::consts::ARCH, std::env::consts::OS),
             programs,
         }
     }
@@ -225,7 +226,7 @@ impl Machine {
     }
 }
 
-/// Processors that this process may use.
+/// Number of processors that this process may use.
 pub fn n_processors() -> usize {
     std::thread::available_parallelism().map_or(1, std::num::NonZero::get)
 }

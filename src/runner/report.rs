@@ -1,6 +1,6 @@
-//! A page for people: what was run, measured against expected, pictures, and how to repeat it.
+//! The report of an experiment as an HTML page: rows, plots, and how to repeat the run.
 //!
-//! The page is complete in itself: style and pictures are inside, nothing is fetched.
+//! The page is self-contained: styles and plots are inline, nothing is loaded from elsewhere.
 
 use maud::{Markup, html};
 
@@ -14,10 +14,10 @@ use crate::experiments::{
 };
 use crate::report::{
     format::{duration, number, with_unit},
-    page::{plots, whole},
+    page::{plots, render},
 };
 
-/// The page as HTML.
+/// The report as HTML.
 pub fn page(outcome: &Outcome) -> String {
     let title = format!("{}, {}", outcome.experiment, size_name(outcome.size));
     let head = html! {
@@ -28,7 +28,7 @@ pub fn page(outcome: &Outcome) -> String {
     };
     let body = html! {
         (warnings(outcome))
-        (rows("Red rows", outcome.rows.iter().filter(|row| !row.pass).collect()))
+        (rows("Rows that fail", outcome.rows.iter().filter(|row| !row.pass).collect()))
         (plots(&outcome.plots))
         (rows("Rows that pass", outcome.rows.iter().filter(|row| row.pass).collect()))
         (quantities(&outcome.quantities))
@@ -36,40 +36,40 @@ pub fn page(outcome: &Outcome) -> String {
         (cases(outcome))
         (repeat(outcome))
     };
-    whole(&title, &head, &body)
+    render(&title, &head, &body)
 }
 
 fn badges(outcome: &Outcome) -> Markup {
-    let (n, n_red) = (outcome.rows.len(), outcome.n_red());
+    let (n, n_failed) = (outcome.rows.len(), outcome.n_failed());
     html! {
         ul.badges {
-            @if n_red == 0 {
+            @if n_failed == 0 {
                 li.good { (n) " of " (n) " rows pass" }
             } @else {
-                li.bad { (n_red) " of " (n) " rows red" }
+                li.bad { (n_failed) " of " (n) " rows fail" }
             }
             @if outcome.left_validity.is_empty() {
                 li.good { "within the model's validity" }
             } @else {
-                li.bad { "left the model's validity" }
+                li.bad { "outside the model's validity" }
             }
             li { (outcome.cases.len()) " cases" }
-            li { (duration(outcome.wall_s)) " of one processor" }
+            li { (duration(outcome.wall_s)) " of processor time" }
         }
     }
 }
 
 fn warnings(outcome: &Outcome) -> Markup {
-    let failed = outcome.cases.iter().filter_map(|case| Some((case, case.fault.as_ref()?)));
+    let failed = outcome.cases.iter().filter_map(|case| Some((case, case.error.as_ref()?)));
     html! {
         @if !outcome.is_complete() || !outcome.left_validity.is_empty() {
             section.warning {
                 h2 { "Read this first" }
                 ul {
-                    @for (case, fault) in failed {
-                        li { "Case " b { (case.case) } " did not come to its end: " (fault) }
+                    @for (case, error) in failed {
+                        li { "Case " b { (case.case) } " failed: " (error) }
                     }
-                    @for fault in &outcome.left_validity { li { "Left validity: " (fault) } }
+                    @for it in &outcome.left_validity { li { "Outside the model's validity: " (it) } }
                 }
             }
         }
@@ -86,7 +86,7 @@ fn rows(title: &str, rows: Vec<&Row>) -> Markup {
 
 fn one_row(row: &Row) -> Markup {
     let (oracle, tolerance) = table::expected(row);
-    let (class, verdict) = if row.pass { ("good", "pass") } else { ("bad", "red") };
+    let (class, verdict) = if row.pass { ("good", "pass") } else { ("bad", "fail") };
     html! {
         article.row.(class) id=(row.id) {
             div.verdict { (verdict) }
@@ -101,7 +101,7 @@ fn one_row(row: &Row) -> Markup {
                     dd { (oracle) @if tolerance != table::BOUND { " " (tolerance) }
                          @if row.unit != "1" { " " (row.unit) } }
                 }
-                div { dt { "apart" } dd { (table::apart(row)) } }
+                div { dt { "deviation" } dd { (table::deviation(row)) } }
             }
             p.why { b { (row.oracle_source) ". " } (row.reason) }
         }
@@ -148,9 +148,9 @@ fn cases(outcome: &Outcome) -> Markup {
     html! {
         section {
             h2 { "Cases and validity" }
-            p { "Each case runs on one thread. Largest values that were seen, red beyond their limits: "
+            p { "Each case runs on one thread. Largest values, in red beyond their limits: "
                 "overlap over diameter " (number(OVERLAP_LIMIT)) ", unbalanced force over contact "
-                "force at rest " (number(UNBALANCED_LIMIT)) ", inertial number where it claims to "
+                "force at rest " (number(UNBALANCED_LIMIT)) ", inertial number in stages that should "
                 "be quasi-static " (number(INERTIAL_LIMIT)) "." }
             div.wide { table {
                 thead { tr {
@@ -173,7 +173,7 @@ fn one_case(case: &CaseFacts) -> Markup {
     ];
     html! {
         tr {
-            td.name.bad[case.fault.is_some()] { (case.case) }
+            td.name.bad[case.error.is_some()] { (case.case) }
             td.number { (case.seed) }
             td.number { (duration(case.wall_s.values().sum())) }
             td.number { (case.n_substeps.values().sum::<u64>()) }
@@ -190,7 +190,7 @@ fn repeat(outcome: &Outcome) -> Markup {
     let build = &outcome.build;
     html! {
         section {
-            h2 { "How to repeat it" }
+            h2 { "How to repeat the run" }
             pre { code { (table::command(outcome)) } }
             p { "The same scene, seeds and program give the same digests on one machine, for any "
                 "number of threads. The joint digest of all cases is " code { (outcome.digest) }

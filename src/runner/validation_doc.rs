@@ -1,4 +1,5 @@
-//! Kept outcomes beside their sources, as Markdown: what `docs/validation.md` is made of.
+//! The validation document `docs/validation.md`: stored outcomes compared with their sources, as
+//! Markdown.
 
 use std::{fmt::Write, fs, path::Path};
 
@@ -18,16 +19,16 @@ use crate::{
 const HEAD: &str = "\
 # Validation
 
-What the experiments of jamgrip found, beside what their sources show. This file and its figures are
-made by `jamgrip report tests/golden/validation docs` from the result files in that folder; nothing in
-it is typed by hand, and a test fails when the two differ. A row that is red stays red: its reason says
-what the most likely cause is and what was tried. Tolerances are never widened to make a row green.
+This document compares the results of jamgrip's experiments with their sources. The command
+`jamgrip report tests/golden/validation docs` generates it and its figures from the result files in
+that folder. A test fails if it is out of date. Rows that fail are kept: the reason of such a row states
+its most likely cause and what was tried. Tolerances are never widened to make a row pass.
 ";
 
-/// Reads all result files of a folder, in the order of the experiments, quick before full.
+/// Reads all result files of a folder, sorted by experiment and size.
 ///
 /// # Errors
-/// If a file cannot be read as a result.
+/// If a file is not a result.
 pub fn read(folder: &Path) -> Result<Vec<Outcome>, RunnerError> {
     let unreadable =
         |path: &Path, reason: String| RunnerError::Unreadable { path: path.to_owned(), reason };
@@ -40,25 +41,25 @@ pub fn read(folder: &Path) -> Result<Vec<Outcome>, RunnerError> {
         Outcome::from_text(&text).map_err(|it| unreadable(file, it.to_string()))
     };
     let mut outcomes = files.iter().map(read).collect::<Result<Vec<_>, _>>()?;
-    let place = |outcome: &Outcome| {
+    let rank = |outcome: &Outcome| {
         let known = EXPERIMENTS.iter().position(|it| it.name() == outcome.experiment);
         (known.unwrap_or(usize::MAX), outcome.size == Size::Full)
     };
-    outcomes.sort_by_key(place);
+    outcomes.sort_by_key(rank);
     Ok(outcomes)
 }
 
-/// All files of the document, with their texts: the document itself first, then its figures.
-pub fn tell(outcomes: &[Outcome]) -> Vec<(String, String)> {
+/// All files of the document: the document first, then its figures.
+pub fn files(outcomes: &[Outcome]) -> Vec<(String, String)> {
     let mut files = vec![("validation.md".to_owned(), markdown(outcomes))];
     for outcome in outcomes {
         let figures = outcome.plots.iter().enumerate();
-        files.extend(figures.map(|(i, plot)| (figure(outcome, i), plot::picture(plot))));
+        files.extend(figures.map(|(i, plot)| (figure(outcome, i), plot::standalone_svg(plot))));
     }
     files
 }
 
-/// Writes the document and its figures into `folder`.
+/// Writes the document and its figures to `folder`.
 ///
 /// # Errors
 /// If a file cannot be written.
@@ -67,31 +68,34 @@ pub fn write(outcomes: &[Outcome], folder: &Path) -> Result<(), RunnerError> {
         |path: &Path, reason| RunnerError::Unwritable { path: path.to_owned(), reason };
     let figures = folder.join("figures");
     fs::create_dir_all(&figures).map_err(|reason| unwritable(&figures, reason))?;
-    for (name, text) in tell(outcomes) {
+    for (name, text) in files(outcomes) {
         let path = folder.join(name);
         fs::write(&path, text).map_err(|reason| unwritable(&path, reason))?;
     }
     Ok(())
 }
 
-/// The file of an outcome's figure.
+/// The file of a figure of an outcome.
 fn figure(outcome: &Outcome, i: usize) -> String {
     format!("figures/{}_{}.svg", outcome.name(), i + 1)
 }
 
 fn markdown(outcomes: &[Outcome]) -> String {
     let mut text = HEAD.to_owned();
-    text += "\n| experiment | size | rows | red | validity | time on one thread |\n";
+    text += "\n| experiment | size | rows | failed | validity | time on one thread |\n";
     text += "|---|---|---|---|---|---|\n";
     for it in outcomes {
         let name = &it.experiment;
         let anchor = it.name();
-        let (size, n_rows, n_red) = (size_name(it.size), it.rows.len(), it.n_red());
-        let validity = if it.left_validity.is_empty() { "kept" } else { "left, see below" };
+        let (size, n_rows, n_failed) = (size_name(it.size), it.rows.len(), it.n_failed());
+        let validity =
+            if it.left_validity.is_empty() { "within limits" } else { "violated, see below" };
         let wall = duration(it.wall_s);
         line(
             &mut text,
-            &format!("| [{name}](#{anchor}) | {size} | {n_rows} | {n_red} | {validity} | {wall} |"),
+            &format!(
+                "| [{name}](#{anchor}) | {size} | {n_rows} | {n_failed} | {validity} | {wall} |"
+            ),
         );
     }
     for outcome in outcomes {
@@ -102,7 +106,7 @@ fn markdown(outcomes: &[Outcome]) -> String {
 
 fn section(text: &mut String, it: &Outcome) {
     let build = &it.build;
-    line(text, &format!("\n## {}\n\n{}\n", it.name(), flat(&it.about)));
+    line(text, &format!("\n## {}\n\n{}\n", it.name(), escaped(&it.about)));
     line(text, &format!("    {}\n", table::command(it)));
     line(
         text,
@@ -119,15 +123,12 @@ fn section(text: &mut String, it: &Outcome) {
         ),
     );
     if !it.rows.is_empty() {
-        line(
-            text,
-            "\n| verdict | row | the source shows | measured | apart |\n|---|---|---|---|---|",
-        );
+        line(text, "\n| result | row | expected | measured | deviation |\n|---|---|---|---|---|");
         it.rows.iter().for_each(|row| row_line(text, row));
-        line(text, "\nWhy:\n");
+        line(text, "\nReasons for the tolerances:\n");
         it.rows.iter().for_each(|row| {
-            let mark = if row.pass { "" } else { "**red** " };
-            line(text, &format!("- {mark}`{}`: {}", row.id, flat(&row.reason)));
+            let mark = if row.pass { "" } else { "**fail** " };
+            line(text, &format!("- {mark}`{}`: {}", row.id, escaped(&row.reason)));
         });
     }
     if !it.quantities.is_empty() {
@@ -142,17 +143,21 @@ fn section(text: &mut String, it: &Outcome) {
         }
     }
     for (i, plot) in it.plots.iter().enumerate() {
-        let (title, source) = (flat(&plot.title), flat(&plot.source_says));
+        let (title, source) = (escaped(&plot.title), escaped(&plot.source_says));
         line(text, &format!("\n![{title}]({})\n", figure(it, i)));
-        line(text, &format!("*{title}.* The source: {source}"));
+        line(text, &format!("*{title}.* Source: {source}"));
     }
-    list(text, "Left the validity of the model:", it.left_validity.iter().map(|fault| flat(fault)));
+    list(
+        text,
+        "Violations of the model's validity:",
+        it.left_validity.iter().map(|it| escaped(it)),
+    );
     let failed = it
         .cases
         .iter()
-        .filter_map(|case| Some(format!("{}: {}", case.case, flat(case.fault.as_ref()?))));
-    list(text, "Did not come to their end:", failed);
-    list(text, "Notes:", it.notes.iter().map(|note| flat(note)));
+        .filter_map(|case| Some(format!("{}: {}", case.case, escaped(case.error.as_ref()?))));
+    list(text, "Failed cases:", failed);
+    list(text, "Notes:", it.notes.iter().map(|note| escaped(note)));
 }
 
 fn row_line(text: &mut String, row: &Row) {
@@ -162,7 +167,7 @@ fn row_line(text: &mut String, row: &Row) {
         _ => format!("{oracle} {tolerance}"),
     };
     let unit = if row.unit == "1" { String::new() } else { format!(" {}", row.unit) };
-    let verdict = if row.pass { "pass" } else { "**red**" };
+    let verdict = if row.pass { "pass" } else { "**fail**" };
     line(
         text,
         &format!(
@@ -171,7 +176,7 @@ fn row_line(text: &mut String, row: &Row) {
             cell(&row.quantity),
             cell(&row.oracle_source),
             number(row.measured),
-            table::apart(row),
+            table::deviation(row),
         ),
     );
 }
@@ -185,15 +190,15 @@ fn list(text: &mut String, head: &str, items: impl Iterator<Item = String>) {
 }
 
 fn line(text: &mut String, line: &str) {
-    writeln!(text, "{line}").expect("a String takes everything");
+    writeln!(text, "{line}").expect("writing to a String cannot fail");
 }
 
-/// On one line, with nothing that would be taken for a tag.
-fn flat(text: &str) -> String {
-    format::flat(text).replace('<', "&lt;")
+/// A text on one line, without characters that start a tag.
+fn escaped(text: &str) -> String {
+    format::one_line(text).replace('<', "&lt;")
 }
 
-/// In a cell of a table.
+/// A text for a cell of a table.
 fn cell(text: &str) -> String {
-    flat(text).replace('|', "\\|")
+    escaped(text).replace('|', "\\|")
 }

@@ -34,7 +34,7 @@ pub struct SceneBuilder {
     overrides: Vec<String>,
 }
 
-/// What the changed keys are laid over.
+/// The scene to which the changed keys are applied.
 #[derive(Clone, Debug, Default)]
 enum Base {
     /// The default scene.

@@ -1,26 +1,26 @@
-//! Rules that join several keys of a scene. All faults are found, none stops the search.
+//! Rules that involve several keys of a scene. All errors are reported, not only the first.
 //!
-//! Values that could not be read are NaN here, and every comparison is written so that NaN
-//! raises no second fault.
+//! Values that could not be read are NaN here. Every comparison is written so that NaN causes no
+//! further error.
 
 use super::{
     Controller, Object, PickAndLift, Scene, Shape,
-    error::{Fault, Problem},
+    error::{Diagnostic, DiagnosticKind},
     extent,
     quantity::{Dimension, FREQUENCY, LENGTH, PRESSURE, SPEED, TIME},
     text::DEFAULTS_FILE,
-    tree::{Node, Place},
+    tree::{Location, Node},
 };
 use crate::base::{Pose, Real};
 
-/// Penetration at the start that round-off in a scene file may cause (m).
-const TOUCHING: Real = 1e-6;
-/// Loosest packing that grains fall into by themselves.
+/// Initial penetration that round-off in a scene file may cause (m).
+const PENETRATION_TOLERANCE: Real = 1e-6;
+/// Solid fraction of the loosest packing that poured grains form.
 const SOLID_FRACTION_LOOSE: Real = 0.55;
 
-/// All faults of a scene that was read from `tree`.
-pub(super) fn faults(scene: &Scene, tree: &Node) -> Vec<Fault> {
-    let mut check = Check { tree, faults: Vec::new() };
+/// All errors of a scene that was read from `tree`.
+pub(super) fn diagnostics(scene: &Scene, tree: &Node) -> Vec<Diagnostic> {
+    let mut check = Check { tree, diagnostics: Vec::new() };
     check.names(scene);
     check.times(scene);
     check.grains_and_membrane(scene);
@@ -31,15 +31,15 @@ pub(super) fn faults(scene: &Scene, tree: &Node) -> Vec<Fault> {
     if let Controller::Builtin(parameters) = &scene.controller {
         check.pick_and_lift(scene, parameters);
     }
-    check.faults
+    check.diagnostics
 }
 
 struct Check<'a> {
     tree: &'a Node,
-    faults: Vec<Fault>,
+    diagnostics: Vec<Diagnostic>,
 }
 
-/// A key with its value, and the key that limits it.
+/// A key, its value, and the key that limits it.
 struct Pair {
     key: &'static str,
     value: Real,
@@ -51,19 +51,19 @@ struct Pair {
 }
 
 impl Check<'_> {
-    fn place(&self, key: &str) -> Place {
-        self.tree.at(key).unwrap_or(self.tree).place.clone()
+    fn location(&self, key: &str) -> Location {
+        self.tree.at(key).unwrap_or(self.tree).location.clone()
     }
 
-    /// Of two keys that do not fit each other, the one that is not a default is at fault.
+    /// Reports two keys that conflict, at the one that is not a default.
     fn conflict(&mut self, pair: &Pair) {
         let print = |value| pair.dimension.print(value);
-        let is_default = |key: &str| self.place(key).source.as_ref() == DEFAULTS_FILE;
-        let is_limit_at_fault = is_default(pair.key) && !is_default(pair.limit_key);
-        self.faults.push(Fault {
-            place: self.place(if is_limit_at_fault { pair.limit_key } else { pair.key }),
+        let is_default = |key: &str| self.location(key).source.as_ref() == DEFAULTS_FILE;
+        let is_limit_to_blame = is_default(pair.key) && !is_default(pair.limit_key);
+        self.diagnostics.push(Diagnostic {
+            location: self.location(if is_limit_to_blame { pair.limit_key } else { pair.key }),
             key: pair.key.to_owned(),
-            problem: Problem::Conflict {
+            kind: DiagnosticKind::Conflict {
                 value: print(pair.value),
                 relation: pair.relation,
                 limit: print(pair.limit),
@@ -85,9 +85,13 @@ impl Check<'_> {
         }
     }
 
-    fn unfit(&mut self, key: &str, value: String, reason: String, remedy: &'static str) {
-        let problem = Problem::Unfit { value, reason, remedy };
-        self.faults.push(Fault { place: self.place(key), key: key.to_owned(), problem });
+    fn invalid(&mut self, key: &str, value: String, reason: String, remedy: &'static str) {
+        let kind = DiagnosticKind::Invalid { value, reason, remedy };
+        self.diagnostics.push(Diagnostic {
+            location: self.location(key),
+            key: key.to_owned(),
+            kind,
+        });
     }
 
     fn names(&mut self, scene: &Scene) {
@@ -95,17 +99,17 @@ impl Check<'_> {
         let name = &scene.name;
         let is_written = |key: &str| self.tree.at(key).is_some();
         if is_written("name") && (name.is_empty() || name.contains(|it| !is_file_name(it))) {
-            let reason = "is no name for files".to_owned();
-            self.unfit("name", name.clone(), reason, "use letters, digits, _ and -");
+            let reason = "is not a valid file name".to_owned();
+            self.invalid("name", name.clone(), reason, "use letters, digits, _ and -");
         }
         for object in &scene.objects {
             if !is_ros_name(&object.name) {
-                self.unfit(
+                self.invalid(
                     "object.name",
                     object.name.clone(),
-                    "is no name for ROS 2 topics and frames".to_owned(),
-                    "begin with a letter, then letters, digits and single _, and not one of \
-                     world, gripper_flange, membrane",
+                    "is not a valid name for ROS 2 topics and frames".to_owned(),
+                    "start with a letter, use letters, digits and single _, and none of the \
+                     reserved names world, gripper_flange, membrane",
                 );
             }
         }
@@ -139,7 +143,7 @@ impl Check<'_> {
             self.above(Pair {
                 key,
                 value,
-                relation: "faster than once in a tick, that is",
+                relation: "faster than once per tick, which is",
                 limit_key: "time.tick",
                 limit: 1.0 / tick,
                 dimension: &FREQUENCY,
@@ -162,16 +166,16 @@ impl Check<'_> {
         self.above(Pair {
             key: "grains.radius_max",
             value: grains.radius_max,
-            relation: "above a quarter of the bag's radius,",
+            relation: "above a quarter of the membrane's radius,",
             limit_key: "membrane.radius",
             limit: membrane.radius / 4.0,
             dimension: &LENGTH,
-            remedy: "use smaller grains or a larger bag",
+            remedy: "use smaller grains or a larger membrane",
         });
         if membrane.frequency % 2 == 1 {
             let value = membrane.frequency.to_string();
             let reason = "is odd, but only an even icosphere can be cut at its equator";
-            self.unfit("membrane.frequency", value, reason.to_owned(), "write for example 16");
+            self.invalid("membrane.frequency", value, reason.to_owned(), "for example, write 16");
         }
         let third = |r: Real| r * r * r * std::f64::consts::PI / 3.0;
         let radius_mean = f64::midpoint(grains.radius_min, grains.radius_max);
@@ -179,9 +183,10 @@ impl Check<'_> {
         let most = SOLID_FRACTION_LOOSE * bowl / (4.0 * third(radius_mean));
         #[expect(clippy::cast_precision_loss, reason = "grain numbers are far below 2^53")]
         if most < grains.count as Real {
-            let reason = format!("grains do not fit into the bag, it holds about {most:.0}");
-            let remedy = "use fewer or smaller grains, or a larger bag";
-            self.unfit("grains.count", grains.count.to_string(), reason, remedy);
+            let reason =
+                format!("grains do not fit into the membrane, which holds about {most:.0}");
+            let remedy = "use fewer or smaller grains, or a larger membrane";
+            self.invalid("grains.count", grains.count.to_string(), reason, remedy);
         }
     }
 
@@ -194,7 +199,7 @@ impl Check<'_> {
             limit_key: "chamber.ambient",
             limit: -chamber.ambient,
             dimension: &PRESSURE,
-            remedy: "raise it: an absolute pressure is never negative",
+            remedy: "raise it: absolute pressure cannot be negative",
         });
     }
 
@@ -217,50 +222,54 @@ impl Check<'_> {
                 let key = "object.shape.convex_hull.points";
                 let value = format!("{} points", points.len());
                 let reason = "do not span a volume".to_owned();
-                self.unfit(key, value, reason, "give at least 4 points that are not in a plane");
+                self.invalid(
+                    key,
+                    value,
+                    reason,
+                    "give at least 4 points that are not in one plane",
+                );
             }
             _ => {}
         }
-        self.room_at_start(scene, object);
+        self.overlaps_at_start(scene, object);
     }
 
     fn poses(&mut self, poses: [(&'static str, &Pose); 2]) {
         for (key, pose) in poses {
             let length = pose.rotation.coords.norm();
             if 1e-9 < (length - 1.0).abs() {
-                let value = format!("length {length}");
-                let reason = "is not that of a rotation".to_owned();
-                self.unfit(key, value, reason, "normalise the quaternion to length 1");
+                let reason = "is the length of the quaternion, which must be 1".to_owned();
+                self.invalid(key, length.to_string(), reason, "normalize the quaternion");
             }
         }
     }
 
-    /// The object stands on the table, not in it, and not in the bag.
-    fn room_at_start(&mut self, scene: &Scene, object: &Object) {
+    /// The object must not start inside the table or inside the membrane.
+    fn overlaps_at_start(&mut self, scene: &Scene, object: &Object) {
         let (low, high) = extent::heights(&object.shape, &object.pose);
-        if low + TOUCHING < scene.table.height {
+        if low + PENETRATION_TOLERANCE < scene.table.height {
             self.conflict(&Pair {
                 key: "object.position",
-                value: to_micrometres(low),
-                relation: "the height of its lowest point, inside the table, below",
+                value: to_micrometers(low),
+                relation: "the height of its lowest point, below the table top at",
                 limit_key: "table.height",
                 limit: scene.table.height,
                 dimension: &LENGTH,
                 remedy: "raise the object",
             });
         }
-        let bag = scene.membrane.radius * scene.membrane.fill_stretch;
+        let reach = scene.membrane.radius * scene.membrane.fill_stretch;
         let flange = scene.flange.pose.translation.vector;
         let offset = flange - object.pose.translation.vector;
-        let is_under = offset.x.hypot(offset.y) < bag + extent::radius_across(&object.shape);
+        let is_under = offset.x.hypot(offset.y) < reach + extent::radius_across(&object.shape);
         let is_upright = scene.flange.pose.rotation.angle() < 1e-3;
         if is_under && is_upright {
             self.below(Pair {
                 key: "flange.position",
                 value: flange.z,
-                relation: "too low: the hanging bag would start inside the object; the least is",
+                relation: "too low: the membrane would start inside the object; the minimum is",
                 limit_key: "object.position",
-                limit: to_micrometres(high + bag),
+                limit: to_micrometers(high + reach),
                 dimension: &LENGTH,
                 remedy: "raise the flange",
             });
@@ -281,13 +290,13 @@ impl Check<'_> {
                 limit_key: "flange.speed_max",
                 limit: scene.flange.speed_max,
                 dimension: &SPEED,
-                remedy: "move slower or allow the flange more",
+                remedy: "lower it or raise flange.speed_max",
             });
         }
         self.below(Pair {
             key: "pick_and_lift.grip_pressure",
             value: it.grip_pressure,
-            relation: "beyond the pump,",
+            relation: "below the minimum of the pump,",
             limit_key: "chamber.gauge_min",
             limit: scene.chamber.gauge_min,
             dimension: &PRESSURE,
@@ -296,30 +305,30 @@ impl Check<'_> {
         self.above(Pair {
             key: "pick_and_lift.vent_pressure",
             value: it.vent_pressure,
-            relation: "beyond the pump,",
+            relation: "above the maximum of the pump,",
             limit_key: "chamber.gauge_max",
             limit: scene.chamber.gauge_max,
             dimension: &PRESSURE,
-            remedy: "use less overpressure",
+            remedy: "reduce the overpressure",
         });
         self.above(Pair {
             key: "pick_and_lift.push_depth",
             value: it.push_depth,
-            relation: "deeper than the bag,",
+            relation: "deeper than the membrane,",
             limit_key: "membrane.radius",
             limit: scene.membrane.radius,
             dimension: &LENGTH,
-            remedy: "push less deep",
+            remedy: "reduce the depth",
         });
     }
 }
 
-/// Heights in messages need no more digits.
-fn to_micrometres(length: Real) -> Real {
+/// Rounds a height (m) for messages.
+fn to_micrometers(length: Real) -> Real {
     (length * 1e6).round() / 1e6
 }
 
-/// True for names that may stand in a topic and as a frame of their own.
+/// True if `name` is valid in a topic name and as the name of a frame.
 fn is_ros_name(name: &str) -> bool {
     let is_letter = |it: char| it.is_ascii_alphanumeric() || it == '_';
     name.starts_with(|it: char| it.is_ascii_alphabetic())

@@ -1,10 +1,10 @@
-//! What can be wrong with a scene. Every fault says place, value, limit and remedy.
+//! Errors in scenes. Every message states the location, the value, the limit and a remedy.
 
 use std::fmt;
 
-use super::{quantity::QuantityError, tree::Place, yaml::SyntaxError};
+use super::{quantity::QuantityError, tree::Location, yaml::SyntaxError};
 
-/// A scene could not be made.
+/// Why a scene could not be read.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SceneError {
     /// The file could not be read.
@@ -12,107 +12,107 @@ pub enum SceneError {
     Unreadable {
         /// The file.
         file: String,
-        /// What the operating system said.
+        /// The message of the operating system.
         reason: String,
     },
     /// The text is not YAML.
     #[error(transparent)]
     Syntax(#[from] SyntaxError),
     /// An override is not `key=value`.
-    #[error("override `{text}`: not of the form key=value; write for example `object.friction=0`")]
+    #[error("override `{text}`: not of the form key=value; for example, write `object.friction=0`")]
     NotAnOverride {
-        /// As given.
+        /// The override as given.
         text: String,
     },
-    /// All that is wrong with the values.
+    /// Keys or values are invalid.
     #[error("{}", one_per_line(.0))]
-    Faults(Vec<Fault>),
+    Invalid(Vec<Diagnostic>),
 }
 
-/// One thing wrong with a scene.
+/// One error in a scene.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{place}: {}{problem}", prefix(.key))]
-pub struct Fault {
-    /// Where.
-    pub place: Place,
+#[error("{location}: {}{kind}", prefix(.key))]
+pub struct Diagnostic {
+    /// Where the key or its value is written.
+    pub location: Location,
     /// Dotted path of the key.
     pub key: String,
-    /// What.
-    pub problem: Problem,
+    /// The error.
+    pub kind: DiagnosticKind,
 }
 
-/// What is wrong, with limit and remedy.
+/// The kind of an error, with limit and remedy.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum Problem {
-    /// Nobody knows the key.
+pub enum DiagnosticKind {
+    /// The key does not exist.
     #[error("unknown key; {}", suggestion(.near, .known))]
     UnknownKey {
-        /// Keys spelled alike.
+        /// Keys with similar spelling.
         near: Vec<String>,
         /// All keys of the section.
         known: Vec<String>,
     },
-    /// A key without a default is not there.
-    #[error("is missing; write for example `{example}`")]
+    /// A key without a default is missing.
+    #[error("is missing; for example, write `{example}`")]
     Missing {
-        /// A value that would do.
+        /// A valid value.
         example: String,
     },
-    /// A value of another kind.
-    #[error("expected {expected}, found {found}; write for example `{example}`")]
-    WrongKind {
+    /// The value has the wrong type.
+    #[error("expected {expected}, found {found}; for example, write `{example}`")]
+    WrongType {
         /// What was expected.
         expected: &'static str,
         /// What was found.
         found: String,
-        /// A value that would do.
+        /// A valid value.
         example: String,
     },
-    /// Number or unit are wrong.
+    /// The number or the unit is wrong.
     #[error(transparent)]
     Quantity(#[from] QuantityError),
-    /// Beyond a limit.
-    #[error("{found} is out of range, it must be {limit}; write for example `{example}`")]
+    /// The value is out of range.
+    #[error("{found} is out of range: it must be {limit}; for example, write `{example}`")]
     OutOfRange {
         /// What was found.
         found: String,
         /// The limit.
         limit: String,
-        /// A value that would do.
+        /// A valid value.
         example: String,
     },
-    /// Not one of a closed list.
-    #[error("{found} is not known; write one of: {known}{}", did_you_mean(.near))]
+    /// The value is not one of a fixed list.
+    #[error("expected one of {known}; found {found}{}", did_you_mean(.near))]
     NotOneOf {
         /// What was found.
         found: String,
-        /// What there is.
+        /// The valid values.
         known: String,
-        /// Names spelled alike.
+        /// Values with similar spelling.
         near: Vec<String>,
     },
-    /// Two values that do not fit each other.
+    /// Two values conflict.
     #[error("{value} is {relation} {limit} ({limit_key}); {remedy}")]
     Conflict {
         /// The value.
         value: String,
-        /// How it stands to the limit.
+        /// Its relation to the limit.
         relation: &'static str,
         /// The limit.
         limit: String,
         /// The key that sets the limit.
         limit_key: &'static str,
-        /// What to do.
+        /// The remedy.
         remedy: &'static str,
     },
-    /// A value that no choice of other values makes right.
+    /// The value is invalid whatever the other values are.
     #[error("`{value}` {reason}; {remedy}")]
-    Unfit {
+    Invalid {
         /// The value.
         value: String,
-        /// Why not.
+        /// Why it is invalid.
         reason: String,
-        /// What to do.
+        /// The remedy.
         remedy: &'static str,
     },
 }
@@ -121,8 +121,8 @@ fn prefix(key: &str) -> String {
     if key.is_empty() { String::new() } else { format!("{key}: ") }
 }
 
-fn one_per_line(faults: &[Fault]) -> String {
-    faults.iter().map(Fault::to_string).collect::<Vec<_>>().join("\n")
+fn one_per_line(diagnostics: &[Diagnostic]) -> String {
+    diagnostics.iter().map(Diagnostic::to_string).collect::<Vec<_>>().join("\n")
 }
 
 fn suggestion(near: &[String], known: &[String]) -> impl fmt::Display {
@@ -141,7 +141,7 @@ fn quoted(names: &[String]) -> String {
     names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(" or ")
 }
 
-/// The names that are spelled like `name`, nearest first, at most three.
+/// At most three names that are spelled like `name`, best match first.
 pub fn near_matches<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Vec<String> {
     let mut found: Vec<(usize, &str)> = known
         .map(|candidate| (edit_distance(name, candidate), candidate))
@@ -153,12 +153,12 @@ pub fn near_matches<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Vec
     found.into_iter().take(3).map(|(_, candidate)| candidate.to_owned()).collect()
 }
 
-/// True if one name holds the other: `modulus` for `youngs_modulus`.
+/// True if one name contains the other: `modulus` for `youngs_modulus`.
 fn is_part(name: &str, candidate: &str) -> bool {
     3 < name.len() && (candidate.contains(name) || name.contains(candidate))
 }
 
-/// Insertions, deletions and substitutions between two words (Levenshtein 1966).
+/// Number of insertions, deletions and substitutions between two words (Levenshtein 1966).
 fn edit_distance(a: &str, b: &str) -> usize {
     let b: Vec<char> = b.chars().collect();
     let mut row: Vec<usize> = (0..=b.len()).collect();
@@ -188,10 +188,10 @@ mod tests {
     }
 
     #[test]
-    fn near_matches_come_nearest_first() {
+    fn near_matches_are_sorted_by_distance() {
         let known = ["friction", "density", "youngs_modulus"];
         assert_eq!(near_matches("fricton", known.into_iter()), ["friction"]);
         assert_eq!(near_matches("modulus", known.into_iter()), ["youngs_modulus"]);
-        assert!(near_matches("colour", known.into_iter()).is_empty());
+        assert!(near_matches("color", known.into_iter()).is_empty());
     }
 }

@@ -1,9 +1,9 @@
-//! How far a shape reaches, for checks at the start: which point is lowest, which is highest.
+//! Extent of a posed shape, for checks of the initial configuration.
 
 use super::Shape;
 use crate::base::{Pose, Real, Vec3};
 
-/// Lowest and highest height of a posed shape (m).
+/// Heights of the lowest and the highest point of a posed shape (m).
 pub(super) fn heights(shape: &Shape, pose: &Pose) -> (Real, Real) {
     let up = pose.rotation.inverse_transform_vector(&Vec3::z());
     let z = pose.translation.vector.z;
@@ -23,7 +23,7 @@ pub(super) fn heights(shape: &Shape, pose: &Pose) -> (Real, Real) {
     }
 }
 
-/// Radius of a vertical cylinder about the origin that holds the shape, roughly (m).
+/// Approximate radius of a vertical cylinder about the origin that contains the shape (m).
 pub(super) fn radius_across(shape: &Shape) -> Real {
     let farthest = |points: &[Vec3]| points.iter().map(Vec3::norm).fold(0.0, Real::max);
     match shape {

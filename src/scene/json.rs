@@ -1,4 +1,4 @@
-//! YAML as plain values, for texts that are no scenes.
+//! YAML as JSON values, for texts that are not scenes.
 
 use serde_json::Value as Json;
 
@@ -7,7 +7,7 @@ use super::{
     yaml::{self, SyntaxError},
 };
 
-/// Reads one YAML document. `source` names it in faults.
+/// Parses one YAML document. `source` is its name in errors.
 ///
 /// # Errors
 /// If the text is not YAML.
@@ -19,10 +19,10 @@ fn json(node: &Node) -> Json {
     match &node.value {
         Value::Null => Json::Null,
         Value::Flag(flag) => Json::from(*flag),
-        Value::Whole(number) => match (u64::try_from(*number), i64::try_from(*number)) {
+        Value::Integer(number) => match (u64::try_from(*number), i64::try_from(*number)) {
             (Ok(number), _) => Json::from(number),
             (_, Ok(number)) => Json::from(number),
-            // No number that anybody writes.
+            // Beyond the range of 64-bit integers.
             _ => Json::Null,
         },
         Value::Real(number) => Json::from(*number),

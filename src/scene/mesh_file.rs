@@ -1,4 +1,4 @@
-//! Triangle meshes from STL and OBJ files, welded and checked: closed, and outward oriented.
+//! Reads triangle meshes from STL and OBJ files. Vertices are merged; the surface must be closed.
 
 use std::{collections::BTreeMap, fs::File, io::BufReader, path::Path};
 
@@ -9,7 +9,7 @@ use crate::base::{Real, Vec3};
 pub(super) struct Surface {
     /// Vertices (m).
     pub vertices: Vec<Vec3>,
-    /// Vertex indices of each triangle, counter-clockwise seen from outside.
+    /// Vertex indices of each triangle, counterclockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
 }
 
@@ -19,42 +19,44 @@ pub(super) enum MeshError {
     /// The file cannot be opened.
     #[error("cannot be opened: {reason}")]
     Unreadable {
-        /// What the operating system said.
+        /// The message of the operating system.
         reason: String,
     },
-    /// Not a format we read.
+    /// The format is not supported.
     #[error("is neither .stl nor .obj")]
     UnknownFormat,
     /// Built without the feature that reads meshes.
     #[cfg(not(feature = "meshes"))]
     #[error("needs a jamgrip that was built with feature `meshes`")]
     NoFeature,
-    /// The reader gave up.
+    /// The file is malformed.
     #[cfg(feature = "meshes")]
     #[error("cannot be read as a mesh: {reason}")]
     Malformed {
-        /// What the reader said.
+        /// The message of the parser.
         reason: String,
     },
     /// A coordinate is NaN or infinite.
     #[error("has a vertex that is not finite")]
     NotFinite,
-    /// Nothing in it.
-    #[error("has {n_triangles} triangles that are not degenerate, a closed surface has at least 4")]
+    /// The mesh has too few triangles.
+    #[error("has {n_triangles} non-degenerate triangles; a closed surface needs at least 4")]
     Empty {
-        /// Triangles left.
+        /// Number of non-degenerate triangles.
         n_triangles: usize,
     },
-    /// An edge does not have exactly two triangles that agree on their orientation.
-    #[error("is not closed: {n_edges} edges do not join two triangles of equal orientation")]
+    /// An edge is not shared by exactly two triangles of the same orientation.
+    #[error(
+        "is not closed: {n_edges} edges are not shared by two triangles of the same orientation"
+    )]
     NotClosed {
-        /// How many.
+        /// Number of such edges.
         n_edges: usize,
     },
 }
 
-/// Reads a mesh; one unit of the file is `unit` metres. A mesh whose triangles all face inward is
-/// turned inside out.
+/// Reads a mesh; one unit of the file is `unit` meters. If all triangles face inward, their
+/// orientation is reversed.
 ///
 /// # Errors
 /// If the file is missing or malformed or its surface is not closed.
@@ -116,7 +118,7 @@ fn read_stl(file: &Path) -> Result<Corners, MeshError> {
 #[cfg(feature = "meshes")]
 fn read_obj(file: &Path) -> Result<Corners, MeshError> {
     let options = tobj::LoadOptions { triangulate: true, ..Default::default() };
-    // Materials are colours; a surface has none.
+    // Material files hold only colors, which are not used.
     let no_materials = |_: &Path| Ok(Default::default());
     let (models, _) = tobj::load_obj_buf(&mut open(file)?, &options, no_materials)
         .map_err(|error| MeshError::Malformed { reason: error.to_string() })?;
@@ -131,13 +133,13 @@ fn read_obj(file: &Path) -> Result<Corners, MeshError> {
     Ok(corners)
 }
 
-/// Joins corners that are equal to the last bit and drops triangles that lose a side by it.
+/// Merges corners that are equal to the last bit and drops triangles that become degenerate.
 fn weld(corners: &Corners, unit: Real) -> Surface {
     let mut index_of: BTreeMap<[u32; 3], u32> = BTreeMap::new();
     let mut surface = Surface { vertices: Vec::new(), triangles: Vec::new() };
     for triangle in corners {
         let ids = triangle.map(|point| {
-            // Adding zero joins -0 with +0.
+            // Adding zero turns -0 into +0.
             let bits = point.map(|it| (it + 0.0).to_bits());
             *index_of.entry(bits).or_insert_with(|| {
                 let [x, y, z] = point.map(Real::from);
@@ -152,7 +154,7 @@ fn weld(corners: &Corners, unit: Real) -> Surface {
     surface
 }
 
-/// How many edges are not run through exactly once in each direction.
+/// Number of edges that are not used exactly once in each direction.
 fn unmatched_edges(triangles: &[[u32; 3]]) -> usize {
     let mut balance: BTreeMap<(u32, u32), (u32, u32)> = BTreeMap::new();
     for triangle in triangles {
@@ -189,7 +191,7 @@ mod tests {
 
     /// Oracle: volume of the unit tetrahedron, 1/6, in mm³.
     #[test]
-    fn both_orientations_end_up_outward() {
+    fn both_orientations_become_outward() {
         let outward = obj("f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n").unwrap();
         let inward = obj("f 1 2 3\nf 1 4 2\nf 1 3 4\nf 2 4 3\n").unwrap();
         for surface in [outward, inward] {
@@ -199,7 +201,7 @@ mod tests {
     }
 
     #[test]
-    fn open_and_twisted_surfaces_are_refused() {
+    fn open_and_twisted_surfaces_are_rejected() {
         let open = obj("f 1 3 2\nf 1 2 4\nf 1 4 3\n");
         assert_eq!(open, Err(MeshError::Empty { n_triangles: 3 }));
         let twisted = obj("f 1 2 3\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");

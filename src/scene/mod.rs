@@ -1,21 +1,22 @@
-//! What a scene is once its text has been read and checked: SI numbers, nothing optional that the
-//! physics needs.
+//! A scene that has been read and checked: SI numbers, and everything that the physics needs.
 //!
-//! `text` is the way from YAML to here: `yaml` makes a tree with places, `schema` walks its keys
-//! with their units and limits, `check` joins them; all faults come at once. `print` goes back.
+//! `text` reads a scene: `yaml` parses the text into a tree with locations, `schema` visits the keys
+//! with their units and limits, `check` applies rules that involve several keys. All errors are
+//! reported at once. `print` writes a scene.
 
 pub mod builder; // a base scene with changed keys
-pub mod error; // what can be wrong with a scene
+pub mod error; // errors in scenes
 pub mod json; // YAML to JSON
 pub mod print; // scene to text
-pub mod quantity; // "2 mm"
-pub mod reference; // keys for documentation and editors
-pub mod resource; // objects described in other files
-pub mod ros_parameters; // parameter files
+pub mod quantity; // numbers with units: "2 mm"
+pub mod reference; // documentation and JSON Schema of all keys
+pub mod resource; // objects and scenes from files: YAML, URDF
+pub mod ros_parameters; // ROS 2 parameter files
 pub mod text; // text to scene
 
 mod check;
 mod extent;
+pub(crate) mod keys;
 mod mesh_file;
 mod read;
 pub(crate) mod schema;
@@ -41,7 +42,7 @@ use crate::base::{Pose, Real, Vec3};
 pub struct Scene {
     /// Name of the scene.
     pub name: String,
-    /// Seed of all random streams.
+    /// Seed of all random numbers.
     pub seed: u64,
     /// Ticks and substeps.
     pub time: Time,
@@ -49,36 +50,36 @@ pub struct Scene {
     pub gravity: Vec3,
     /// The grains.
     pub grains: Grains,
-    /// The flexible bag.
+    /// The membrane.
     pub membrane: Membrane,
-    /// The air in the bag.
+    /// The air inside the membrane.
     pub chamber: Chamber,
-    /// The kinematic plate that holds the bag.
+    /// The kinematic plate that holds the membrane.
     pub flange: Flange,
     /// The table under the objects.
     pub table: Table,
-    /// The objects. The YAML has one, under `object`.
+    /// The objects. A scene file has one, under `object`.
     pub objects: Vec<Object>,
-    /// Who gives commands.
+    /// Source of commands.
     pub controller: Controller,
-    /// What is published, and how often.
+    /// What is published and recorded, and how often.
     pub outputs: Outputs,
 }
 
-/// How time is cut.
+/// Time stepping.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Time {
     /// Length of a tick (ns).
     pub tick_ns: u64,
-    /// Substep set by hand (s); `None` derives it from material and mesh.
+    /// Substep (s); `None` derives it from materials and mesh.
     pub substep: Option<Real>,
     /// Fraction of the critical step that a derived substep takes.
     pub safety: Real,
-    /// Inertia of grains and membrane over their real one, for longer substeps (-).
+    /// Factor on the inertia of grains and membrane, for longer substeps (-).
     pub density_scaling: Real,
 }
 
-/// Surface and bulk of a material in the contact law.
+/// Parameters of a material.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Material {
     /// Young's modulus (Pa).
@@ -89,7 +90,7 @@ pub struct Material {
     pub density: Real,
 }
 
-/// The granulate.
+/// The grains.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grains {
     /// Number of grains.
@@ -100,15 +101,15 @@ pub struct Grains {
     pub radius_max: Real,
     /// Material of the grains.
     pub material: Material,
-    /// Coulomb friction between grains, and of grains with the flange's plate.
+    /// Coulomb friction coefficient between grains, and of grains with the plate of the flange.
     pub friction: Real,
     /// Dissipation time A of the viscoelastic normal force (s).
     pub dissipation_time: Real,
-    /// Damping of the tangential spring γ_t.
+    /// Damping ratio γ_t of the tangential spring.
     pub tangential_damping: Real,
 }
 
-/// The bag: the lower half of an icosphere, clamped to the flange at its rim.
+/// The membrane: the lower half of an icosphere, clamped to the flange at its rim.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Membrane {
     /// Radius of the half sphere (m).
@@ -117,45 +118,46 @@ pub struct Membrane {
     pub frequency: usize,
     /// Thickness (m).
     pub thickness: Real,
-    /// Material of the sheet and of its contacts.
+    /// Material of the membrane and of its contacts.
     pub material: Material,
-    /// Coulomb friction with grains.
+    /// Coulomb friction coefficient with grains.
     pub friction: Real,
-    /// Damping ratio of the springs γ_sp.
+    /// Damping ratio γ_sp of the springs.
     pub spring_damping: Real,
-    /// Elastic bending constant of the hinges k_el (N m).
+    /// Elastic bending constant k_el of the hinges (N m).
     pub bending_stiffness: Real,
-    /// Dissipative bending constant of the hinges k_diss (N s).
+    /// Viscous bending constant k_diss of the hinges (N s).
     pub bending_damping: Real,
-    /// Share by which the springs' rest lengths are shortened after filling.
+    /// Fraction by which the rest lengths of the springs shrink after filling.
     pub rest_length_shrink: Real,
-    /// Radius the bag is held at while it is filled, over `radius`.
+    /// Radius at which the membrane is held while it is filled, relative to `radius`.
     pub fill_stretch: Real,
     /// Dissipation time A of the contacts (s).
     pub dissipation_time: Real,
-    /// Damping of the tangential spring γ_t of the contacts.
+    /// Damping ratio γ_t of the tangential spring of the contacts.
     pub tangential_damping: Real,
 }
 
-/// The air and its pump.
+/// The air inside the membrane, and its pump.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Chamber {
     /// Ambient pressure, absolute (Pa).
     pub ambient: Real,
-    /// Strongest vacuum (Pa gauge), negative.
+    /// Strongest vacuum, a negative gauge pressure (Pa).
     pub gauge_min: Real,
-    /// Strongest overpressure (Pa gauge), at least 0.
+    /// Strongest overpressure, a gauge pressure of at least 0 (Pa).
     pub gauge_max: Real,
     /// Time constant of the first-order lag (s).
     pub lag: Real,
-    /// Largest rate of the pressure (Pa/s).
+    /// Largest rate of change of the pressure (Pa/s).
     pub rate_max: Real,
 }
 
-/// The plate that the bag hangs from. Its frame `gripper_flange` lies in the rim's plane.
+/// The plate from which the membrane hangs. The origin of its frame `gripper_flange` lies in the
+/// plane of the rim.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Flange {
-    /// Pose at the start.
+    /// Initial pose.
     pub pose: Pose,
     /// Largest linear speed (m/s).
     pub speed_max: Real,
@@ -172,28 +174,28 @@ pub struct Flange {
 pub struct Table {
     /// Height of the upper face (m).
     pub height: Real,
-    /// Coulomb friction with objects.
+    /// Coulomb friction coefficient with objects.
     pub friction: Real,
 }
 
-/// A rigid body to be gripped.
+/// A rigid body to grip.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Object {
-    /// Name, part of topic and frame names.
+    /// Name; part of the names of its topics and of its frame.
     pub name: String,
-    /// Its shape, about the shape's own origin.
+    /// Shape, in the object's own frame.
     pub shape: Shape,
-    /// Material of the contact law; the density gives the mass.
+    /// Material; the density gives the mass.
     pub material: Material,
-    /// Coulomb friction with the membrane.
+    /// Coulomb friction coefficient with the membrane.
     pub friction: Real,
-    /// Pose of the shape's origin at the start.
+    /// Initial pose of the shape's origin.
     pub pose: Pose,
-    /// Time without pose commands after which a driven object is given back to dynamics (s).
+    /// Simulated time without pose commands after which a driven object moves freely again (s).
     pub drive_timeout: Real,
 }
 
-/// Shape of an object. Cylinder and capsule have their axis along z.
+/// Shape of an object. The axis of a cylinder or capsule is z.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shape {
     /// A sphere.
@@ -213,7 +215,7 @@ pub enum Shape {
         /// Height (m).
         height: Real,
     },
-    /// A cylinder with half spheres at its ends.
+    /// A cylinder with hemispheres at its ends.
     Capsule {
         /// Radius (m).
         radius: Real,
@@ -225,7 +227,7 @@ pub enum Shape {
         /// Points (m).
         points: Vec<Vec3>,
     },
-    /// A closed triangle mesh, outward oriented.
+    /// A closed triangle mesh with outward orientation.
     Mesh {
         /// The file it was read from.
         file: PathBuf,
@@ -238,37 +240,37 @@ pub enum Shape {
     },
 }
 
-/// Who gives commands.
+/// Source of commands.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Controller {
-    /// The pick-and-lift state machine inside the process.
+    /// The built-in pick-and-lift state machine.
     Builtin(PickAndLift),
-    /// Commands come from ROS 2 topics; the run waits at its start for a first one.
+    /// ROS 2 topics. The run waits for the first command before it starts.
     Topics {
-        /// Simulated time after which the run ends; `None` runs until it is stopped (s).
+        /// Simulated time after which the run ends (s); `None` runs until it is stopped.
         duration: Option<Real>,
-        /// Whether ticks wait for commands.
+        /// What time waits for.
         lockstep: Lockstep,
     },
 }
 
-/// Whether ticks wait for commands or another simulator's clock, and for how long.
+/// Lockstep: whether ticks wait for commands or for the clock of another simulator.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lockstep {
-    /// True if they do: a command stamped not before the present time lets time go on.
+    /// True if ticks wait for commands: a command stamped not before the current time advances it.
     pub is_on: bool,
-    /// True if time follows `/clock`, which another simulator publishes; it is not published here.
+    /// True if time follows `/clock` of another simulator. This node then does not publish it.
     pub follows_clock: bool,
-    /// How many ticks such a command lets pass.
+    /// Number of ticks per command.
     pub steps_per_command: u64,
-    /// Wall time after which a command is missed; `None` waits for ever (s).
+    /// Wall-clock time to wait for a command (s); `None` waits without limit.
     pub timeout: Option<Real>,
-    /// What is done then.
+    /// What happens after this time.
     pub on_timeout: OnTimeout,
 }
 
 impl Lockstep {
-    /// Ticks wait for nobody.
+    /// Ticks do not wait.
     pub const OFF: Self = Self {
         is_on: false,
         follows_clock: false,
@@ -278,14 +280,14 @@ impl Lockstep {
     };
 }
 
-/// What is done when a command is missed.
+/// What happens when a command does not arrive in time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OnTimeout {
-    /// One goes on waiting; it is said once.
+    /// Keep waiting; log once.
     Hold,
-    /// The simulation is paused.
+    /// Pause the simulation.
     Pause,
-    /// The run ends.
+    /// End the run.
     End,
 }
 
@@ -294,21 +296,21 @@ pub enum OnTimeout {
 pub struct PickAndLift {
     /// Object to pick.
     pub object: String,
-    /// Height of the flange over the table while it travels (m): where it starts.
+    /// Height of the flange above the table while it travels: its initial height (m).
     pub approach_speed: Real,
     /// Contact force that counts as touch (N).
     pub touch_force: Real,
-    /// Speed while pushing in (m/s).
+    /// Speed while it pushes onto the object (m/s).
     pub push_speed: Real,
-    /// How far the flange goes on after touch (m).
+    /// Distance to push after touch (m).
     pub push_depth: Real,
-    /// Push force at which it stops earlier (N).
+    /// Force at which it stops pushing earlier (N).
     pub push_force_max: Real,
-    /// Time to relax after pushing (s).
+    /// Pause after pushing (s).
     pub settle_time: Real,
-    /// Gauge pressure while gripping (Pa).
+    /// Gauge pressure while it grips (Pa).
     pub grip_pressure: Real,
-    /// Share of the grip pressure that must be reached before lifting.
+    /// Fraction of the grip pressure that must be reached before it lifts.
     pub grip_pressure_reached: Real,
     /// Lifting speed (m/s).
     pub lift_speed: Real,
@@ -316,64 +318,64 @@ pub struct PickAndLift {
     pub lift_height: Real,
     /// Time to hold the object up (s).
     pub hold_time: Real,
-    /// Blow-off pressure for letting go (Pa gauge).
+    /// Gauge pressure to release the object (Pa).
     pub vent_pressure: Real,
     /// Time to vent (s).
     pub vent_time: Real,
-    /// How far the flange retreats at the end (m).
+    /// Distance to retreat at the end (m).
     pub retreat_height: Real,
 }
 
-/// What leaves the process. Rates are in simulated time.
+/// What is published and recorded. Rates are in simulated time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outputs {
-    /// Wrenches, object and flange state, tf, joint states (Hz).
+    /// Rate of wrenches, object and flange states, tf and joint states (Hz).
     pub state_rate: Real,
-    /// Pressure and vacuum state (Hz).
+    /// Rate of pressure and vacuum state (Hz).
     pub pressure_rate: Real,
-    /// Membrane vertices (Hz).
+    /// Rate of the membrane's vertices (Hz).
     pub membrane_rate: Real,
-    /// Grains (Hz).
+    /// Rate of grains (Hz).
     pub grains_rate: Real,
-    /// Contacts and their markers (Hz).
+    /// Rate of contacts and their markers (Hz).
     pub contacts_rate: Real,
-    /// Statistics (Hz).
+    /// Rate of statistics (Hz).
     pub statistics_rate: Real,
-    /// Most grains in one ROS 2 message; larger packings are thinned out there.
+    /// Maximum number of grains in one ROS 2 message; larger packings are thinned out.
     pub grains_count_max: usize,
-    /// ROS 2.
+    /// The ROS 2 node.
     pub ros: Ros,
-    /// Zero-copy streams.
+    /// Whether shared memory streams are published.
     pub stream: bool,
-    /// Recording.
+    /// The recording.
     pub bag: Bag,
-    /// True keeps to real time where the machine is faster than that.
+    /// True if the run must not be faster than real time.
     pub real_time: bool,
 }
 
-/// How the node joins ROS 2.
+/// The ROS 2 node.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ros {
-    /// False leaves ROS 2 out.
+    /// False disables ROS 2.
     pub enabled: bool,
-    /// Domain; `None` takes `ROS_DOMAIN_ID`, else 0.
+    /// DDS domain; `None` takes `ROS_DOMAIN_ID`, or 0.
     pub domain_id: Option<u16>,
-    /// True joins the local network; otherwise only this host.
+    /// True discovers nodes on the local network; false only on this host.
     pub lan: bool,
     /// Full name of the node.
     pub node: String,
-    /// Names that are replaced, and by what; said on the command line only.
+    /// Remapped names: from, to. Only the command line sets them.
     pub remaps: Vec<(String, String)>,
-    /// Wire format of `simulation_interfaces`, 1 or 2; `None` takes that of `ROS_DISTRO`, else 2.
+    /// Wire format of `simulation_interfaces`, 1 or 2; `None` takes that of `ROS_DISTRO`, or 2.
     pub interfaces_version: Option<u8>,
-    /// Where else the services of `simulation_interfaces` are offered, such as `/gzserver`.
+    /// Second prefix for the services of `simulation_interfaces`, such as `/gzserver`.
     pub interfaces_prefix: Option<String>,
-    /// True keeps time going through resets, so that controllers and frames survive them.
+    /// True keeps time running through resets, so that controllers and tf buffers survive them.
     pub monotonic_clock: bool,
 }
 
 impl Ros {
-    /// ROS 2 left out, and nothing chosen.
+    /// ROS 2 disabled, all else unset.
     pub const OFF: Self = Self {
         enabled: false,
         domain_id: None,
@@ -386,43 +388,43 @@ impl Ros {
     };
 }
 
-/// Recording.
+/// The recording of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bag {
-    /// False records nothing.
+    /// False disables recording.
     pub enabled: bool,
-    /// Folder of the recording; `None` makes one under `bags/` named by scene and time.
+    /// Folder of the recording; `None` creates `bags/SCENE_TIME`.
     pub folder: Option<PathBuf>,
-    /// What to do when the writer is behind.
+    /// What to do when the disk is too slow.
     pub on_full: OnFull,
     /// What to do when the disk is full or the folder cannot be written.
     pub on_error: OnError,
-    /// How often all that is needed to go on is kept, in simulated time (Hz); `None` keeps only
-    /// the start.
+    /// Rate of checkpoints, from which a run can be resumed, in simulated time (Hz); `None` keeps
+    /// only the start.
     pub checkpoint_rate: Option<Real>,
-    /// How messages are compressed.
+    /// Compression of the messages.
     pub compression: BagCompression,
-    /// A file that has become as long as this is followed by another (MiB).
+    /// Size at which a new file is started (MiB).
     pub split_size: Option<u64>,
-    /// A file that has become as old as this is followed by another, in simulated time (s).
+    /// Simulated time after which a new file is started (s).
     pub split_duration: Option<Real>,
 }
 
-/// How a recording compresses its messages.
+/// Compression of the messages of a recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BagCompression {
-    /// Small, and fast enough.
+    /// Zstandard: smaller files.
     Zstd,
-    /// Faster, larger.
+    /// LZ4: faster, larger files.
     Lz4,
-    /// As they are.
+    /// No compression.
     Uncompressed,
 }
 
 /// What a recording does when its queue is full.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OnFull {
-    /// The run waits: nothing is lost.
+    /// The run waits; nothing is lost.
     Wait,
     /// The oldest snapshot is dropped and counted.
     DropOldest,
@@ -431,8 +433,8 @@ pub enum OnFull {
 /// What a run does when its recording fails.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OnError {
-    /// It goes on without recording.
+    /// The run continues without recording.
     Continue,
-    /// It stops.
+    /// The run stops.
     Stop,
 }

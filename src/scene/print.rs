@@ -1,4 +1,4 @@
-//! Writes a scene as YAML with units. What it writes reads back as the same scene, bit for bit.
+//! Writes a scene as YAML with units. Reading the text gives the same scene, bit for bit.
 
 use std::fmt::Write;
 
@@ -23,11 +23,11 @@ struct Printer {
 impl Printer {
     fn line(&mut self, key: &str, value: &str) {
         let indent = "  ".repeat(self.depth);
-        writeln!(self.text, "{indent}{key}: {value}").expect("a String takes any text");
+        writeln!(self.text, "{indent}{key}: {value}").expect("writing to a String cannot fail");
     }
 }
 
-/// A text in double quotes: JSON's strings are YAML's too.
+/// A string in double quotes; JSON strings are valid YAML.
 fn quoted(text: &str) -> String {
     serde_json::Value::from(text).to_string()
 }
@@ -40,7 +40,7 @@ fn vector_text(kind: Quantity, vector: &Vec3) -> String {
 impl Visitor for Printer {
     fn section(&mut self, key: &'static str, inside: impl FnOnce(&mut Self)) {
         let indent = "  ".repeat(self.depth);
-        writeln!(self.text, "{indent}{key}:").expect("a String takes any text");
+        writeln!(self.text, "{indent}{key}:").expect("writing to a String cannot fail");
         self.depth += 1;
         inside(self);
         self.depth -= 1;
@@ -89,11 +89,11 @@ impl Visitor for Printer {
         self.line(key, &format!("[{}]", numbers.join(", ")));
     }
 
-    fn whole(&mut self, key: &'static str, _min: u64, _max: u64, value: &mut u64) {
+    fn integer(&mut self, key: &'static str, _min: u64, _max: u64, value: &mut u64) {
         self.line(key, &value.to_string());
     }
 
-    fn whole_or(
+    fn integer_or(
         &mut self,
         key: &'static str,
         word: &'static str,

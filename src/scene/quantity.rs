@@ -1,32 +1,30 @@
-//! Quantities as people write them: "2 mm", "-90 kPa", "7 us". A bare number is refused where a
-//! unit is due.
+//! Numbers with units: "2 mm", "-90 kPa", "7 us". A number without its unit is rejected.
 //!
-//! Decimal prefixes are applied to the written digits, not to the parsed number, so that `2 mm`
-//! is the very double that `0.002` is, and printing a quantity and reading it again gives the
-//! same bits.
+//! Decimal prefixes are applied to the written digits, not to the parsed number. Thus `2 mm` is
+//! exactly the double `0.002`, and printing and parsing a quantity gives the same bits.
 
 use std::f64::consts::PI;
 
 use crate::base::Real;
 
 /// A unit of a dimension: the written number times `factor` times ten to the power `exponent` is
-/// SI.
+/// the value in SI.
 #[derive(Debug, PartialEq)]
 pub struct Unit {
-    /// How it is written.
+    /// Symbol, as written in scenes.
     pub name: &'static str,
     /// Decimal exponent.
     pub exponent: i32,
-    /// What is left where the scale is not a power of ten.
+    /// Factor besides the power of ten.
     pub factor: Real,
-    /// True if quantities are printed in it; others are only read.
+    /// True if quantities are printed in this unit; others are only parsed.
     pub is_printed: bool,
 }
 
-/// A physical dimension with the units it may be written in; the first one is SI.
+/// A physical dimension and its units; the first one is SI.
 #[derive(Debug, PartialEq)]
 pub struct Dimension {
-    /// Its name in messages.
+    /// Name, used in messages.
     pub name: &'static str,
     /// Accepted units.
     pub units: &'static [Unit],
@@ -107,32 +105,34 @@ pub static FREQUENCY: Dimension =
 /// Why a text is not a quantity.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum QuantityError {
-    /// A number without a unit.
-    #[error("`{value}` has no unit; write one of: {units}")]
+    /// The unit is missing.
+    #[error("`{value}` has no unit; use one of: {units}")]
     NoUnit {
-        /// As written.
+        /// The value as written.
         value: String,
         /// Accepted units.
         units: String,
     },
-    /// A unit of something else.
-    #[error("`{value}` has the unit `{unit}`; a {dimension} is written in one of: {units}")]
+    /// The unit belongs to another dimension.
+    #[error(
+        "`{value}` has the unit `{unit}`, which is no unit of {dimension}; use one of: {units}"
+    )]
     UnknownUnit {
-        /// As written.
+        /// The value as written.
         value: String,
         /// The unit found.
         unit: String,
-        /// What was expected.
+        /// The expected dimension.
         dimension: &'static str,
         /// Accepted units.
         units: String,
     },
-    /// No number at its start.
-    #[error("`{value}` is not a {dimension}; write a number and one of: {units}")]
+    /// The text does not start with a number.
+    #[error("`{value}` is not a quantity of {dimension}; write a number and one of: {units}")]
     NotANumber {
-        /// As written.
+        /// The value as written.
         value: String,
-        /// What was expected.
+        /// The expected dimension.
         dimension: &'static str,
         /// Accepted units.
         units: String,
@@ -140,10 +140,10 @@ pub enum QuantityError {
 }
 
 impl Dimension {
-    /// Reads `text` as a quantity of this dimension, in SI.
+    /// Parses a quantity of this dimension; the result is in SI.
     ///
     /// # Errors
-    /// If number or unit are missing or the unit belongs to something else.
+    /// If the number or the unit is missing, or the unit belongs to another dimension.
     pub fn parse(&self, text: &str) -> Result<Real, QuantityError> {
         let value = || text.trim().to_owned();
         let plain = in_plain_letters(text.trim());
@@ -165,16 +165,16 @@ impl Dimension {
         Ok(unit.to_si(number))
     }
 
-    /// The shortest text that reads back as exactly `value`; of equally short ones that whose
-    /// number is everyday.
+    /// The shortest text that parses to exactly `value`. Of equally short texts, one whose number is
+    /// from 1 to 1000.
     pub fn print(&self, value: Real) -> String {
         let printed = self.units.iter().filter(|unit| unit.is_printed);
         let candidates = printed.filter_map(|unit| unit.print(value));
-        let effort = |(text, is_everyday): &(String, bool)| (text.len(), !is_everyday);
+        let effort = |(text, is_handy): &(String, bool)| (text.len(), !is_handy);
         candidates.min_by_key(effort).expect("the first unit is SI and prints any number").0
     }
 
-    /// Accepted units for messages.
+    /// Accepted units, for messages.
     pub fn unit_names(&self) -> String {
         self.units.iter().map(|unit| unit.name).collect::<Vec<_>>().join(", ")
     }
@@ -185,7 +185,7 @@ impl Unit {
         shifted(number, self.exponent) * self.factor
     }
 
-    /// The text, and whether its number is one of every day: from 1 to 1000.
+    /// The text, and whether its number is from 1 to 1000.
     fn print(&self, value: Real) -> Option<(String, bool)> {
         let number = value / self.factor;
         if !number.is_finite() {
@@ -193,12 +193,12 @@ impl Unit {
         }
         let written = decimal(number, -self.exponent);
         let is_exact = self.to_si(&written).to_bits() == value.to_bits();
-        let is_everyday = (1.0..1000.0).contains(&shifted(&written, 0).abs());
-        is_exact.then(|| (format!("{written} {}", self.name), is_everyday))
+        let is_handy = (1.0..1000.0).contains(&shifted(&written, 0).abs());
+        is_exact.then(|| (format!("{written} {}", self.name), is_handy))
     }
 }
 
-/// The letters that keyboards offer for units, in the spelling of the tables above.
+/// Replaces special characters in units by the spelling of the tables above.
 fn in_plain_letters(text: &str) -> String {
     text.replace(['µ', 'μ'], "u")
         .replace('³', "^3")
@@ -207,7 +207,7 @@ fn in_plain_letters(text: &str) -> String {
         .replace(['·', '*'], " ")
 }
 
-/// The longest start of `text` that is a decimal number, and what follows.
+/// The longest prefix of `text` that is a decimal number, and the rest.
 fn split_number(text: &str) -> Option<(&str, &str)> {
     let is_part = |c: char| c.is_ascii_digit() || "+-.eE".contains(c);
     let longest = text.find(|c| !is_part(c)).unwrap_or(text.len());
@@ -216,7 +216,7 @@ fn split_number(text: &str) -> Option<(&str, &str)> {
     Some((&text[..end], text[end..].trim()))
 }
 
-/// A decimal number as written, times ten to the power `exponent`, rounded once.
+/// Parses a decimal number times ten to the power `exponent`, rounded once.
 fn shifted(number: &str, exponent: i32) -> Real {
     let (mantissa, own) = number.split_once(['e', 'E']).unwrap_or((number, "0"));
     let own: i32 = own.parse().unwrap_or(0);
@@ -228,7 +228,7 @@ fn shifted(number: &str, exponent: i32) -> Real {
 fn decimal(value: Real, exponent: i32) -> String {
     let text = format!("{value:e}");
     let (mantissa, own) = text.split_once('e').expect("`{:e}` writes an exponent");
-    let own: i32 = own.parse().expect("`{:e}` writes a whole exponent");
+    let own: i32 = own.parse().expect("`{:e}` writes an integer exponent");
     let total = own + exponent;
     if (-5..=8).contains(&total) {
         place_point(mantissa, total)
@@ -264,7 +264,7 @@ mod tests {
 
     /// Oracle: the double that Rust's own parser gives for the SI value, bit for bit.
     #[test]
-    fn written_quantities_are_the_nearest_doubles() {
+    fn parsed_quantities_are_the_nearest_doubles() {
         let cases: [(&Dimension, &str, Real); 14] = [
             (&LENGTH, "2 mm", 0.002),
             (&LENGTH, "1.9mm", 0.0019),
@@ -287,9 +287,9 @@ mod tests {
         }
     }
 
-    /// Oracle: the text that a person would write.
+    /// Oracle: the usual way to write each value.
     #[test]
-    fn quantities_are_printed_short() {
+    fn quantities_are_printed_in_the_shortest_form() {
         let cases: [(&Dimension, Real, &str); 9] = [
             (&PRESSURE, 1.25e6, "1.25 MPa"),
             (&LENGTH, 0.0019, "1.9 mm"),
@@ -307,12 +307,12 @@ mod tests {
     }
 
     #[test]
-    fn faults_name_the_accepted_units() {
+    fn errors_list_the_accepted_units() {
         let message = |text: &str| LENGTH.parse(text).expect_err(text).to_string();
-        assert_eq!(message("2"), "`2` has no unit; write one of: m, cm, mm, um");
+        assert_eq!(message("2"), "`2` has no unit; use one of: m, cm, mm, um");
         assert_eq!(
             message("2 kPa"),
-            "`2 kPa` has the unit `kPa`; a length is written in one of: m, cm, mm, um"
+            "`2 kPa` has the unit `kPa`, which is no unit of length; use one of: m, cm, mm, um"
         );
         for not_a_number in ["mm", "", "inf m", "nan mm", "two mm", "1e999 m"] {
             assert!(
@@ -324,14 +324,14 @@ mod tests {
         }
     }
 
-    /// In degrees this is beyond the largest double.
+    /// In degrees this value exceeds the largest double.
     #[test]
     fn numbers_that_overflow_in_a_unit_are_printed_in_another() {
         assert_eq!(ANGLE.print(7.5e307), "7.5e307 rad");
     }
 
     proptest! {
-        /// Printing and reading gives the same bits for any finite number.
+        /// Printing and parsing gives the same bits for any finite number.
         #[test]
         fn print_and_parse_are_inverse(value in prop::num::f64::NORMAL | prop::num::f64::ZERO) {
             for dimension in [&LENGTH, &PRESSURE, &ANGLE, &DENSITY] {

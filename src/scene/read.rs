@@ -1,39 +1,39 @@
-//! Fills a scene from a tree and collects all faults on the way.
+//! Fills a scene from a tree and collects all errors.
 
 use super::{
-    error::{Fault, Problem, near_matches},
+    error::{Diagnostic, DiagnosticKind, near_matches},
     quantity::Dimension,
     tree::{Node, Value},
     visit::{Quantity, Range, Visitor},
 };
 use crate::base::{Real, Vec3};
 
-/// Walks a tree of values.
+/// Reads a tree of values.
 pub(super) struct Reader<'a> {
     open: Vec<Section<'a>>,
-    /// Values to show as examples in messages.
+    /// Values that messages show as examples.
     examples: &'a Node,
-    faults: Vec<Fault>,
+    diagnostics: Vec<Diagnostic>,
 }
 
 struct Section<'a> {
     key: &'static str,
-    /// `None` where the section is missing or not a map: then its keys are silent.
+    /// `None` if the section is missing or not a map: then its keys cause no errors.
     node: Option<&'a Node>,
     known: Vec<&'static str>,
 }
 
 impl<'a> Reader<'a> {
-    /// A reader at the root of `tree`. `examples` is a tree of values that are right.
+    /// A reader at the root of `tree`. `examples` is a tree of valid values.
     pub(super) fn new(tree: &'a Node, examples: &'a Node) -> Self {
         let root = Section { key: "", node: Some(tree), known: Vec::new() };
-        let mut reader = Self { open: vec![root], examples, faults: Vec::new() };
+        let mut reader = Self { open: vec![root], examples, diagnostics: Vec::new() };
         if !matches!(tree.value, Value::Map(_)) {
             reader.open[0].node = None;
-            reader.fault(
+            reader.report(
                 tree,
                 String::new(),
-                Problem::WrongKind {
+                DiagnosticKind::WrongType {
                     expected: "a map of keys and values",
                     found: tree.describe(),
                     example: "name: my_scene".to_owned(),
@@ -43,12 +43,12 @@ impl<'a> Reader<'a> {
         reader
     }
 
-    /// All faults, in the order of the text. Call it after the walk.
-    pub(super) fn finish(mut self) -> Vec<Fault> {
+    /// All errors, in the order of the text. To be called after all keys have been visited.
+    pub(super) fn finish(mut self) -> Vec<Diagnostic> {
         while !self.open.is_empty() {
             self.close_section();
         }
-        self.faults
+        self.diagnostics
     }
 
     fn path(&self, key: &str) -> String {
@@ -56,9 +56,9 @@ impl<'a> Reader<'a> {
         above.chain([key]).collect::<Vec<_>>().join(".")
     }
 
-    /// The node of a key of the open section; a missing one is a fault.
+    /// The node of a key of the open section. Reports an error if the key is missing.
     fn take(&mut self, key: &'static str) -> Option<&'a Node> {
-        let section = self.open.last_mut().expect("the root is open until the end");
+        let section = self.open.last_mut().expect("the root stays open until the end");
         section.known.push(key);
         let here = section.node?;
         if let Some(found) = here.get(key) {
@@ -66,23 +66,27 @@ impl<'a> Reader<'a> {
         }
         let path = self.path(key);
         let example = self.example(&path, "");
-        let is_default = here.place.source == self.examples.place.source;
+        let is_default = here.location.source == self.examples.location.source;
         let root = self.open[0].node.filter(|_| is_default);
-        self.fault(root.unwrap_or(here), path, Problem::Missing { example });
+        self.report(root.unwrap_or(here), path, DiagnosticKind::Missing { example });
         None
     }
 
-    fn fault(&mut self, at: &Node, key: String, problem: Problem) {
-        self.faults.push(Fault { place: at.place.clone(), key, problem });
+    fn report(&mut self, at: &Node, key: String, kind: DiagnosticKind) {
+        self.diagnostics.push(Diagnostic { location: at.location.clone(), key, kind });
     }
 
-    fn wrong_kind(&mut self, at: &Node, key: &str, expected: &'static str, fallback: &str) {
+    fn wrong_type(&mut self, at: &Node, key: &str, expected: &'static str, fallback: &str) {
         let path = self.path(key);
         let example = self.example(&path, fallback);
-        self.fault(at, path, Problem::WrongKind { expected, found: at.describe(), example });
+        self.report(
+            at,
+            path,
+            DiagnosticKind::WrongType { expected, found: at.describe(), example },
+        );
     }
 
-    /// A value that would do: the default, or the known example of a key without one.
+    /// A valid value: the default, or the example for a key without a default.
     fn example(&self, path: &str, fallback: &str) -> String {
         let known = EXAMPLES.iter().find(|(key, _)| *key == path).map(|(_, text)| *text);
         let default = self.examples.at(path).filter(|it| !matches!(it.value, Value::Map(_)));
@@ -91,7 +95,7 @@ impl<'a> Reader<'a> {
     }
 
     fn close_section(&mut self) {
-        let section = self.open.pop().expect("sections close once");
+        let section = self.open.pop().expect("every section is closed once");
         let Some(Node { value: Value::Map(entries), .. }) = section.node else { return };
         for entry in entries {
             if section.known.contains(&entry.key.as_str()) {
@@ -101,10 +105,10 @@ impl<'a> Reader<'a> {
             if !key.is_empty() {
                 key.push('.');
             }
-            self.faults.push(Fault {
-                place: entry.place.clone(),
+            self.diagnostics.push(Diagnostic {
+                location: entry.location.clone(),
                 key: key + &entry.key,
-                problem: Problem::UnknownKey {
+                kind: DiagnosticKind::UnknownKey {
                     near: near_matches(&entry.key, section.known.iter().copied()),
                     known: section.known.iter().map(|&key| key.to_owned()).collect(),
                 },
@@ -116,21 +120,21 @@ impl<'a> Reader<'a> {
         let path = self.path(key);
         let text = match &node.value {
             Value::Text(text) => text.clone(),
-            Value::Whole(number) => number.to_string(),
+            Value::Integer(number) => number.to_string(),
             Value::Real(number) => number.to_string(),
             _ => {
-                self.wrong_kind(node, key, "a number with a unit", &unit_example(kind.dimension));
+                self.wrong_type(node, key, "a number with a unit", &unit_example(kind.dimension));
                 return None;
             }
         };
         match kind.dimension.parse(&text) {
-            Err(error) => self.fault(node, path, error.into()),
+            Err(error) => self.report(node, path, error.into()),
             Ok(value) if kind.range.contains(value) => return Some(value),
             Ok(_) => {
                 let example = self.example(&path, &unit_example(kind.dimension));
                 let limit = kind.range.describe(|number| kind.dimension.print(number));
                 let found = node.describe();
-                self.fault(node, path, Problem::OutOfRange { found, limit, example });
+                self.report(node, path, DiagnosticKind::OutOfRange { found, limit, example });
             }
         }
         None
@@ -140,9 +144,9 @@ impl<'a> Reader<'a> {
         #[expect(clippy::cast_precision_loss, reason = "a scene's numbers are far below 2^53")]
         let value = match node.value {
             Value::Real(number) => number,
-            Value::Whole(number) => number as Real,
+            Value::Integer(number) => number as Real,
             _ => {
-                self.wrong_kind(node, key, "a number without a unit", "0.5");
+                self.wrong_type(node, key, "a number without a unit", "0.5");
                 return None;
             }
         };
@@ -152,13 +156,17 @@ impl<'a> Reader<'a> {
         let path = self.path(key);
         let example = self.example(&path, "0.5");
         let limit = range.describe(|number| number.to_string());
-        self.fault(node, path, Problem::OutOfRange { found: node.describe(), limit, example });
+        self.report(
+            node,
+            path,
+            DiagnosticKind::OutOfRange { found: node.describe(), limit, example },
+        );
         None
     }
 
-    fn parse_whole(&mut self, node: &Node, key: &str, (min, max): (u64, u64)) -> Option<u64> {
-        let Value::Whole(number) = node.value else {
-            self.wrong_kind(node, key, "a whole number", "1");
+    fn parse_integer(&mut self, node: &Node, key: &str, (min, max): (u64, u64)) -> Option<u64> {
+        let Value::Integer(number) = node.value else {
+            self.wrong_type(node, key, "an integer", "1");
             return None;
         };
         let inside = u64::try_from(number).ok().filter(|number| (min..=max).contains(number));
@@ -166,7 +174,11 @@ impl<'a> Reader<'a> {
             let path = self.path(key);
             let example = self.example(&path, "1");
             let limit = format!("from {min} to {max}");
-            self.fault(node, path, Problem::OutOfRange { found: node.describe(), limit, example });
+            self.report(
+                node,
+                path,
+                DiagnosticKind::OutOfRange { found: node.describe(), limit, example },
+            );
         }
         inside
     }
@@ -182,7 +194,7 @@ impl<'a> Reader<'a> {
         }
         let one = unit_example(kind.dimension);
         let example = format!("[{one}, {one}, {one}]");
-        self.wrong_kind(node, key, "three numbers with units, [x, y, z]", &example);
+        self.wrong_type(node, key, "three numbers with units, [x, y, z]", &example);
         None
     }
 
@@ -190,11 +202,11 @@ impl<'a> Reader<'a> {
         let near = near_matches(found.trim_matches('`'), known.iter().copied());
         let path = self.path(key);
         let known = known.join(", ");
-        self.fault(at, path, Problem::NotOneOf { found, known, near });
+        self.report(at, path, DiagnosticKind::NotOneOf { found, known, near });
     }
 }
 
-/// Examples of keys that have no default.
+/// Examples for keys without a default.
 const EXAMPLES: &[(&str, &str)] = &[
     ("name", "my_scene"),
     ("object", "object: { shape: { sphere: { radius: 10 mm } }, position: [0 m, 0 m, 10 mm] }"),
@@ -211,7 +223,7 @@ fn unit_example(dimension: &Dimension) -> String {
     if everyday.is_empty() { format!("1 {}", dimension.units[0].name) } else { everyday.to_owned() }
 }
 
-/// A scalar or list of scalars as it was written.
+/// A scalar or a list of scalars, as written.
 pub(super) fn plain(node: &Node) -> Option<String> {
     match &node.value {
         Value::List(items) => {
@@ -230,7 +242,7 @@ fn first_entry(map: &Node) -> Option<String> {
     Some(format!("{{ {}: {} }}", entry.key, plain(&entry.node)?))
 }
 
-/// True if `node` is the word that stands for "none".
+/// True if `node` is `word`.
 fn is_word(node: &Node, word: &str) -> bool {
     matches!(&node.value, Value::Text(text) if text == word)
 }
@@ -242,7 +254,7 @@ impl Visitor for Reader<'_> {
             if !is_map {
                 let path = self.path(key);
                 let first = self.examples.at(&path).and_then(first_entry).unwrap_or_default();
-                self.wrong_kind(node, key, "a map of keys and values", &first);
+                self.wrong_type(node, key, "a map of keys and values", &first);
             }
             is_map.then_some(node)
         });
@@ -275,7 +287,7 @@ impl Visitor for Reader<'_> {
     fn vectors(&mut self, key: &'static str, kind: Quantity, value: &mut Vec<Vec3>) {
         let Some(node) = self.take(key) else { return };
         let Value::List(items) = &node.value else {
-            self.wrong_kind(node, key, "a list of points", "");
+            self.wrong_type(node, key, "a list of points", "");
             return;
         };
         *value = items.iter().filter_map(|item| self.parse_vector(item, key, kind)).collect();
@@ -294,7 +306,7 @@ impl Visitor for Reader<'_> {
                     *value = self.parse_number(item, key, Range::Any).unwrap_or(Real::NAN);
                 }
             }
-            _ => self.wrong_kind(node, key, "a list of numbers", "[0, 0, 0, 1]"),
+            _ => self.wrong_type(node, key, "a list of numbers", "[0, 0, 0, 1]"),
         }
     }
 
@@ -302,7 +314,7 @@ impl Visitor for Reader<'_> {
         let Some(node) = self.take(key) else { return };
         let Value::List(items) = &node.value else {
             let one = unit_example(kind.dimension);
-            self.wrong_kind(node, key, "a list of numbers with units", &format!("[{one}, {one}]"));
+            self.wrong_type(node, key, "a list of numbers with units", &format!("[{one}, {one}]"));
             return;
         };
         *value = items.iter().filter_map(|item| self.parse_quantity(item, key, kind)).collect();
@@ -311,18 +323,18 @@ impl Visitor for Reader<'_> {
     fn plain_numbers(&mut self, key: &'static str, range: Range, value: &mut Vec<Real>) {
         let Some(node) = self.take(key) else { return };
         let Value::List(items) = &node.value else {
-            self.wrong_kind(node, key, "a list of numbers", "[0.5, 1]");
+            self.wrong_type(node, key, "a list of numbers", "[0.5, 1]");
             return;
         };
         *value = items.iter().filter_map(|item| self.parse_number(item, key, range)).collect();
     }
 
-    fn whole(&mut self, key: &'static str, min: u64, max: u64, value: &mut u64) {
-        let found = self.take(key).and_then(|node| self.parse_whole(node, key, (min, max)));
+    fn integer(&mut self, key: &'static str, min: u64, max: u64, value: &mut u64) {
+        let found = self.take(key).and_then(|node| self.parse_integer(node, key, (min, max)));
         *value = found.unwrap_or(0);
     }
 
-    fn whole_or(
+    fn integer_or(
         &mut self,
         key: &'static str,
         word: &'static str,
@@ -330,14 +342,14 @@ impl Visitor for Reader<'_> {
         value: &mut Option<u64>,
     ) {
         let node = self.take(key).filter(|node| !is_word(node, word));
-        *value = node.and_then(|node| self.parse_whole(node, key, (0, max)));
+        *value = node.and_then(|node| self.parse_integer(node, key, (0, max)));
     }
 
     fn flag(&mut self, key: &'static str, value: &mut bool) {
         let Some(node) = self.take(key) else { return };
         match node.value {
             Value::Flag(flag) => *value = flag,
-            _ => self.wrong_kind(node, key, "true or false", "true"),
+            _ => self.wrong_type(node, key, "true or false", "true"),
         }
     }
 
@@ -345,7 +357,7 @@ impl Visitor for Reader<'_> {
         let Some(node) = self.take(key) else { return };
         match &node.value {
             Value::Text(text) => value.clone_from(text),
-            _ => self.wrong_kind(node, key, "a text", "text"),
+            _ => self.wrong_type(node, key, "a string", "text"),
         }
     }
 
@@ -389,7 +401,7 @@ impl Visitor for Reader<'_> {
         };
         let chosen = known.iter().find(|name| **name == entry.key).copied();
         if chosen.is_none() {
-            let at = Node { place: entry.place.clone(), value: Value::Null };
+            let at = Node { location: entry.location.clone(), value: Value::Null };
             self.not_one_of(&at, key, format!("`{}`", entry.key), known);
         }
         chosen

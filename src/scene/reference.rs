@@ -1,7 +1,7 @@
 //! Describes all keys of a scene: as a page of the documentation, and as a JSON Schema with which
 //! editors complete and check scene files.
 //!
-//! Both come from the one walk over `schema`, so they cannot differ from what is read.
+//! Both visit the keys of `schema`, as the reader does, so they always match what is accepted.
 
 use std::fmt::Write;
 
@@ -18,7 +18,7 @@ use super::{
 };
 use crate::base::{Real, Vec3};
 
-/// More than the largest number of alternatives of a key.
+/// At least the largest number of alternatives of a key.
 const N_WALKS: usize = 8;
 
 /// The page `docs/scene_keys.md`.
@@ -96,23 +96,23 @@ pub fn json_schema() -> String {
             at["required"] = json!(names);
         }
     }
-    serde_json::to_string_pretty(&root).expect("all keys are texts") + "\n"
+    serde_json::to_string_pretty(&root).expect("all keys are strings") + "\n"
 }
 
 /// Keys that every scene has to give.
 const REQUIRED: &[&str] = &["name", "object", "object.shape", "object.position"];
 
-/// What may be written under a key.
+/// What a key accepts.
 #[derive(Clone, Debug)]
 enum Kind {
     Section,
     Quantity(Quantity, Option<&'static str>),
-    /// How many; `None` for any number.
+    /// The length; `None` accepts any.
     Quantities(Quantity, Option<usize>),
     Points(Quantity),
     Number(Range),
     Numbers(Range, Option<usize>),
-    Whole(u64, u64, Option<&'static str>),
+    Integer(u64, u64, Option<&'static str>),
     Flag,
     Text(Option<&'static str>),
     Choice(Vec<&'static str>),
@@ -142,7 +142,7 @@ impl Key {
         matches!(self.kind, Kind::Section) && !self.doc.is_empty()
     }
 
-    /// The section under whose heading it stands.
+    /// The section whose table lists the key.
     fn heading(&self) -> String {
         let parts: Vec<&str> = self.path.split('.').collect();
         let depth = match parts.as_slice() {
@@ -155,7 +155,7 @@ impl Key {
 }
 
 impl Kind {
-    /// In words, for people.
+    /// A description for the documentation.
     fn describe(&self) -> String {
         let or = |word: &Option<&str>| word.map_or_else(String::new, |it| format!(", or `{it}`"));
         let words = |known: &[&str]| -> String {
@@ -171,8 +171,8 @@ impl Kind {
             Self::Number(range) => numbers("number", *range),
             Self::Numbers(range, Some(n)) => numbers(&format!("{n} numbers"), *range),
             Self::Numbers(range, None) => numbers("list of numbers", *range),
-            Self::Whole(min, u64::MAX, word) => format!("integer, at least {min}{}", or(word)),
-            Self::Whole(min, max, word) => format!("integer, {min} to {max}{}", or(word)),
+            Self::Integer(min, u64::MAX, word) => format!("integer, at least {min}{}", or(word)),
+            Self::Integer(min, max, word) => format!("integer, {min} to {max}{}", or(word)),
             Self::Flag => "`true`, `false`".to_owned(),
             Self::Text(word) => format!("text{}", or(word)),
             Self::Choice(known) => words(known),
@@ -180,7 +180,7 @@ impl Kind {
         }
     }
 
-    /// As a schema.
+    /// The JSON Schema.
     fn to_json(&self, description: &str) -> Json {
         let mut schema = match self {
             Self::Section => object(""),
@@ -189,7 +189,7 @@ impl Kind {
             Self::Points(kind) => list(&list(&text_schema(kind.dimension, None), Some(3)), None),
             Self::Number(range) => number_schema(*range),
             Self::Numbers(range, n) => list(&number_schema(*range), *n),
-            Self::Whole(min, max, word) => {
+            Self::Integer(min, max, word) => {
                 let number = json!({"type": "integer", "minimum": min, "maximum": max});
                 match word {
                     Some(word) => json!({"anyOf": [number, {"const": word}]}),
@@ -280,18 +280,18 @@ fn number_schema(range: Range) -> Json {
 }
 
 fn line(text: &mut String, line: &str) {
-    writeln!(text, "{line}").expect("a String takes any text");
+    writeln!(text, "{line}").expect("writing to a String cannot fail");
 }
 
 fn defaults() -> Node {
-    yaml::parse(DEFAULTS, DEFAULTS_FILE).expect("the defaults are read before every scene")
+    yaml::parse(DEFAULTS, DEFAULTS_FILE).expect("the defaults are valid YAML")
 }
 
 /// All keys, in the order of the schema.
 fn keys() -> Vec<Key> {
     let mut collector = Collector::default();
-    // Each walk takes another alternative. The last one takes the first of each, and what a walk
-    // finds is inserted before what the walks before it found at the same place.
+    // Each walk takes other alternatives; the last one takes the first of each. Keys that a walk
+    // adds are inserted before those that earlier walks found at the same position.
     for i in (0..N_WALKS).rev() {
         (collector.i_alternative, collector.next) = (i, 0);
         schema::scene(&mut collector, &mut unset::scene());
@@ -374,18 +374,18 @@ impl Visitor for Collector {
         self.add(key, Kind::Numbers(range, None));
     }
 
-    fn whole(&mut self, key: &'static str, min: u64, max: u64, _value: &mut u64) {
-        self.add(key, Kind::Whole(min, max, None));
+    fn integer(&mut self, key: &'static str, min: u64, max: u64, _value: &mut u64) {
+        self.add(key, Kind::Integer(min, max, None));
     }
 
-    fn whole_or(
+    fn integer_or(
         &mut self,
         key: &'static str,
         word: &'static str,
         max: u64,
         _value: &mut Option<u64>,
     ) {
-        self.add(key, Kind::Whole(0, max, Some(word)));
+        self.add(key, Kind::Integer(0, max, Some(word)));
     }
 
     fn flag(&mut self, key: &'static str, _value: &mut bool) {
@@ -429,15 +429,18 @@ impl Visitor for Collector {
 mod tests {
     use super::*;
 
-    /// Oracle: `schema::scene` calls `doc` before each key; sections that repeat an alternative
-    /// and those named after one have none.
+    /// Oracle: `schema::scene` calls `doc` before each key. Sections of alternatives have no
+    /// description.
     #[test]
     fn every_key_is_described() {
         let keys = keys();
         let is_silent = |it: &&Key| !matches!(it.kind, Kind::Section) && it.doc.is_empty();
         let silent: Vec<_> = keys.iter().filter(is_silent).map(|it| &it.path).collect();
         assert!(silent.is_empty(), "add `walk.doc` before {silent:?}");
-        assert!(keys.iter().any(|it| it.path == "object.shape.mesh.unit"), "all shapes are walked");
+        assert!(
+            keys.iter().any(|it| it.path == "object.shape.mesh.unit"),
+            "all shapes are visited"
+        );
     }
 
     /// Oracle: the keys of the defaults file, read as plain YAML.

@@ -1,4 +1,4 @@
-//! Objects and scenes from files and texts that others name: scene files, and URDF for objects.
+//! Objects and scenes from files or text that a client names: scene files, and URDF for objects.
 
 use std::{
     path::{Path, PathBuf},
@@ -7,82 +7,82 @@ use std::{
 
 use super::{
     Object, Scene,
-    error::{Problem, SceneError},
+    error::{DiagnosticKind, SceneError},
     text,
 };
 
-/// What objects may be written in, as the ends of their files' names.
+/// Formats of objects, as file name extensions.
 pub const FORMATS: [&str; 2] = ["urdf", "yaml"];
 
-/// The key that names a file beside a scene.
+/// The key that names another file.
 const MESH_FILE: &str = "object.shape.mesh.file";
 
-/// Why there is no object, or no scene.
+/// Why an object or a scene cannot be loaded.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum ResourceFault {
-    /// It is in none of the formats.
+pub enum ResourceError {
+    /// The format is not supported.
     #[error("`{0}` is neither URDF (.urdf) nor a scene (.yaml)")]
     UnsupportedFormat(String),
-    /// There is nothing.
+    /// The resource does not exist.
     #[error("{0}")]
     NoResource(String),
-    /// It makes no sense.
+    /// The text is malformed.
     #[error("{0}")]
     Malformed(String),
-    /// It names files that are not there.
+    /// A file that it refers to does not exist.
     #[error("{0}")]
     MissingAssets(String),
-    /// It asks for something that is not simulated.
+    /// It has features that cannot be simulated.
     #[error("{0}")]
     Unsupported(String),
 }
 
-/// The object in a file (`uri`: a path or `file://`, looked for in `folder`) or in a text.
+/// Loads an object from a file (`uri`: a path relative to `folder`, or `file://`) or from text.
 ///
 /// # Errors
-/// If there is none that can be simulated.
-pub fn object(uri: &str, string: &str, folder: &Path) -> Result<Object, ResourceFault> {
+/// If there is no object that can be simulated.
+pub fn object(uri: &str, string: &str, folder: &Path) -> Result<Object, ResourceError> {
     if string.trim().is_empty() {
         let (path, text) = open(uri, folder)?;
         let inside = path.parent().unwrap_or(folder).to_owned();
         return match path.extension().and_then(|it| it.to_str()) {
             Some("urdf") => urdf(&text, &inside),
             Some("yaml" | "yml") => of_scene(&text, uri, &inside),
-            _ => Err(ResourceFault::UnsupportedFormat(uri.to_owned())),
+            _ => Err(ResourceError::UnsupportedFormat(uri.to_owned())),
         };
     }
     if string.contains("<robot") {
         urdf(string, folder)
     } else if string.trim_start().starts_with('<') {
-        Err(ResourceFault::UnsupportedFormat("a text that begins with `<`".to_owned()))
+        Err(ResourceError::UnsupportedFormat("text that starts with `<`".to_owned()))
     } else {
         of_scene(string, "resource_string", folder)
     }
 }
 
 #[cfg(feature = "meshes")]
-fn urdf(text: &str, folder: &Path) -> Result<Object, ResourceFault> {
-    super::urdf::read(text, folder, &blank()?)
+fn urdf(text: &str, folder: &Path) -> Result<Object, ResourceError> {
+    super::urdf::read(text, folder, &default_object()?)
 }
 
 #[cfg(not(feature = "meshes"))]
-fn urdf(_: &str, _: &Path) -> Result<Object, ResourceFault> {
+fn urdf(_: &str, _: &Path) -> Result<Object, ResourceError> {
     let why = "URDF needs a jamgrip that was built with feature `meshes`";
-    Err(ResourceFault::Unsupported(why.to_owned()))
+    Err(ResourceError::Unsupported(why.to_owned()))
 }
 
-/// The scene in a file, or in a text if no file is named. With `ignores_assets` an object whose mesh
-/// cannot be had is left out.
+/// Loads a scene from a file, or from text if no file is named. With `ignores_assets`, an object whose
+/// mesh cannot be loaded is left out.
 ///
 /// # Errors
-/// If there is none that can be simulated.
+/// If there is no scene that can be simulated.
 pub fn scene(
     uri: &str,
     string: &str,
     folder: &Path,
     ignores_assets: bool,
-) -> Result<Scene, ResourceFault> {
-    let unsupported = |what: &str| Err(ResourceFault::UnsupportedFormat(what.to_owned()));
+) -> Result<Scene, ResourceError> {
+    let unsupported = |what: &str| Err(ResourceError::UnsupportedFormat(what.to_owned()));
     let (text, source, inside) = if !uri.is_empty() || string.trim().is_empty() {
         let (path, text) = open(uri, folder)?;
         if !matches!(path.extension().and_then(|it| it.to_str()), Some("yaml" | "yml")) {
@@ -90,7 +90,7 @@ pub fn scene(
         }
         (text, uri, path.parent().unwrap_or(folder).to_owned())
     } else if string.trim_start().starts_with('<') {
-        return unsupported("a text that begins with `<`");
+        return unsupported("text that starts with `<`");
     } else {
         (string.to_owned(), "resource_string", folder.to_owned())
     };
@@ -99,44 +99,44 @@ pub fn scene(
         Err(error) => match (of_mesh(&error), without_object(&text, source, &inside)) {
             (Some(_), Ok(scene)) if ignores_assets => Ok(scene),
             (Some(file), Ok(_)) if file.exists() => {
-                Err(ResourceFault::Unsupported(error.to_string()))
+                Err(ResourceError::Unsupported(error.to_string()))
             }
-            (Some(_), Ok(_)) => Err(ResourceFault::MissingAssets(error.to_string())),
-            _ => Err(ResourceFault::Malformed(error.to_string())),
+            (Some(_), Ok(_)) => Err(ResourceError::MissingAssets(error.to_string())),
+            _ => Err(ResourceError::Malformed(error.to_string())),
         },
     }
 }
 
-/// The mesh file that cannot be had, if one is at fault.
+/// The mesh file that cannot be loaded, if that is the error.
 fn of_mesh(error: &SceneError) -> Option<PathBuf> {
-    let SceneError::Faults(faults) = error else { return None };
-    faults.iter().find_map(|fault| match &fault.problem {
-        Problem::Unfit { value, .. } if fault.key == MESH_FILE => Some(PathBuf::from(value)),
+    let SceneError::Invalid(diagnostics) = error else { return None };
+    diagnostics.iter().find_map(|it| match &it.kind {
+        DiagnosticKind::Invalid { value, .. } if it.key == MESH_FILE => Some(PathBuf::from(value)),
         _ => None,
     })
 }
 
-/// A scene whose object cannot be had, without it.
+/// The scene without its object.
 fn without_object(text: &str, source: &str, folder: &Path) -> Result<Scene, SceneError> {
-    let aside = ["object.shape.sphere.radius=10 mm", "object.position=[100 m, 0 m, 100 m]"];
-    let scene = text::parse(text, source, folder, &aside.map(str::to_owned))?;
+    let placeholder = ["object.shape.sphere.radius=10 mm", "object.position=[100 m, 0 m, 100 m]"];
+    let scene = text::parse(text, source, folder, &placeholder.map(str::to_owned))?;
     Ok(Scene { objects: Vec::new(), ..scene })
 }
 
-/// A file's text.
-fn open(uri: &str, folder: &Path) -> Result<(PathBuf, String), ResourceFault> {
+/// Reads a file: its path and its text.
+fn open(uri: &str, folder: &Path) -> Result<(PathBuf, String), ResourceError> {
     if uri.is_empty() {
         let why = "neither uri nor resource_string is given".to_owned();
-        return Err(ResourceFault::NoResource(why));
+        return Err(ResourceError::NoResource(why));
     }
     let path = path(uri, folder)
-        .ok_or_else(|| ResourceFault::NoResource(format!("`{uri}` is no file")))?;
+        .ok_or_else(|| ResourceError::NoResource(format!("`{uri}` is not a file")))?;
     let text = std::fs::read_to_string(&path)
-        .map_err(|error| ResourceFault::NoResource(format!("`{uri}`: {error}")))?;
+        .map_err(|error| ResourceError::NoResource(format!("`{uri}`: {error}")))?;
     Ok((path, text))
 }
 
-/// The file that an address means: a path or `file://`; `None` for other kinds of addresses.
+/// The path of a URI: a path or `file://`; `None` for other schemes.
 pub fn path(uri: &str, folder: &Path) -> Option<PathBuf> {
     let path = uri.strip_prefix("file://").unwrap_or(uri);
     (!path.contains("://")).then(|| folder.join(path))
@@ -145,45 +145,44 @@ pub fn path(uri: &str, folder: &Path) -> Option<PathBuf> {
 /// The files of these formats in `folder`, by name.
 pub fn files(folder: &Path, formats: &[&str]) -> Vec<PathBuf> {
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
-    let is_meant = |file: &PathBuf| {
+    let has_format = |file: &PathBuf| {
         let end = file.extension().and_then(|it| it.to_str());
         end.is_some_and(|end| formats.contains(&end))
     };
-    let mut files: Vec<PathBuf> = entries.map(|it| it.path()).filter(is_meant).collect();
+    let mut files: Vec<PathBuf> = entries.map(|it| it.path()).filter(has_format).collect();
     files.sort();
     files
 }
 
-/// Folders, and when something in them last changed.
+/// Folders and their modification times, to notice changes.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Shelf(Vec<(PathBuf, Option<SystemTime>)>);
+pub struct FolderState(Vec<(PathBuf, Option<SystemTime>)>);
 
-impl Shelf {
-    /// The folders as they are now.
+impl FolderState {
+    /// The current state of `folders`.
     pub fn of(folders: &[PathBuf]) -> Self {
         let changed = |it: &PathBuf| std::fs::metadata(it).and_then(|it| it.modified()).ok();
         Self(folders.iter().map(|it| (it.clone(), changed(it))).collect())
     }
 }
 
-/// The object of a scene's text. It is lifted far above everything, because its own place does not
-/// matter.
-fn of_scene(text: &str, source: &str, folder: &Path) -> Result<Object, ResourceFault> {
+/// The object of a scene. It is moved far above everything else, because its position does not matter.
+fn of_scene(text: &str, source: &str, folder: &Path) -> Result<Object, ResourceError> {
     let overrides = [
         "controller=topics",
         "object.position=[0 m, 0 m, 10 m]",
         "flange.position=[0 m, 0 m, 100 m]",
     ];
     let scene: Result<Scene, _> = text::parse(text, source, folder, &overrides.map(str::to_owned));
-    let scene = scene.map_err(|error| ResourceFault::Malformed(error.to_string()))?;
+    let scene = scene.map_err(|error| ResourceError::Malformed(error.to_string()))?;
     let object = scene.objects.into_iter().next();
-    object.ok_or_else(|| ResourceFault::Malformed(format!("`{source}` has no object")))
+    object.ok_or_else(|| ResourceError::Malformed(format!("`{source}` has no object")))
 }
 
-/// An object with all defaults.
+/// An object with default values.
 #[cfg(feature = "meshes")]
-fn blank() -> Result<Object, ResourceFault> {
-    let text = "name: blank\nobject: { shape: { sphere: { radius: 10 mm } } }\n";
+fn default_object() -> Result<Object, ResourceError> {
+    let text = "name: defaults\nobject: { shape: { sphere: { radius: 10 mm } } }\n";
     of_scene(text, "the defaults", Path::new(""))
 }
 
@@ -192,7 +191,7 @@ mod tests {
     use super::*;
     use crate::scene::Shape;
 
-    /// Oracle: the values written.
+    /// Oracle: the values in the text.
     #[test]
     fn urdf_and_scene_texts_are_objects() {
         let urdf = r#"<robot name="ball"><link name="body">
@@ -210,10 +209,10 @@ mod tests {
         assert_eq!(object.name, "cube");
     }
 
-    /// Oracle: the contract of each kind of fault, and of leaving out what cannot be had.
+    /// Oracle: the documented kind of each error, and of `ignores_assets`.
     #[test]
-    fn scenes_are_read_or_refused_by_kind() {
-        use ResourceFault as F;
+    fn scenes_are_read_or_rejected_by_kind() {
+        use ResourceError as F;
         let folder = tempfile::tempdir().unwrap();
         let of = |uri: &str, text: &str, ignores| super::scene(uri, text, folder.path(), ignores);
         let ball =
@@ -233,8 +232,8 @@ mod tests {
     }
 
     #[test]
-    fn each_fault_has_its_kind() {
-        use ResourceFault as F;
+    fn each_error_has_its_kind() {
+        use ResourceError as F;
         let of = |uri: &str, text: &str| super::object(uri, text, Path::new("/nowhere"));
         let link =
             |inside: &str| format!("<robot name=\"r\"><link name=\"l\">{inside}</link></robot>");

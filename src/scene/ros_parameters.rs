@@ -1,14 +1,14 @@
-//! Files of parameters as ROS 2 writes them: nodes, below them `ros__parameters`, below those keys.
+//! ROS 2 parameter files: node names, below them `ros__parameters`, below that the keys.
 
 use super::{
     tree::{Node, Value},
     yaml,
 };
 
-/// The parameters of a node in a text, in the order written: keys with dots, values as text.
+/// The parameters of a node, in the order written: dotted keys, values as text.
 ///
 /// # Errors
-/// If the text is none of such a file.
+/// If the text is not a parameter file.
 pub fn of_node(text: &str, source: &str, node: &str) -> Result<Vec<(String, String)>, String> {
     let tree = yaml::parse(text, source).map_err(|error| error.to_string())?;
     let Value::Map(entries) = &tree.value else {
@@ -16,10 +16,10 @@ pub fn of_node(text: &str, source: &str, node: &str) -> Result<Vec<(String, Stri
     };
     let mut found = Vec::new();
     for entry in entries {
-        let is_meant = entry.key == "/**"
+        let is_for_node = entry.key == "/**"
             || entry.key == node
             || entry.key.trim_start_matches('/') == node.trim_start_matches('/');
-        if is_meant {
+        if is_for_node {
             let parameters = entry.node.get("ros__parameters").ok_or_else(|| {
                 format!("`{}` has no ros__parameters: write them below it", entry.key)
             })?;
@@ -46,7 +46,7 @@ fn plain(node: &Node) -> Option<String> {
     Some(match &node.value {
         Value::Null | Value::Map(_) => return None,
         Value::Flag(flag) => flag.to_string(),
-        Value::Whole(number) => number.to_string(),
+        Value::Integer(number) => number.to_string(),
         Value::Real(number) => number.to_string(),
         Value::Text(text) => text.clone(),
         Value::List(items) => {

@@ -15,29 +15,29 @@ use super::{
 };
 use crate::base::{Pose, Quat, Real, Vec3};
 
-/// Numbers below which a box or a thickness is surely a slip of the unit (m).
+/// Largest length; a larger one is a wrong unit (m).
 const LENGTH_MAX: Real = 10.0;
-/// Density scaling beyond which nothing is quasi-static any more.
+/// Largest density scaling; beyond it no grip is quasi-static.
 const DENSITY_SCALING_MAX: Real = 1000.0;
 
-/// Walks all keys of a scene.
+/// Visits all keys of a scene.
 pub(crate) fn scene(walk: &mut impl Visitor, scene: &mut Scene) {
     walk.doc("Name of the scene; part of the name of its recordings.");
     walk.text("name", &mut scene.name);
     walk.doc("Seed of all random numbers. The same scene, seed and commands give the same bits.");
-    walk.whole("seed", 0, u64::MAX, &mut scene.seed);
+    walk.integer("seed", 0, u64::MAX, &mut scene.seed);
     walk.doc("Gravitational acceleration, in the world frame.");
     walk.vector("gravity", Quantity::any(&ACCELERATION), &mut scene.gravity);
     walk.doc("Time stepping.");
     walk.section("time", |walk| time(walk, &mut scene.time));
     walk.doc("The granular material.");
     walk.section("grains", |walk| grains(walk, &mut scene.grains));
-    walk.doc("The bag: the lower half of an icosphere, clamped to the flange at its rim.");
+    walk.doc("The membrane: the lower half of an icosphere, clamped to the flange at its rim.");
     walk.section("membrane", |walk| membrane(walk, &mut scene.membrane));
-    walk.doc("The air in the bag, and the pump.");
+    walk.doc("The air inside the membrane, and the pump.");
     walk.section("chamber", |walk| chamber(walk, &mut scene.chamber));
     walk.doc(
-        "The rigid plate from which the bag hangs. The origin of its frame `gripper_flange` lies in \
+        "The rigid plate from which the membrane hangs. The origin of its frame `gripper_flange` lies in \
          the plane of the rim.",
     );
     walk.section("flange", |walk| flange(walk, &mut scene.flange));
@@ -86,7 +86,7 @@ pub(crate) fn material(walk: &mut impl Visitor, material: &mut Material) {
 
 pub(crate) fn grains(walk: &mut impl Visitor, grains: &mut Grains) {
     walk.doc("Number of grains.");
-    whole_usize(walk, "count", (1, 200_000), &mut grains.count);
+    integer_usize(walk, "count", (1, 200_000), &mut grains.count);
     let radius = Quantity { dimension: &LENGTH, range: Range::AboveUpTo(0.0, LENGTH_MAX) };
     walk.doc("Smallest radius; radii are uniformly distributed.");
     walk.quantity("radius_min", radius, &mut grains.radius_min);
@@ -108,10 +108,10 @@ pub(crate) fn grains(walk: &mut impl Visitor, grains: &mut Grains) {
 
 pub(crate) fn membrane(walk: &mut impl Visitor, membrane: &mut Membrane) {
     let length = Quantity { dimension: &LENGTH, range: Range::AboveUpTo(0.0, LENGTH_MAX) };
-    walk.doc("Radius of the half sphere.");
+    walk.doc("Radius of the hemisphere.");
     walk.quantity("radius", length, &mut membrane.radius);
     walk.doc("Subdivision frequency of the icosphere; must be even. 16 gives 1321 vertices.");
-    whole_usize(walk, "frequency", (2, 64), &mut membrane.frequency);
+    integer_usize(walk, "frequency", (2, 64), &mut membrane.frequency);
     walk.doc("Thickness.");
     walk.quantity("thickness", length, &mut membrane.thickness);
     material(walk, &mut membrane.material);
@@ -127,7 +127,7 @@ pub(crate) fn membrane(walk: &mut impl Visitor, membrane: &mut Membrane) {
     walk.quantity("bending_damping", damping, &mut membrane.bending_damping);
     walk.doc("Fraction by which the rest lengths of the springs shrink after filling.");
     walk.number("rest_length_shrink", Range::Between(0.0, 0.5), &mut membrane.rest_length_shrink);
-    walk.doc("Radius at which the bag is held while it is filled, relative to `radius`.");
+    walk.doc("Radius at which the membrane is held while it is filled, relative to `radius`.");
     walk.number("fill_stretch", Range::Between(1.0, 2.0), &mut membrane.fill_stretch);
     let dissipation = Quantity::at_least_zero(&TIME);
     walk.doc("Dissipation time A of contacts with the membrane.");
@@ -190,7 +190,7 @@ pub(crate) fn object(walk: &mut impl Visitor, object: &mut Object) {
     walk.quantity("drive_timeout", Quantity::above_zero(&TIME), &mut object.drive_timeout);
 }
 
-/// Position and orientation. The orientation is written as roll, pitch, yaw about the fixed axes
+/// Position and orientation. The orientation is given as roll, pitch, yaw about the fixed axes
 /// x, y, z, or as a unit quaternion x, y, z, w.
 pub(crate) fn pose(walk: &mut impl Visitor, pose: &mut Pose) {
     walk.doc("Position of the origin at the start, in the world frame.");
@@ -212,7 +212,7 @@ pub(crate) fn pose(walk: &mut impl Visitor, pose: &mut Pose) {
             walk.doc("Unit quaternion x, y, z, w.");
             walk.numbers("quaternion", &mut parts);
             let [x, y, z, w] = parts;
-            // Kept as written: `check` refuses one whose length is not 1.
+            // Not normalized: `check` rejects a quaternion whose length is not 1.
             pose.rotation = Quat::new_unchecked(nalgebra::Quaternion::new(w, x, y, z));
         }
     });
@@ -224,7 +224,7 @@ pub(crate) fn shape(walk: &mut impl Visitor, shape: &mut Shape) {
     walk.doc("Shape. The axis of a cylinder or capsule is z.");
     let Some(chosen) = walk.alternative("shape", &SHAPES, shape_name(shape)) else { return };
     if walk.is_reading() {
-        *shape = blank_shape(chosen);
+        *shape = unset_shape(chosen);
     }
     let length = Quantity { dimension: &LENGTH, range: Range::AboveUpTo(0.0, LENGTH_MAX) };
     walk.section("shape", |walk| {
@@ -274,7 +274,7 @@ fn shape_name(shape: &Shape) -> &'static str {
     }
 }
 
-fn blank_shape(name: &str) -> Shape {
+fn unset_shape(name: &str) -> Shape {
     let (radius, height) = (Real::NAN, Real::NAN);
     match name {
         "box" => Shape::Box { size: Vec3::repeat(Real::NAN) },
@@ -298,7 +298,7 @@ fn controller(walk: &mut impl Visitor, controller: &mut Controller, object: &str
     let chosen = walk.choice("controller", &["builtin", "topics"], current);
     let (mut parameters, mut duration, mut in_step) = match controller {
         Controller::Builtin(parameters) => (parameters.clone(), None, Lockstep::OFF),
-        Controller::Topics { duration, lockstep } => (blank_pick_and_lift(), *duration, *lockstep),
+        Controller::Topics { duration, lockstep } => (unset_pick_and_lift(), *duration, *lockstep),
     };
     if walk.is_reading() || chosen == "builtin" {
         walk.doc("Parameters of the built-in controller. Used with `controller: builtin`.");
@@ -333,7 +333,7 @@ fn lockstep(walk: &mut impl Visitor, it: &mut Lockstep) {
     let chosen = walk.choice("lockstep", &known, current);
     (it.is_on, it.follows_clock) = (chosen == "wait_command", chosen == "external_clock");
     walk.doc("Ticks per command in lockstep.");
-    walk.whole("steps_per_command", 1, 1_000_000, &mut it.steps_per_command);
+    walk.integer("steps_per_command", 1, 1_000_000, &mut it.steps_per_command);
     let wall = Quantity::above_zero(&TIME);
     walk.doc("Wall-clock time to wait for a command in lockstep.");
     walk.quantity_or("command_timeout", "unlimited", wall, &mut it.timeout);
@@ -386,20 +386,20 @@ fn pick_and_lift(walk: &mut impl Visitor, it: &mut PickAndLift) {
     walk.quantity("retreat_height", Quantity::at_least_zero(&LENGTH), &mut it.retreat_height);
 }
 
-/// A whole number that counts things in memory.
-pub(crate) fn whole_usize(
+/// An integer as `usize`.
+pub(crate) fn integer_usize(
     walk: &mut impl Visitor,
     key: &'static str,
     (min, max): (u64, u64),
     value: &mut usize,
 ) {
     let mut wide = *value as u64;
-    walk.whole(key, min, max, &mut wide);
+    walk.integer(key, min, max, &mut wide);
     *value = usize::try_from(wide).unwrap_or(usize::MAX);
 }
 
-/// A pick-and-lift before it is read.
-fn blank_pick_and_lift() -> PickAndLift {
+/// Pick-and-lift parameters before they are read.
+fn unset_pick_and_lift() -> PickAndLift {
     let nan = Real::NAN;
     PickAndLift {
         object: String::new(),

@@ -3,7 +3,7 @@
 use super::{
     Bag, BagCompression, OnError, OnFull, Outputs, Ros,
     quantity::{FREQUENCY, TIME},
-    schema::whole_usize,
+    schema::integer_usize,
     visit::{Quantity, Range, Visitor},
 };
 
@@ -23,7 +23,7 @@ pub(super) fn outputs(walk: &mut impl Visitor, outputs: &mut Outputs) {
     walk.doc("Rate of statistics and diagnostics.");
     walk.quantity("statistics_rate", rate, &mut outputs.statistics_rate);
     walk.doc("Maximum number of grains in one message; larger packings are thinned out.");
-    whole_usize(walk, "grains_count_max", (1, 1_000_000), &mut outputs.grains_count_max);
+    integer_usize(walk, "grains_count_max", (1, 1_000_000), &mut outputs.grains_count_max);
     walk.doc("The ROS 2 node.");
     walk.section("ros", |walk| ros(walk, &mut outputs.ros));
     walk.doc("Publish shared memory streams (iceoryx2).");
@@ -40,7 +40,7 @@ fn ros(walk: &mut impl Visitor, ros: &mut Ros) {
     let mut domain = ros.domain_id.map(u64::from);
     // DDS derives UDP ports from the domain; above 232 they do not fit.
     walk.doc("DDS domain; `auto` takes `ROS_DOMAIN_ID`, or 0.");
-    walk.whole_or("domain_id", "auto", 232, &mut domain);
+    walk.integer_or("domain_id", "auto", 232, &mut domain);
     ros.domain_id = domain.and_then(|it| u16::try_from(it).ok());
     walk.doc("Discover nodes on the local network, not only on this host.");
     walk.flag("lan", &mut ros.lan);
@@ -50,7 +50,7 @@ fn ros(walk: &mut impl Visitor, ros: &mut Ros) {
     walk.doc(
         "Wire format of `simulation_interfaces`, 1 or 2; `auto` takes that of `ROS_DISTRO`, or 2.",
     );
-    walk.whole_or("interfaces_version", "auto", 2, &mut version);
+    walk.integer_or("interfaces_version", "auto", 2, &mut version);
     ros.interfaces_version = version.and_then(|it| u8::try_from(it).ok());
     walk.doc(
         "Second prefix under which the services of `simulation_interfaces` are offered, such as \
@@ -104,7 +104,7 @@ fn bag(walk: &mut impl Visitor, bag: &mut Bag) {
         _ => BagCompression::Zstd,
     };
     walk.doc("Size in MiB at which a new file is started.");
-    walk.whole_or("split_mebibytes", "never", 1 << 30, &mut bag.split_size);
+    walk.integer_or("split_mebibytes", "never", 1 << 30, &mut bag.split_size);
     let time = Quantity::above_zero(&TIME);
     walk.doc("Simulated time after which a new file is started.");
     walk.quantity_or("split_duration", "never", time, &mut bag.split_duration);

@@ -1,20 +1,20 @@
-//! From scene text to `Scene`: defaults below, the scene file on top, overrides above all.
+//! Reads scenes from text: the defaults, then the scene file, then the overrides.
 
 use std::path::Path;
 
 use super::{
     Scene, Shape, check,
-    error::{Fault, Problem, SceneError},
+    error::{Diagnostic, DiagnosticKind, SceneError},
+    keys::Section,
     mesh_file,
     read::Reader,
     schema,
-    tree::{Entry, Node, Place, Value},
-    unset,
-    visit::Visitor,
+    tree::{Entry, Location, Node, Value},
+    unset::{self, Unset},
     yaml,
 };
 
-/// The one place of all defaults.
+/// The file with all defaults.
 pub(super) const DEFAULTS_FILE: &str = "launch_configs/defaults.yaml";
 /// Its text.
 pub(super) const DEFAULTS: &str = include_str!("../../launch_configs/defaults.yaml");
@@ -22,7 +22,7 @@ pub(super) const DEFAULTS: &str = include_str!("../../launch_configs/defaults.ya
 /// Reads a scene file, with overrides of the form `key=value`.
 ///
 /// # Errors
-/// All faults at once, each with place, value, limit and remedy.
+/// All errors at once, each with location, value, limit and remedy.
 pub fn load(file: &Path, overrides: &[String]) -> Result<Scene, SceneError> {
     let source = file.display().to_string();
     let text = std::fs::read_to_string(file).map_err(|error| SceneError::Unreadable {
@@ -33,7 +33,7 @@ pub fn load(file: &Path, overrides: &[String]) -> Result<Scene, SceneError> {
     parse(&text, &source, folder, overrides)
 }
 
-/// Reads a scene from text. `source` names it in messages; mesh files are looked for in `folder`.
+/// Reads a scene from text. `source` names it in messages; paths of mesh files are relative to `folder`.
 ///
 /// # Errors
 /// As for `load`.
@@ -45,52 +45,50 @@ pub fn parse(
 ) -> Result<Scene, SceneError> {
     let defaults = yaml::parse(DEFAULTS, DEFAULTS_FILE)?;
     let mut tree = defaults.clone();
-    tree.lay(yaml::parse(text, source)?);
+    tree.merge(yaml::parse(text, source)?);
     for text in overrides {
-        tree.lay(one_override(text)?);
+        tree.merge(one_override(text)?);
     }
-    tree.place = Place::whole(source);
+    tree.location = Location::of_source(source);
     let mut scene = unset::scene();
     let mut reader = Reader::new(&tree, &defaults);
     schema::scene(&mut reader, &mut scene);
-    let mut faults = reader.finish();
-    faults.extend(load_meshes(&mut scene, &tree, folder));
-    faults.extend(check::faults(&scene, &tree));
-    if faults.is_empty() {
+    let mut diagnostics = reader.finish();
+    diagnostics.extend(load_meshes(&mut scene, &tree, folder));
+    diagnostics.extend(check::diagnostics(&scene, &tree));
+    if diagnostics.is_empty() {
         return Ok(scene);
     }
-    faults.sort_by(|a, b| a.place.cmp(&b.place));
-    Err(SceneError::Faults(faults))
+    diagnostics.sort_by(|a, b| a.location.cmp(&b.location));
+    Err(SceneError::Invalid(diagnostics))
 }
 
-/// The text of a scene of another kind than the gripper's, and what is laid over it.
+/// The text of a scene of an experiment, and its overrides.
 pub(crate) struct Layers<'a> {
     /// The YAML.
     pub(crate) text: &'a str,
-    /// Names it in messages.
+    /// Its name in messages.
     pub(crate) source: &'a str,
-    /// Sections that hold changes of the rest, and of these the one that is laid over it.
+    /// Sections that hold variants of the scene, and the name of the variant to apply.
     pub(crate) variants: (&'a [&'static str], &'static str),
-    /// Changes of the form `key=value`.
+    /// Overrides of the form `key=value`.
     pub(crate) overrides: &'a [String],
-    /// True if the gripper's defaults lie below.
+    /// True if the defaults of the gripper apply.
     pub(crate) on_defaults: bool,
 }
 
-/// The keys of a scene of another kind: how they are walked, and what joins them.
-pub(crate) trait Keys {
-    /// Every key with its unit and its limits.
-    fn walk(&mut self, walk: &mut impl Visitor);
-
-    /// Rules that join several keys: key, what is wrong with its value, and the remedy.
+/// A scene of an experiment: its keys, and rules that involve several of them.
+pub(crate) trait Keys: Section + Unset {
+    /// Violated rules that involve several keys: the key, the reason, and the remedy.
     fn unfit(&self) -> Vec<(&'static str, String, &'static str)>;
 }
 
-/// Fills `keys` from layers of text.
+/// Reads a scene of an experiment from layers of text.
 ///
 /// # Errors
 /// As for `load`.
-pub(crate) fn fill<K: Keys>(layers: &Layers<'_>, mut keys: K) -> Result<K, SceneError> {
+pub(crate) fn read<K: Keys>(layers: &Layers<'_>) -> Result<K, SceneError> {
+    let mut keys = K::unset();
     let defaults = yaml::parse(DEFAULTS, DEFAULTS_FILE)?;
     let mut written = yaml::parse(layers.text, layers.source)?;
     let (sections, chosen) = layers.variants;
@@ -99,33 +97,33 @@ pub(crate) fn fill<K: Keys>(layers: &Layers<'_>, mut keys: K) -> Result<K, Scene
         entries.retain(|entry| !sections.contains(&entry.key.as_str()));
     }
     let mut tree = if layers.on_defaults { defaults.clone() } else { written.clone() };
-    tree.lay(written);
+    tree.merge(written);
     if let Some(over) = over {
-        tree.lay(over);
+        tree.merge(over);
     }
     for text in layers.overrides {
-        tree.lay(one_override(text)?);
+        tree.merge(one_override(text)?);
     }
-    tree.place = Place::whole(layers.source);
+    tree.location = Location::of_source(layers.source);
     let mut reader = Reader::new(&tree, &defaults);
     keys.walk(&mut reader);
-    let mut faults = reader.finish();
-    if faults.is_empty() {
-        faults.extend(keys.unfit().into_iter().map(|(key, reason, remedy)| {
+    let mut diagnostics = reader.finish();
+    if diagnostics.is_empty() {
+        diagnostics.extend(keys.unfit().into_iter().map(|(key, reason, remedy)| {
             let node = tree.at(key).unwrap_or(&tree);
             let value = node.describe().trim_matches('`').to_owned();
-            let problem = Problem::Unfit { value, reason, remedy };
-            Fault { place: node.place.clone(), key: key.to_owned(), problem }
+            let kind = DiagnosticKind::Invalid { value, reason, remedy };
+            Diagnostic { location: node.location.clone(), key: key.to_owned(), kind }
         }));
     }
-    if faults.is_empty() {
+    if diagnostics.is_empty() {
         return Ok(keys);
     }
-    faults.sort_by(|a, b| a.place.cmp(&b.place));
-    Err(SceneError::Faults(faults))
+    diagnostics.sort_by(|a, b| a.location.cmp(&b.location));
+    Err(SceneError::Invalid(diagnostics))
 }
 
-/// `object.friction=0` as the tree it stands for.
+/// Parses `object.friction=0` into a tree.
 fn one_override(text: &str) -> Result<Node, SceneError> {
     let not_an_override = || SceneError::NotAnOverride { text: text.to_owned() };
     let (path, value) = text.split_once('=').ok_or_else(not_an_override)?;
@@ -137,18 +135,18 @@ fn one_override(text: &str) -> Result<Node, SceneError> {
     if value.trim().is_empty() {
         node.value = Value::Null;
     }
-    let place = Place::whole(&source);
-    node.place = place.clone();
+    let location = Location::of_source(&source);
+    node.location = location.clone();
     for key in path.rsplit('.') {
-        let entry = Entry { key: key.trim().to_owned(), place: place.clone(), node };
-        node = Node { place: place.clone(), value: Value::Map(vec![entry]) };
+        let entry = Entry { key: key.trim().to_owned(), location: location.clone(), node };
+        node = Node { location: location.clone(), value: Value::Map(vec![entry]) };
     }
     Ok(node)
 }
 
-/// Reads the files that shapes name.
-fn load_meshes(scene: &mut Scene, tree: &Node, folder: &Path) -> Vec<Fault> {
-    let mut faults = Vec::new();
+/// Reads the mesh files of shapes.
+fn load_meshes(scene: &mut Scene, tree: &Node, folder: &Path) -> Vec<Diagnostic> {
+    let mut diagnostics = Vec::new();
     for object in &mut scene.objects {
         let Shape::Mesh { file, unit, vertices, triangles } = &mut object.shape else { continue };
         if file.as_os_str().is_empty() || unit.is_nan() {
@@ -159,17 +157,17 @@ fn load_meshes(scene: &mut Scene, tree: &Node, folder: &Path) -> Vec<Fault> {
             Ok(surface) => (*vertices, *triangles) = (surface.vertices, surface.triangles),
             Err(error) => {
                 let key = "object.shape.mesh.file";
-                let place = tree.at(key).unwrap_or(tree).place.clone();
-                let problem = Problem::Unfit {
+                let location = tree.at(key).unwrap_or(tree).location.clone();
+                let kind = DiagnosticKind::Invalid {
                     value: file.display().to_string(),
                     reason: error.to_string(),
-                    remedy: "name a closed .stl or .obj mesh, its path relative to the scene file",
+                    remedy: "use a closed .stl or .obj mesh; its path is relative to the scene file",
                 };
-                faults.push(Fault { place, key: key.to_owned(), problem });
+                diagnostics.push(Diagnostic { location, key: key.to_owned(), kind });
             }
         }
     }
-    faults
+    diagnostics
 }
 
 #[cfg(test)]
@@ -185,7 +183,7 @@ mod tests {
         parse(text, "x.yaml", Path::new(""), &overrides)
     }
 
-    fn complaint(text: &str, overrides: &[&str]) -> String {
+    fn error_text(text: &str, overrides: &[&str]) -> String {
         read(text, overrides).expect_err("the scene is wrong").to_string()
     }
 
@@ -197,7 +195,7 @@ mod tests {
         assert_eq!(scene.gravity, Vec3::new(0.0, 0.0, -9.81));
     }
 
-    /// Oracle: the scene itself, before it was written out and read again.
+    /// Oracle: the scene itself, before it was printed and read again.
     #[test]
     fn a_printed_scene_reads_back_as_the_same_scene() {
         let variants: [&[&str]; 5] = [
@@ -216,32 +214,32 @@ mod tests {
     }
 
     #[test]
-    fn overrides_win_and_their_faults_name_them() {
+    fn overrides_win_and_their_errors_name_them() {
         let scene = read(MINIMAL, &["object.friction=0", "grains.youngs_modulus=100MPa"]).unwrap();
         assert_eq!(scene.objects[0].friction.to_bits(), 0.0_f64.to_bits());
         assert_eq!(scene.grains.material.youngs_modulus.to_bits(), 1e8_f64.to_bits());
-        let unknown = complaint(MINIMAL, &["object.fricton=0"]);
+        let unknown = error_text(MINIMAL, &["object.fricton=0"]);
         assert_eq!(
             unknown,
             "override object.fricton=0: object.fricton: unknown key; did you mean `friction`?"
         );
-        assert!(complaint(MINIMAL, &["seed"]).contains("not of the form key=value"));
+        assert!(error_text(MINIMAL, &["seed"]).contains("not of the form key=value"));
     }
 
-    /// Three faults of three kinds, none of which hides another.
+    /// Errors of several kinds, none of which hides another.
     #[test]
-    fn all_faults_come_at_once_in_the_order_of_the_text() {
+    fn all_errors_are_reported_in_the_order_of_the_text() {
         let text = "name: x\ngrains:\n  radius_min: -2 mm\n  radiusmax: 2 mm\n  count: many\n";
-        let complaint = complaint(text, &[]);
-        let lines: Vec<&str> = complaint.lines().collect();
+        let found = error_text(text, &[]);
+        let lines: Vec<&str> = found.lines().collect();
         let expected = [
             "x.yaml: object.shape: is missing",
             "x.yaml: object.position: is missing",
             "x.yaml:3:15: grains.radius_min: `-2 mm` is out of range",
             "x.yaml:4:3: grains.radiusmax: unknown key; did you mean `radius_max`",
-            "x.yaml:5:10: grains.count: expected a whole number, found `many`",
+            "x.yaml:5:10: grains.count: expected an integer, found `many`",
         ];
-        assert_eq!(lines.len(), expected.len(), "{complaint}");
+        assert_eq!(lines.len(), expected.len(), "{found}");
         for (line, expected) in lines.iter().zip(expected) {
             assert!(line.starts_with(expected), "{line}\n{expected}");
         }

@@ -1,32 +1,32 @@
-//! A YAML text as a tree whose every node knows where it was written.
+//! YAML as a tree in which every node has its location in the source.
 //!
-//! Scenes are read by way of this tree, not straight into structs: a struct reader stops at the
-//! first fault, and a person wants to see all of them; and defaults and `--set` are merged here
-//! without losing the places.
+//! Scenes are read through this tree, not directly into structs: deserialization into a struct stops
+//! at the first error, but users want to see all of them. Defaults and `--set` are merged here without
+//! losing the locations.
 
 use std::{fmt, sync::Arc};
 
 use crate::base::Real;
 
-/// Where something was written.
+/// A location in a source text.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Place {
+pub struct Location {
     /// The file or the override.
     pub source: Arc<str>,
-    /// Line, from 1; 0 means the source as a whole.
+    /// Line, from 1; 0 means the whole source.
     pub line: u64,
     /// Column, from 1.
     pub column: u64,
 }
 
-impl Place {
-    /// The source as a whole.
-    pub fn whole(source: &str) -> Self {
+impl Location {
+    /// The whole source.
+    pub fn of_source(source: &str) -> Self {
         Self { source: Arc::from(source), line: 0, column: 0 }
     }
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for Location {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.line {
             0 => write!(f, "{}", self.source),
@@ -35,27 +35,27 @@ impl fmt::Display for Place {
     }
 }
 
-/// A value and its place.
+/// A value and its location.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Node {
-    /// Where it was written.
-    pub place: Place,
-    /// What was written.
+    /// Location of the value.
+    pub location: Location,
+    /// The value.
     pub value: Value,
 }
 
-/// What YAML knows.
+/// A YAML value.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Value {
-    /// Nothing.
+    /// Null.
     Null,
     /// `true` or `false`.
     Flag(bool),
-    /// A whole number.
-    Whole(i128),
+    /// An integer.
+    Integer(i128),
     /// A real number.
     Real(Real),
-    /// A text; quantities are texts.
+    /// A string; quantities are strings.
     Text(String),
     /// A list.
     List(Vec<Node>),
@@ -68,20 +68,20 @@ pub(super) enum Value {
 pub(super) struct Entry {
     /// The key.
     pub key: String,
-    /// Where the key was written.
-    pub place: Place,
+    /// Location of the key.
+    pub location: Location,
     /// Its value.
     pub node: Node,
 }
 
 /// Keys whose value is one of several alternatives, `shape: { sphere: … }`. Another alternative
-/// replaces the one below it instead of joining it.
+/// replaces the earlier one instead of being merged with it.
 const ALTERNATIVES: &[&str] = &["shape", "orientation"];
 
 impl Node {
     /// An empty map.
-    pub(super) fn empty(place: Place) -> Self {
-        Self { place, value: Value::Map(Vec::new()) }
+    pub(super) fn empty(location: Location) -> Self {
+        Self { location, value: Value::Map(Vec::new()) }
     }
 
     /// The node under a key.
@@ -97,35 +97,35 @@ impl Node {
         path.split('.').try_fold(self, |node, key| node.get(key))
     }
 
-    /// Lays `over` on top: maps are joined key by key, everything else is replaced.
-    pub(super) fn lay(&mut self, over: Self) {
+    /// Merges `over` into this tree: maps are merged key by key, all other values are replaced.
+    pub(super) fn merge(&mut self, over: Self) {
         let Value::Map(entries) = over.value else {
             *self = over;
             return;
         };
         let Value::Map(mine) = &mut self.value else {
-            *self = Self { place: over.place, value: Value::Map(entries) };
+            *self = Self { location: over.location, value: Value::Map(entries) };
             return;
         };
-        self.place = over.place;
+        self.location = over.location;
         for entry in entries {
             match mine.iter_mut().find(|it| it.key == entry.key) {
                 Some(below) if is_other_alternative(&below.node, &entry) => *below = entry,
                 Some(below) => {
-                    below.place = entry.place;
-                    below.node.lay(entry.node);
+                    below.location = entry.location;
+                    below.node.merge(entry.node);
                 }
                 None => mine.push(entry),
             }
         }
     }
 
-    /// What was written, for messages.
+    /// The value as written, for messages.
     pub(super) fn describe(&self) -> String {
         match &self.value {
             Value::Null => "nothing".to_owned(),
             Value::Flag(flag) => format!("`{flag}`"),
-            Value::Whole(number) => format!("`{number}`"),
+            Value::Integer(number) => format!("`{number}`"),
             Value::Real(number) => format!("`{number}`"),
             Value::Text(text) => format!("`{text}`"),
             Value::List(items) => {
@@ -150,21 +150,21 @@ fn is_other_alternative(below: &Node, over: &Entry) -> bool {
 mod tests {
     use super::super::yaml;
 
-    /// Oracle: the text one would have written by hand.
+    /// Oracle: the merged tree, worked out by hand.
     #[test]
-    fn laying_joins_maps_and_replaces_the_rest() {
+    fn merging_joins_maps_and_replaces_the_rest() {
         let mut below = yaml::parse("a: { b: 1, c: [1, 2] }\nd: x", "below").unwrap();
-        below.lay(yaml::parse("a: { c: [3], e: 2 }", "over").unwrap());
+        below.merge(yaml::parse("a: { c: [3], e: 2 }", "over").unwrap());
         assert_eq!(below.at("a.b").unwrap().describe(), "`1`");
         assert_eq!(below.at("a.e").unwrap().describe(), "`2`");
-        assert_eq!(below.at("a.c").unwrap().place.source.as_ref(), "over");
+        assert_eq!(below.at("a.c").unwrap().location.source.as_ref(), "over");
         assert_eq!(below.at("d").unwrap().describe(), "`x`");
     }
 
     #[test]
     fn another_shape_replaces_the_shape_below() {
         let mut below = yaml::parse("shape: { sphere: { radius: 1 mm } }", "below").unwrap();
-        below.lay(yaml::parse("shape: { box: { size: 1 } }", "over").unwrap());
+        below.merge(yaml::parse("shape: { box: { size: 1 } }", "over").unwrap());
         assert!(below.at("shape.sphere").is_none(), "the sphere is gone");
         assert!(below.at("shape.box.size").is_some(), "the box is there");
     }

@@ -1,4 +1,4 @@
-//! A scene before it is read: every number is NaN, so that nothing forgotten can pass for a value.
+//! A scene before it is read. Every number is NaN, so that a value that is never read is noticed.
 
 use super::{
     Bag, BagCompression, Chamber, Controller, Flange, Grains, Lockstep, Material, Membrane, Object,
@@ -6,12 +6,59 @@ use super::{
 };
 use crate::base::{Pose, Real, Vec3};
 
+/// A value before it is read: NaN, zero or empty.
+pub(crate) trait Unset {
+    /// Returns the unset value.
+    fn unset() -> Self;
+}
+
+/// Types with the constant that stands for their unset value.
+macro_rules! unset {
+    ($($type:ty = $value:expr),* $(,)?) => { $(
+        impl Unset for $type {
+            fn unset() -> Self {
+                $value
+            }
+        }
+    )* };
+}
+
+unset!(
+    Real = NAN,
+    u64 = 0,
+    usize = 0,
+    bool = false,
+    String = String::new(),
+    Vec3 = Vec3::repeat(NAN),
+    Time = TIME,
+    Material = MATERIAL,
+    Grains = GRAINS,
+    Membrane = MEMBRANE,
+    Chamber = CHAMBER,
+);
+
+impl<T> Unset for Vec<T> {
+    fn unset() -> Self {
+        Self::new()
+    }
+}
+
+impl<T> Unset for Option<T> {
+    fn unset() -> Self {
+        None
+    }
+}
+
+impl<T: Unset, const N: usize> Unset for [T; N] {
+    fn unset() -> Self {
+        std::array::from_fn(|_| T::unset())
+    }
+}
+
 const NAN: Real = Real::NAN;
-/// A material.
-pub(crate) const MATERIAL: Material =
-    Material { youngs_modulus: NAN, poisson_ratio: NAN, density: NAN };
-/// Grains.
-pub(crate) const GRAINS: Grains = Grains {
+const TIME: Time = Time { tick_ns: 0, substep: None, safety: NAN, density_scaling: NAN };
+const MATERIAL: Material = Material { youngs_modulus: NAN, poisson_ratio: NAN, density: NAN };
+const GRAINS: Grains = Grains {
     count: 0,
     radius_min: NAN,
     radius_max: NAN,
@@ -34,17 +81,19 @@ const MEMBRANE: Membrane = Membrane {
     dissipation_time: NAN,
     tangential_damping: NAN,
 };
+const CHAMBER: Chamber =
+    Chamber { ambient: NAN, gauge_min: NAN, gauge_max: NAN, lag: NAN, rate_max: NAN };
 
-/// The blank scene, with one blank object.
+/// The unset scene, with one unset object.
 pub(crate) fn scene() -> Scene {
     Scene {
         name: String::new(),
         seed: 0,
-        time: Time { tick_ns: 0, substep: None, safety: NAN, density_scaling: NAN },
+        time: TIME,
         gravity: Vec3::repeat(NAN),
         grains: GRAINS,
         membrane: MEMBRANE,
-        chamber: Chamber { ambient: NAN, gauge_min: NAN, gauge_max: NAN, lag: NAN, rate_max: NAN },
+        chamber: CHAMBER,
         flange: Flange {
             pose: Pose::identity(),
             speed_max: NAN,

@@ -1,7 +1,7 @@
-//! URDF with one rigid link: its collision geometry is the shape, its mass gives the density.
+//! Reads URDF with one rigid link: its collision geometry is the shape, its mass gives the density.
 //!
-//! The inertia follows from shape and density. Joints, several links, and collision geometry that is
-//! turned in its link are refused, because they would not be simulated as written.
+//! The inertia follows from shape and density. Joints, several links, and rotated collision geometry
+//! are rejected, because they would not be simulated as written.
 
 use std::path::Path;
 
@@ -9,22 +9,22 @@ use urdf_rs::{Collision, Geometry, Robot};
 
 use super::{
     Object, Shape, mesh_file,
-    resource::{ResourceFault, path},
+    resource::{ResourceError, path},
 };
 use crate::base::{Real, Vec3};
 
-/// Mean density over that of water that no solid has (-); beyond it a mass is a mistake.
+/// Largest density of an object relative to water (-); a larger one means that the mass is wrong.
 const DENSITY_RATIO_MAX: Real = 25.0;
 
-/// The object in a URDF text; `blank` gives what URDF does not say.
+/// Reads an object from URDF; `defaults` has the values that URDF lacks.
 ///
 /// # Errors
-/// If there is none that can be simulated.
-pub(super) fn read(text: &str, folder: &Path, blank: &Object) -> Result<Object, ResourceFault> {
+/// If there is no object that can be simulated.
+pub(super) fn read(text: &str, folder: &Path, defaults: &Object) -> Result<Object, ResourceError> {
     let robot: Robot =
-        urdf_rs::read_from_string(text).map_err(|it| ResourceFault::Malformed(it.to_string()))?;
+        urdf_rs::read_from_string(text).map_err(|it| ResourceError::Malformed(it.to_string()))?;
     let unsupported =
-        |why: &str| ResourceFault::Unsupported(format!("URDF `{}`: {why}", robot.name));
+        |why: &str| ResourceError::Unsupported(format!("URDF `{}`: {why}", robot.name));
     let [link] = robot.links.as_slice() else {
         return Err(unsupported("it must have exactly one link"));
     };
@@ -32,16 +32,16 @@ pub(super) fn read(text: &str, folder: &Path, blank: &Object) -> Result<Object, 
         return Err(unsupported("its link must have exactly one collision geometry"));
     };
     if collision.origin.rpy.iter().any(|angle| *angle != 0.0) {
-        return Err(unsupported("its collision geometry must not be turned in its link"));
+        return Err(unsupported("its collision geometry must not be rotated relative to its link"));
     }
     let shape = shape(collision, folder)?;
-    let mut object = Object { name: robot.name.clone(), shape, ..blank.clone() };
+    let mut object = Object { name: robot.name.clone(), shape, ..defaults.clone() };
     let mass = link.inertial.mass.value;
     if mass != 0.0 {
         let density = mass / volume(&object.shape);
-        let is_sensible = 0.0 < density && density <= DENSITY_RATIO_MAX * 1000.0;
-        if !is_sensible {
-            let why = format!("its mass of {mass} kg makes a density of {density} kg/m³");
+        let is_plausible = 0.0 < density && density <= DENSITY_RATIO_MAX * 1000.0;
+        if !is_plausible {
+            let why = format!("its mass of {mass} kg means a density of {density} kg/m³");
             return Err(unsupported(&why));
         }
         object.material.density = density;
@@ -49,11 +49,11 @@ pub(super) fn read(text: &str, folder: &Path, blank: &Object) -> Result<Object, 
     Ok(object)
 }
 
-fn shape(collision: &Collision, folder: &Path) -> Result<Shape, ResourceFault> {
+fn shape(collision: &Collision, folder: &Path) -> Result<Shape, ResourceError> {
     let size = |value: Real| {
-        let is_sensible = value.is_finite() && 0.0 < value;
-        let why = || ResourceFault::Malformed(format!("URDF: {value} is no length of a solid"));
-        if is_sensible { Ok(value) } else { Err(why()) }
+        let is_plausible = value.is_finite() && 0.0 < value;
+        let why = || ResourceError::Malformed(format!("URDF: {value} is not a valid length"));
+        if is_plausible { Ok(value) } else { Err(why()) }
     };
     Ok(match &collision.geometry {
         Geometry::Box { size: edges } => {
@@ -70,19 +70,20 @@ fn shape(collision: &Collision, folder: &Path) -> Result<Shape, ResourceFault> {
             let scale = scale.as_ref().map_or([1.0; 3], |it| it.0);
             let unit = size(scale[0])?;
             if scale.iter().any(|it| it.to_bits() != unit.to_bits()) {
-                let why = "URDF: a mesh must be scaled alike in all directions".to_owned();
-                return Err(ResourceFault::Unsupported(why));
+                let why = "URDF: a mesh must have the same scale in all directions".to_owned();
+                return Err(ResourceError::Unsupported(why));
             }
             mesh(filename, unit, folder)?
         }
     })
 }
 
-fn mesh(filename: &str, unit: Real, folder: &Path) -> Result<Shape, ResourceFault> {
-    let missing = || ResourceFault::MissingAssets(format!("URDF: there is no mesh `{filename}`"));
+fn mesh(filename: &str, unit: Real, folder: &Path) -> Result<Shape, ResourceError> {
+    let missing =
+        || ResourceError::MissingAssets(format!("URDF: mesh `{filename}` does not exist"));
     let file = path(filename, folder).filter(|it| it.is_file()).ok_or_else(missing)?;
     let surface = mesh_file::read(&file, unit)
-        .map_err(|fault| ResourceFault::Unsupported(format!("URDF: `{filename}` {fault}")))?;
+        .map_err(|error| ResourceError::Unsupported(format!("URDF: `{filename}` {error}")))?;
     let mesh_file::Surface { vertices, triangles } = surface;
     Ok(Shape::Mesh { file, unit, vertices, triangles })
 }

@@ -1,6 +1,6 @@
-//! The scene's keys are walked in one order by whoever needs them: the reader fills the values
-//! from a tree, the printer writes them out. So every key, its unit and its limits stand in
-//! exactly one line of `schema`.
+//! Visitors of the keys of a scene: the reader fills the values from a tree, the printer writes them,
+//! the reference describes the keys. Thus every key, its unit and its limits are in exactly one line
+//! of `schema`.
 
 use super::quantity::Dimension;
 use crate::base::{Real, Vec3};
@@ -16,7 +16,7 @@ pub(crate) enum Range {
     AtLeast(Real),
     /// This or less.
     AtMost(Real),
-    /// Between these, both allowed.
+    /// Between these, inclusive.
     Between(Real, Real),
     /// Greater than the first and at most the second.
     AboveUpTo(Real, Real),
@@ -36,7 +36,7 @@ impl Range {
             }
     }
 
-    /// The limit in words; `print` writes a number with its unit.
+    /// Describes the range; `print` writes a number with its unit.
     pub(crate) fn describe(self, print: impl Fn(Real) -> String) -> String {
         match self {
             Self::Any => "finite".to_owned(),
@@ -52,7 +52,7 @@ impl Range {
 /// A key that holds a quantity: its dimension and limits.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Quantity {
-    /// What it measures.
+    /// Its dimension.
     pub dimension: &'static Dimension,
     /// Its limits.
     pub range: Range,
@@ -74,16 +74,15 @@ impl Quantity {
         Self { dimension, range: Range::AtLeast(0.0) }
     }
 
-    /// Between two values, both allowed.
+    /// Between two values, inclusive.
     pub(crate) const fn between(dimension: &'static Dimension, min: Real, max: Real) -> Self {
         Self { dimension, range: Range::Between(min, max) }
     }
 }
 
-/// Visits the keys of a scene. The reader writes into the values it is given, the printer reads
-/// them.
+/// Visits the keys of a scene. The reader sets the values, the printer reads them.
 pub(crate) trait Visitor: Sized {
-    /// Describes the key that is visited next. Only the scene reference uses it.
+    /// Describes the next key. Only the scene reference uses it.
     fn doc(&mut self, _text: &'static str) {}
 
     /// A map under `key`.
@@ -119,11 +118,11 @@ pub(crate) trait Visitor: Sized {
     /// A list of any number of numbers without a dimension.
     fn plain_numbers(&mut self, key: &'static str, range: Range, value: &mut Vec<Real>);
 
-    /// A whole number.
-    fn whole(&mut self, key: &'static str, min: u64, max: u64, value: &mut u64);
+    /// An integer.
+    fn integer(&mut self, key: &'static str, min: u64, max: u64, value: &mut u64);
 
-    /// A whole number, or `word` for none.
-    fn whole_or(
+    /// An integer, or `word` for none.
+    fn integer_or(
         &mut self,
         key: &'static str,
         word: &'static str,
@@ -134,13 +133,13 @@ pub(crate) trait Visitor: Sized {
     /// `true` or `false`.
     fn flag(&mut self, key: &'static str, value: &mut bool);
 
-    /// A text.
+    /// A string.
     fn text(&mut self, key: &'static str, value: &mut String);
 
-    /// A text, or `word` for none.
+    /// A string, or `word` for none.
     fn text_or(&mut self, key: &'static str, word: &'static str, value: &mut Option<String>);
 
-    /// One word of a closed list. Returns the choice, `current` if none was made.
+    /// One word of a fixed list. Returns the choice, or `current` if there is none.
     fn choice(
         &mut self,
         key: &'static str,
@@ -148,9 +147,8 @@ pub(crate) trait Visitor: Sized {
         current: &'static str,
     ) -> &'static str;
 
-    /// A map under `key` with exactly one key of a closed list. Returns that one; the caller
-    /// then walks `section(key)` and in it what stands under that name. `None` if the choice is
-    /// not known.
+    /// A map under `key` with exactly one key of a fixed list. Returns that key, or `None` if it is
+    /// unknown. The caller then visits `section(key)` and the contents under the returned name.
     fn alternative(
         &mut self,
         key: &'static str,
@@ -158,6 +156,6 @@ pub(crate) trait Visitor: Sized {
         current: &'static str,
     ) -> Option<&'static str>;
 
-    /// True if values are filled in: then parts that a printer leaves out are walked too.
+    /// True if values are being read: then keys that a printer leaves out are visited too.
     fn is_reading(&self) -> bool;
 }

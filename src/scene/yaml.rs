@@ -1,73 +1,75 @@
-//! YAML text to a tree of values with places. The only file that knows the YAML crate.
+//! Parses YAML into a tree of values with locations. The only file that uses the YAML crate.
 
 use std::{fmt, sync::Arc};
 
 use serde::de::{Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
-use serde_saphyr::{Location, Spanned};
+use serde_saphyr::Spanned;
 
-use super::tree::{Entry, Node, Place, Value};
+use super::tree::{Entry, Location, Node, Value};
 
 /// The text is not YAML.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{place}: not valid YAML: {message}; correct the text there")]
+#[error("{location}: not valid YAML: {message}; correct the syntax")]
 pub struct SyntaxError {
-    /// Where reading stopped.
-    pub place: Place,
-    /// What the reader said.
+    /// Where parsing stopped.
+    pub location: Location,
+    /// The message of the parser.
     pub message: String,
 }
 
-/// Reads one YAML document. `source` names it in places.
+/// Parses one YAML document. `source` is its name in locations.
 ///
 /// # Errors
-/// If the text is not YAML, has a key twice, or expands beyond the reader's limits.
+/// If the text is not YAML, has a duplicate key, or expands beyond the limits of the parser.
 pub(super) fn parse(text: &str, source: &str) -> Result<Node, SyntaxError> {
-    let whole = Place::whole(source);
+    let document = Location::of_source(source);
     let options = serde_saphyr::options! { with_snippet: false, strict_booleans: true };
     let bare: Spanned<Bare> =
         serde_saphyr::from_str_with_options(text, options).map_err(|error| {
-            let place = error.location().map_or_else(|| whole.clone(), |at| place(&whole, at));
-            SyntaxError { place, message: plain_message(&error.without_snippet().to_string()) }
+            let location =
+                error.location().map_or_else(|| document.clone(), |at| location(&document, at));
+            SyntaxError { location, message: plain_message(&error.without_snippet().to_string()) }
         })?;
     match bare.value {
-        // Nothing but comments.
-        Bare::Scalar(Value::Null) => Ok(Node::empty(whole)),
-        _ => Ok(name_source(bare, &whole)),
+        // Only comments.
+        Bare::Scalar(Value::Null) => Ok(Node::empty(document)),
+        _ => Ok(name_source(bare, &document)),
     }
 }
 
-/// A value as the YAML crate gives it, before it knows its source.
+/// A value as the YAML crate returns it, without the name of its source.
 enum Bare {
     Scalar(Value),
     List(Vec<Spanned<Bare>>),
     Map(Vec<(Spanned<String>, Spanned<Bare>)>),
 }
 
-fn name_source(bare: Spanned<Bare>, whole: &Place) -> Node {
+fn name_source(bare: Spanned<Bare>, document: &Location) -> Node {
     let value = match bare.value {
         Bare::Scalar(value) => value,
         Bare::List(items) => {
-            Value::List(items.into_iter().map(|it| name_source(it, whole)).collect())
+            Value::List(items.into_iter().map(|it| name_source(it, document)).collect())
         }
         Bare::Map(entries) => Value::Map(
             entries
                 .into_iter()
                 .map(|(key, node)| Entry {
-                    place: place(whole, key.referenced),
+                    location: location(document, key.referenced),
                     key: key.value,
-                    node: name_source(node, whole),
+                    node: name_source(node, document),
                 })
                 .collect(),
         ),
     };
-    Node { place: place(whole, bare.referenced), value }
+    Node { location: location(document, bare.referenced), value }
 }
 
-fn place(whole: &Place, at: Location) -> Place {
-    Place { source: Arc::clone(&whole.source), line: at.line(), column: at.column() }
+fn location(document: &Location, at: serde_saphyr::Location) -> Location {
+    Location { source: Arc::clone(&document.source), line: at.line(), column: at.column() }
 }
 
-/// What the crate says, without the place, which we say ourselves, and without advice to callers.
+/// The message of the crate without the location, which we print ourselves, and without hints for
+/// programmers.
 fn plain_message(message: &str) -> String {
     let line = message.split_whitespace().collect::<Vec<_>>().join(" ");
     let before = |text: String, end: &str| match text.rfind(end) {
@@ -105,11 +107,11 @@ impl<'de> Visitor<'de> for BareVisitor {
     }
 
     fn visit_i64<E>(self, number: i64) -> Result<Bare, E> {
-        Ok(Bare::Scalar(Value::Whole(number.into())))
+        Ok(Bare::Scalar(Value::Integer(number.into())))
     }
 
     fn visit_u64<E>(self, number: u64) -> Result<Bare, E> {
-        Ok(Bare::Scalar(Value::Whole(number.into())))
+        Ok(Bare::Scalar(Value::Integer(number.into())))
     }
 
     fn visit_f64<E>(self, number: f64) -> Result<Bare, E> {
@@ -143,21 +145,21 @@ mod tests {
 
     /// Oracle: line and column counted by hand.
     #[test]
-    fn every_node_knows_its_place() {
+    fn every_node_has_its_location() {
         assert_eq!(parse("# only a comment", "x").unwrap(), parse("", "x").unwrap());
         let tree = parse("grains:\n  count: 3\n  list: [1 mm, 2 mm]\n", "x.yaml").unwrap();
         let count = tree.at("grains.count").unwrap();
-        assert_eq!(count.place.to_string(), "x.yaml:2:10");
-        assert_eq!(count.value, Value::Whole(3));
+        assert_eq!(count.location.to_string(), "x.yaml:2:10");
+        assert_eq!(count.value, Value::Integer(3));
         let Value::List(items) = &tree.at("grains.list").unwrap().value else { panic!("a list") };
-        assert_eq!(items[1].place.to_string(), "x.yaml:3:16");
+        assert_eq!(items[1].location.to_string(), "x.yaml:3:16");
         assert_eq!(items[1].value, Value::Text("2 mm".to_owned()));
     }
 
     #[test]
-    fn faults_of_the_text_have_a_place() {
+    fn syntax_errors_have_a_location() {
         let error = parse("a: 1\na: 2\n", "x.yaml").unwrap_err();
         assert!(error.to_string().starts_with("x.yaml:2:1: not valid YAML"), "{error}");
-        assert!(parse("a: [1, 2\nb: 3", "x.yaml").is_err(), "an unclosed list is refused");
+        assert!(parse("a: [1, 2\nb: 3", "x.yaml").is_err(), "an unclosed list is rejected");
     }
 }

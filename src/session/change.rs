@@ -4,7 +4,7 @@ use super::{Compiled, Session, no_forces};
 use crate::{
     base::{Tick, real::Wrench},
     command::change::{Change, Scope, SettledScene, TunableParameter},
-    cosim::{compile::retune, refused::ChangeError},
+    cosim::{change_error::ChangeError, compile::retune},
     physics::boundary::body::BodyMotion,
     scene::Object,
 };
@@ -91,7 +91,7 @@ impl Session {
             let start = self.start.state.as_ref().ok_or(ChangeError::StartUnknown)?;
             let added = self.scene.objects.iter().filter(|it| !scope.spawned && !is_own(it));
             self.scene.objects = self.start.objects.iter().chain(added).cloned().collect();
-            self.coupled.start_anew(&self.scene, start);
+            self.coupled.reset_to(&self.scene, start);
             self.processor.restart(&self.scene);
             self.sensor_zero = Wrench::zero();
         } else if scope.spawned {

@@ -24,7 +24,7 @@ struct Saved<'a> {
 impl<'a> Saved<'a> {
     fn read(bytes: &'a [u8]) -> Result<Self, SavedStateError> {
         let corrupt = SavedStateError::Corrupt { n_bytes: bytes.len() };
-        postcard::from_bytes(saved_state::unsealed(bytes)?).map_err(|_| corrupt)
+        postcard::from_bytes(saved_state::verify_digest(bytes)?).map_err(|_| corrupt)
     }
 }
 
@@ -64,7 +64,7 @@ impl Session {
         let saved = Saved::read(bytes)?;
         let state = saved_state::read(saved.state)?;
         let now = &self.coupled.system.state;
-        saved_state::same_counts(&[
+        saved_state::check_counts(&[
             ("grains", state.grains.len(), now.grains.len()),
             ("vertices", state.membrane.positions.len(), now.membrane.positions.len()),
         ])?;
@@ -90,7 +90,7 @@ impl Session {
         let (state, world, processor, parameters) =
             (&state, &world, &processor, self.parameters.clone());
         let saved = Saved { tick, run_tick, state, world, processor, sensor_zero, parameters };
-        Some(saved_state::sealed(postcard::to_stdvec(&saved).expect("bytes always serialize")))
+        Some(saved_state::with_digest(postcard::to_stdvec(&saved).expect("bytes always serialize")))
     }
 
     /// Compares with the bytes of `save` of another session: returns the name of the first part

@@ -1,8 +1,9 @@
-//! Rows in shared memory: fixed layouts that any process on this host reads in place.
+//! Row types in shared memory: fixed layouts that any process on this host can read in place.
 //!
-//! All numbers are SI, world axes unless a field says otherwise, in the core's own precision: no
-//! rounding, no packing. Every field is eight bytes wide, so the layouts have no padding and are
-//! the same in C, C++ and Python's `ctypes`. Row `i` of a list is the grain or vertex with id `i`.
+//! All numbers are in SI units, along world axes unless a field says otherwise, and in the
+//! precision of the core: they are neither rounded nor packed. Every field is eight bytes wide, so
+//! the layouts have no padding and are the same in C, C++ and Python's `ctypes`. Row `i` of a list
+//! is the grain or vertex with ID `i`.
 
 use crate::{
     base::{Pose, Vec3, real::Wrench},
@@ -16,43 +17,44 @@ use iceoryx2::prelude::ZeroCopySend;
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "shm", derive(ZeroCopySend), type_name("jamgrip::StateRow"))]
 pub struct StateRow {
-    /// The tick that ended.
+    /// The tick.
     pub tick: u64,
-    /// Simulated time at its end (ns).
+    /// Simulation time at its end (ns).
     pub time_ns: u64,
     /// Digest of the whole state.
     pub digest: u64,
     /// Number of grains.
     pub n_grains: u64,
-    /// Number of the membrane's vertices.
+    /// Number of vertices of the membrane.
     pub n_vertices: u64,
     /// The gripper's flange.
     pub flange: BodyRow,
-    /// The object to be gripped: the first of the scene.
+    /// The object to grip: the first of the scene.
     pub object: BodyRow,
-    /// Total contact force on the object (membrane and table), gravity excluded (N).
+    /// Total contact force on the object from membrane and table, without gravity (N).
     pub object_contact_force: [f64; 3],
-    /// Total contact torque on the object about its centre of mass (N m).
+    /// Total contact torque on the object about its center of mass (N m).
     pub object_contact_torque: [f64; 3],
-    /// Contact force of the objects on the gripper, flange axes (N).
+    /// Contact force of the objects on the gripper, along flange axes (N).
     pub contact_force: [f64; 3],
-    /// Contact torque of the objects on the gripper about the flange's origin, flange axes (N m).
+    /// Contact torque of the objects on the gripper about the flange's origin, along flange axes (N
+    /// m).
     pub contact_torque: [f64; 3],
-    /// Force of the whole gripper on its mount, flange axes (N).
+    /// Force of the whole gripper on its mount, along flange axes (N).
     pub mount_force: [f64; 3],
-    /// Torque of the whole gripper on its mount about the flange's origin, flange axes (N m).
+    /// Torque of the whole gripper on its mount about the flange's origin, along flange axes (N m).
     pub mount_torque: [f64; 3],
-    /// Commanded gauge pressure after limits (Pa).
+    /// Commanded gauge pressure, clamped to its limits (Pa).
     pub gauge_setpoint: f64,
     /// Actual gauge pressure, negative under vacuum (Pa).
     pub gauge: f64,
-    /// Ambient pressure, absolute (Pa).
+    /// Absolute ambient pressure (Pa).
     pub ambient: f64,
     /// Volume enclosed by membrane and flange (m³).
     pub volume: f64,
     /// Mean number of contacts per grain.
     pub coordination_number: f64,
-    /// Share of grains with at least four contacts.
+    /// Fraction of grains with at least four contacts.
     pub jammed_fraction: f64,
     /// Grain volume over enclosed volume.
     pub solid_fraction: f64,
@@ -73,16 +75,16 @@ pub struct BodyRow {
     pub angular_velocity: [f64; 3],
 }
 
-/// What stands in front of a list of rows.
+/// The header of a list of rows.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "shm", derive(ZeroCopySend), type_name("jamgrip::RowsHeader"))]
 pub struct RowsHeader {
-    /// The tick that ended.
+    /// The tick.
     pub tick: u64,
-    /// Simulated time at its end (ns).
+    /// Simulation time at its end (ns).
     pub time_ns: u64,
-    /// Number of rows that follow.
+    /// Number of rows.
     pub count: u64,
 }
 
@@ -99,7 +101,7 @@ pub struct GrainRow {
     pub spin: [f64; 3],
     /// Radius (m).
     pub radius: f64,
-    /// Sum of normal force magnitudes (N).
+    /// Sum of the magnitudes of normal forces (N).
     pub normal_force: f64,
 }
 
@@ -112,19 +114,19 @@ pub struct VertexRow {
     pub position: [f64; 3],
     /// Velocity (m/s).
     pub velocity: [f64; 3],
-    /// Contact force on it (N).
+    /// Contact force on the vertex (N).
     pub contact_force: [f64; 3],
 }
 
 impl StateRow {
-    /// The row of one tick.
+    /// The row of a tick.
     pub fn of(view: &View<'_>) -> Self {
         let snapshot = view.snapshot;
         let object = snapshot.objects.first();
         let (object_contact_force, object_contact_torque) =
-            object.map_or(([0.0; 3], [0.0; 3]), |it| parts(&it.contact_wrench));
-        let (contact_force, contact_torque) = parts(&snapshot.contact_wrench);
-        let (mount_force, mount_torque) = parts(&snapshot.mount_wrench);
+            object.map_or(([0.0; 3], [0.0; 3]), |it| force_and_torque(&it.contact_wrench));
+        let (contact_force, contact_torque) = force_and_torque(&snapshot.contact_wrench);
+        let (mount_force, mount_torque) = force_and_torque(&snapshot.mount_wrench);
         Self {
             tick: snapshot.tick.0,
             time_ns: snapshot.time_ns,
@@ -151,9 +153,9 @@ impl StateRow {
 }
 
 impl BodyRow {
-    /// The row of one body.
+    /// The row of a body.
     pub fn of(body: &BodySnapshot) -> Self {
-        let (position, orientation) = placement(&body.pose);
+        let (position, orientation) = position_and_orientation(&body.pose);
         Self {
             position,
             orientation,
@@ -191,12 +193,12 @@ fn of_object(object: &ObjectSnapshot) -> BodyRow {
     BodyRow::of(&object.body)
 }
 
-fn placement(pose: &Pose) -> ([f64; 3], [f64; 4]) {
+fn position_and_orientation(pose: &Pose) -> ([f64; 3], [f64; 4]) {
     let q = pose.rotation.coords;
     (pose.translation.vector.into(), [q.x, q.y, q.z, q.w])
 }
 
-fn parts(wrench: &Wrench) -> ([f64; 3], [f64; 3]) {
+fn force_and_torque(wrench: &Wrench) -> ([f64; 3], [f64; 3]) {
     let row = |v: Vec3| v.into();
     (row(wrench.force), row(wrench.torque))
 }
@@ -206,7 +208,7 @@ mod tests {
     use super::*;
     use std::mem::{align_of, offset_of, size_of};
 
-    /// Oracle: counting the fields by hand; C lays out eight-byte fields without padding.
+    /// Oracle: fields counted by hand; C lays out eight-byte fields without padding.
     #[test]
     fn layouts_have_no_padding() {
         assert_eq!(align_of::<StateRow>(), 8);

@@ -1,9 +1,9 @@
-//! Zero-copy streams for processes on this host: state, grains and membrane of every tick.
+//! Zero-copy streams for processes on this host: state, grains and membrane after every tick.
 //!
-//! The rows are written from the borrowed state straight into memory that readers map: nothing is
-//! serialised, nothing is copied in between. Unlike the other sinks this one is called on the
-//! tick's own thread, so it never waits: a reader that is slow, stopped or dead loses its oldest
-//! sample, and whatever fails is counted and tried again at the next tick.
+//! Rows are written from the borrowed state directly to memory that readers map; nothing is
+//! serialized or copied. Unlike the other sinks, the stream is written on the thread of the run, so
+//! it never blocks: a slow, stopped or dead reader loses its oldest sample. A failed write is
+//! counted, and the next tick tries again.
 //!
 //! | service            | pattern           | payload                                 |
 //! |--------------------|-------------------|-----------------------------------------|
@@ -30,31 +30,31 @@ use crate::{
     snapshot::view::View,
 };
 
-/// First part of the services' names.
+/// First part of the service names.
 pub const PREFIX: &str = "jamgrip";
 /// Environment variable that replaces [`PREFIX`], for more than one run on a host.
 pub const PREFIX_VARIABLE: &str = "JAMGRIP_STREAM_PREFIX";
 
-/// Samples that a reader can be behind before it loses the oldest.
+/// Samples that a reader can lag behind before it loses the oldest.
 const BUFFER: usize = 4;
-/// Readers of each service.
+/// Largest number of readers of each service.
 const SUBSCRIBERS_MAX: usize = 8;
 
-/// Ports may be opened on one thread and used on another.
+/// The service type whose ports can be opened on one thread and used on another.
 type Ipc = ipc_threadsafe::Service;
 
-/// The services of one run, open for writing.
+/// The services of a run, opened for writing.
 pub struct Stream {
     state: Publisher<Ipc, StateRow, ()>,
     grains: Publisher<Ipc, [GrainRow], RowsHeader>,
     membrane: Publisher<Ipc, [VertexRow], RowsHeader>,
     tick: Notifier<Ipc>,
     counters: SinkCounters,
-    last_fault: Option<String>,
+    last_error: Option<String>,
     _node: Node<Ipc>,
 }
 
-/// The doors of a reader: the same services, opened from the other side.
+/// The services of a run, for opening readers.
 pub struct Services {
     node: Node<Ipc>,
     prefix: String,
@@ -63,15 +63,15 @@ pub struct Services {
 /// Why the streams could not be opened.
 #[derive(Debug, thiserror::Error)]
 pub enum StreamError {
-    /// The name is not one that iceoryx2 takes.
-    #[error("stream name `{name}` is not usable ({reason}): set {PREFIX_VARIABLE} to a short word")]
+    /// iceoryx2 rejects the name.
+    #[error("stream name `{name}` is invalid ({reason}): set {PREFIX_VARIABLE} to a short word")]
     Name {
         /// The name.
         name: String,
-        /// What iceoryx2 says.
+        /// Reason given by iceoryx2.
         reason: ServiceNameError,
     },
-    /// A service or port could not be made.
+    /// A service or port could not be created.
     #[error(
         "stream `{name}` could not be opened: {reason}; if another run streams under this name, \
          stop it or set {PREFIX_VARIABLE} to another word"
@@ -79,12 +79,12 @@ pub enum StreamError {
     Open {
         /// The name.
         name: String,
-        /// What iceoryx2 says.
+        /// Reason given by iceoryx2.
         reason: String,
     },
 }
 
-/// The first part of the services' names: the environment's choice, else [`PREFIX`].
+/// The first part of the service names: from the environment, else [`PREFIX`].
 pub fn prefix() -> String {
     std::env::var(PREFIX_VARIABLE)
         .ok()
@@ -93,20 +93,20 @@ pub fn prefix() -> String {
 }
 
 impl Services {
-    /// Joins the streams whose names begin with `prefix`.
+    /// Connects to the streams whose names begin with `prefix`.
     ///
     /// # Errors
-    /// When iceoryx2 cannot make its files and shared memory.
+    /// If iceoryx2 cannot create its files and shared memory.
     pub fn join(prefix: &str) -> Result<Self, StreamError> {
         set_log_level_from_env_or(LogLevel::Error);
-        let node = NodeBuilder::new().create::<Ipc>().map_err(|it| refused(prefix, &it))?;
+        let node = NodeBuilder::new().create::<Ipc>().map_err(|it| open_error(prefix, &it))?;
         Ok(Self { node, prefix: prefix.to_owned() })
     }
 
     /// The service of the state.
     ///
     /// # Errors
-    /// When it exists with another layout, or cannot be made.
+    /// If it exists with another layout, or cannot be created.
     pub fn state(&self) -> Result<publish_subscribe::PortFactory<Ipc, StateRow, ()>, StreamError> {
         let name = self.name("state")?;
         self.node
@@ -118,13 +118,13 @@ impl Services {
             .max_publishers(1)
             .max_subscribers(SUBSCRIBERS_MAX)
             .open_or_create()
-            .map_err(|it| refused(name.as_str(), &it))
+            .map_err(|it| open_error(name.as_str(), &it))
     }
 
     /// The service of the grains.
     ///
     /// # Errors
-    /// When it exists with another layout, or cannot be made.
+    /// If it exists with another layout, or cannot be created.
     pub fn grains(&self) -> Result<ListService<GrainRow>, StreamError> {
         self.list("grains")
     }
@@ -132,15 +132,15 @@ impl Services {
     /// The service of the membrane's vertices.
     ///
     /// # Errors
-    /// When it exists with another layout, or cannot be made.
+    /// If it exists with another layout, or cannot be created.
     pub fn membrane(&self) -> Result<ListService<VertexRow>, StreamError> {
         self.list("membrane")
     }
 
-    /// The event that wakes readers once a tick.
+    /// The event that wakes readers after every tick.
     ///
     /// # Errors
-    /// When it cannot be made.
+    /// If it cannot be created.
     pub fn tick(&self) -> Result<event::PortFactory<Ipc>, StreamError> {
         let name = self.name("tick")?;
         self.node
@@ -149,7 +149,7 @@ impl Services {
             .max_notifiers(1)
             .max_listeners(SUBSCRIBERS_MAX)
             .open_or_create()
-            .map_err(|it| refused(name.as_str(), &it))
+            .map_err(|it| open_error(name.as_str(), &it))
     }
 
     fn list<Row>(&self, what: &str) -> Result<ListService<Row>, StreamError>
@@ -167,7 +167,7 @@ impl Services {
             .max_publishers(1)
             .max_subscribers(SUBSCRIBERS_MAX)
             .open_or_create()
-            .map_err(|it| refused(name.as_str(), &it))
+            .map_err(|it| open_error(name.as_str(), &it))
     }
 
     fn name(&self, what: &str) -> Result<ServiceName, StreamError> {
@@ -183,7 +183,7 @@ impl Stream {
     /// Opens the services whose names begin with `prefix`, for lists of the given lengths.
     ///
     /// # Errors
-    /// When another process already writes under this name, or iceoryx2 cannot make its files.
+    /// If another process already writes under this name, or iceoryx2 cannot create its files.
     pub fn open(prefix: &str, n_grains: usize, n_vertices: usize) -> Result<Self, StreamError> {
         let services = Services::join(prefix)?;
         let state = services
@@ -191,56 +191,55 @@ impl Stream {
             .publisher_builder()
             .backpressure_strategy(BackpressureStrategy::DiscardData)
             .create()
-            .map_err(|it| refused(&format!("{prefix}/state"), &it))?;
+            .map_err(|it| open_error(&format!("{prefix}/state"), &it))?;
         let grains = list_publisher(&services.grains()?, prefix, n_grains)?;
         let membrane = list_publisher(&services.membrane()?, prefix, n_vertices)?;
         let tick = services
             .tick()?
             .notifier_builder()
             .create()
-            .map_err(|it| refused(&format!("{prefix}/tick"), &it))?;
+            .map_err(|it| open_error(&format!("{prefix}/tick"), &it))?;
         let counters = SinkCounters { name: "stream", ..SinkCounters::default() };
-        Ok(Self { state, grains, membrane, tick, counters, last_fault: None, _node: services.node })
+        Ok(Self { state, grains, membrane, tick, counters, last_error: None, _node: services.node })
     }
 
-    /// Writes one tick and wakes the readers. Never waits; what fails is counted.
+    /// Writes one tick and wakes the readers. Never blocks; failures are counted.
     pub fn write(&mut self, view: &View<'_>) {
         match self.send(view) {
             Ok(()) => self.counters.n_written += 1,
-            Err(fault) => {
+            Err(error) => {
                 self.counters.n_failed += 1;
-                self.last_fault = Some(fault);
+                self.last_error = Some(error);
             }
         }
     }
 
-    /// How many ticks were written, and how many failed. Readers count what they missed by the
-    /// ticks they see.
+    /// Numbers of written and failed ticks. Readers detect missed ticks by the tick numbers.
     pub fn counters(&self) -> &SinkCounters {
         &self.counters
     }
 
-    /// What went wrong last, for the log; asking clears it.
-    pub fn take_fault(&mut self) -> Option<String> {
-        self.last_fault.take()
+    /// Takes the last error, if any since the last call.
+    pub fn take_error(&mut self) -> Option<String> {
+        self.last_error.take()
     }
 
     fn send(&self, view: &View<'_>) -> Result<(), String> {
-        // All three are tried, so that one failing service does not starve the others.
-        let sent = [self.send_state(view), self.send_grains(view), self.send_membrane(view)];
+        // All three are tried, so that a failing service does not affect the others.
+        let results = [self.send_state(view), self.send_grains(view), self.send_membrane(view)];
         self.tick.notify().map_err(|it| format!("tick: {it}"))?;
-        sent.into_iter().collect()
+        results.into_iter().collect()
     }
 
     fn send_state(&self, view: &View<'_>) -> Result<(), String> {
-        let fault = |it: &dyn std::fmt::Display| format!("state: {it}");
-        let sample = self.state.loan_uninit().map_err(|it| fault(&it))?;
-        sample.write_payload(StateRow::of(view)).send().map_err(|it| fault(&it))?;
+        let error = |it: &dyn std::fmt::Display| format!("state: {it}");
+        let sample = self.state.loan_uninit().map_err(|it| error(&it))?;
+        sample.write_payload(StateRow::of(view)).send().map_err(|it| error(&it))?;
         Ok(())
     }
 
     fn send_grains(&self, view: &View<'_>) -> Result<(), String> {
-        let fault = |it: &dyn std::fmt::Display| format!("grains: {it}");
+        let error = |it: &dyn std::fmt::Display| format!("grains: {it}");
         let count = view.grain_positions.len();
         let lists = [
             view.grain_velocities.len(),
@@ -251,22 +250,22 @@ impl Stream {
         if lists != [count; 4] {
             return Err(format!("grains: {count} positions, but lists of {lists:?}"));
         }
-        let mut sample = self.grains.loan_slice_uninit(count).map_err(|it| fault(&it))?;
+        let mut sample = self.grains.loan_slice_uninit(count).map_err(|it| error(&it))?;
         *sample.user_header_mut() = header(view, count);
-        sample.write_from_fn(|i| GrainRow::of(view, i)).send().map_err(|it| fault(&it))?;
+        sample.write_from_fn(|i| GrainRow::of(view, i)).send().map_err(|it| error(&it))?;
         Ok(())
     }
 
     fn send_membrane(&self, view: &View<'_>) -> Result<(), String> {
-        let fault = |it: &dyn std::fmt::Display| format!("membrane: {it}");
+        let error = |it: &dyn std::fmt::Display| format!("membrane: {it}");
         let count = view.vertex_positions.len();
         let lists = [view.vertex_velocities.len(), view.vertex_contact_forces.len()];
         if lists != [count; 2] {
             return Err(format!("membrane: {count} positions, but lists of {lists:?}"));
         }
-        let mut sample = self.membrane.loan_slice_uninit(count).map_err(|it| fault(&it))?;
+        let mut sample = self.membrane.loan_slice_uninit(count).map_err(|it| error(&it))?;
         *sample.user_header_mut() = header(view, count);
-        sample.write_from_fn(|i| VertexRow::of(view, i)).send().map_err(|it| fault(&it))?;
+        sample.write_from_fn(|i| VertexRow::of(view, i)).send().map_err(|it| error(&it))?;
         Ok(())
     }
 }
@@ -285,13 +284,13 @@ where
         .allocation_strategy(AllocationStrategy::PowerOfTwo)
         .backpressure_strategy(BackpressureStrategy::DiscardData)
         .create()
-        .map_err(|it| refused(prefix, &it))
+        .map_err(|it| open_error(prefix, &it))
 }
 
 fn header(view: &View<'_>, count: usize) -> RowsHeader {
     RowsHeader { tick: view.snapshot.tick.0, time_ns: view.snapshot.time_ns, count: count as u64 }
 }
 
-fn refused(name: &str, reason: &dyn std::fmt::Display) -> StreamError {
+fn open_error(name: &str, reason: &dyn std::fmt::Display) -> StreamError {
     StreamError::Open { name: name.to_owned(), reason: reason.to_string() }
 }

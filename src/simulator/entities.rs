@@ -1,9 +1,10 @@
-//! What is there, how it moves, and putting it elsewhere: the objects, the flange, the bag (membrane
-//! and grains as one), and the table.
+//! The entities of the world and their states: the objects, the flange, the gripper's bag (membrane
+//! and grains as one entity), and the table.
 //!
-//! An object's frame is that of its centre of mass, as in `/tf`. States are told in the world. A
-//! state to be set may name any of the frames; its velocities are those in the world, along
-//! that frame's axes. The simulator gives bodies forces, so accelerations cannot be set.
+//! The frame of an object has its origin in the center of mass, as in `/tf`. States are reported in
+//! the world frame. A state to be set may name any of the frames; its velocities are relative to
+//! the world, along the axes of that frame. Accelerations cannot be set, because the simulator
+//! computes them from forces.
 
 use super::{Simulator, World, bounds, failed, ok};
 use crate::{
@@ -15,7 +16,7 @@ use crate::{
         apply::{self, object_frame},
         change::Change,
     },
-    cosim::{rapier_world::TABLE_HALF, refused::ChangeError},
+    cosim::{change_error::ChangeError, rapier_world::TABLE_HALF},
     physics::boundary::shape::Aabb,
     snapshot::Snapshot,
     wire::{
@@ -35,65 +36,65 @@ use crate::{
     },
 };
 
-/// The plate that the bag hangs from.
+/// The entity of the plate that the membrane is attached to.
 pub(super) const FLANGE: &str = apply::FLANGE;
-/// Membrane and grains.
+/// The entity of membrane and grains.
 pub(super) const BAG: &str = "bag";
-/// The table.
+/// The entity of the table.
 pub(super) const TABLE: &str = "table";
 
-/// How far a quaternion's length may be from 1.
-const NORMALISED: f64 = 1e-3;
+/// Largest deviation of a quaternion's norm from 1.
+const NORM_TOLERANCE: f64 = 1e-3;
 
-/// One thing in the world.
+/// An entity of the world.
 #[derive(Clone, Debug)]
 pub(super) struct Entity {
     pub(super) name: String,
     pub(super) pose: Pose,
     pub(super) twist: Twist,
-    /// How far it reaches along its own axes.
+    /// Bounding box along its own axes.
     pub(super) extent: Aabb,
 }
 
-/// Velocities of all that moves, by name.
-pub(super) fn twists(seen: &Snapshot) -> Vec<(String, Twist)> {
-    let objects = seen.objects.iter().map(|it| (it.name.clone(), it.body.twist));
-    let gripper = [FLANGE, BAG].map(|it| (it.to_owned(), seen.flange.twist));
+/// Velocities of all moving entities, with their names.
+pub(super) fn twists(snapshot: &Snapshot) -> Vec<(String, Twist)> {
+    let objects = snapshot.objects.iter().map(|it| (it.name.clone(), it.body.twist));
+    let gripper = [FLANGE, BAG].map(|it| (it.to_owned(), snapshot.flange.twist));
     objects.chain(gripper).collect()
 }
 
-/// Requests of version 1 end before the flags: everything is to be set then.
+/// Decodes a request of either version. Requests of version 1 lack the flags; they set everything.
 pub(super) fn read_set_entity_state(
     body: &Cdr,
 ) -> Result<SetEntityStateRequest, cdr_encoding::Error> {
-    body.read().or_else(|fault| {
+    body.read().or_else(|error| {
         let mut bytes = body.bytes.clone();
         bytes.extend([1; 3]);
         let with_flags = Cdr { bytes, is_big_endian: body.is_big_endian };
-        with_flags.read().map_err(|_| fault)
+        with_flags.read().map_err(|_| error)
     })
 }
 
 impl Simulator {
-    /// Everything, in a fixed order. The bag's extent is looked up only if it is asked for.
+    /// All entities, in a fixed order. The membrane's extent is computed only `with_extents`.
     pub(super) fn entities(&self, world: &World<'_>, with_extents: bool) -> Vec<Entity> {
         if !self.has_world() {
             return Vec::new();
         }
-        let seen = world.seen;
+        let snapshot = world.snapshot;
         let nothing = Aabb { min: Vec3::zeros(), max: Vec3::zeros() };
-        let objects = seen.objects.iter().map(|object| {
+        let objects = snapshot.objects.iter().map(|object| {
             let body = object.body;
-            let extent = self.register.extent(&object.name).unwrap_or(nothing);
+            let extent = self.entity_table.extent(&object.name).unwrap_or(nothing);
             Entity { name: object.name.clone(), pose: body.pose, twist: body.twist, extent }
         });
         let mut entities: Vec<Entity> = objects.collect();
-        let (pose, twist) = (seen.flange.pose, seen.flange.twist);
+        let (pose, twist) = (snapshot.flange.pose, snapshot.flange.twist);
         let radius = self.scene.membrane.radius;
         let plate = Vec3::new(radius, radius, 0.0);
         let extent = Aabb { min: -plate, max: plate };
         entities.push(Entity { name: FLANGE.to_owned(), pose, twist, extent });
-        let extent = if with_extents { self.bag_extent(world) } else { nothing };
+        let extent = if with_extents { self.membrane_extent(world) } else { nothing };
         entities.push(Entity { name: BAG.to_owned(), pose, twist, extent });
         let [edge, thickness] = TABLE_HALF;
         let extent = Aabb {
@@ -105,17 +106,17 @@ impl Simulator {
         entities
     }
 
-    /// How far membrane and grains reach; grains stay inside the membrane.
-    fn bag_extent(&self, world: &World<'_>) -> Aabb {
-        let now = (world.seen.time_ns, world.seen.digest);
-        let mut kept = self.bag.borrow_mut();
-        match *kept {
+    /// Bounding box of the membrane along the axes of the flange; all grains are inside it.
+    fn membrane_extent(&self, world: &World<'_>) -> Aabb {
+        let now = (world.snapshot.time_ns, world.snapshot.digest);
+        let mut cached = self.membrane_extent.borrow_mut();
+        match *cached {
             Some((when, extent)) if when == now => extent,
             _ => {
-                let look = world.subject.look();
-                let points = look.membrane.map(|it| it.positions).unwrap_or_default();
-                let extent = bounds::around(&points, &world.seen.flange.pose);
-                *kept = Some((now, extent));
+                let full = world.access.full_snapshot();
+                let points = full.membrane.map(|it| it.positions).unwrap_or_default();
+                let extent = bounds::around(&points, &world.snapshot.flange.pose);
+                *cached = Some((now, extent));
                 extent
             }
         }
@@ -150,7 +151,7 @@ impl Simulator {
         match self.filtered(self.entities(world, with_extents), &request.filters) {
             Ok(found) => GetEntitiesStatesResponse {
                 result: ok(),
-                states: found.iter().map(|it| self.state(it, world.seen.time_ns)).collect(),
+                states: found.iter().map(|it| self.state(it, world.snapshot.time_ns)).collect(),
                 entities: found.into_iter().map(|it| it.name).collect(),
             },
             Err(result) => GetEntitiesStatesResponse { result, ..Default::default() },
@@ -164,11 +165,11 @@ impl Simulator {
     ) -> GetEntityStateResponse {
         match self.find_entity(&request.entity, world) {
             Ok(entity) => {
-                let state = self.state(&entity, world.seen.time_ns);
+                let state = self.state(&entity, world.snapshot.time_ns);
                 GetEntityStateResponse { result: ok(), state }
             }
-            Err(why) => {
-                let result = failed(SimResult::RESULT_NOT_FOUND, why);
+            Err(reason) => {
+                let result = failed(SimResult::RESULT_NOT_FOUND, reason);
                 GetEntityStateResponse { result, ..Default::default() }
             }
         }
@@ -178,7 +179,7 @@ impl Simulator {
         let acceleration = self.acceleration(&entity.name, time_ns);
         EntityState {
             header: Header { stamp: stamp(time_ns), frame_id: apply::WORLD.to_owned() },
-            pose: told_pose(&entity.pose),
+            pose: pose_message(&entity.pose),
             twist: g::Twist {
                 linear: vector(&entity.twist.linear),
                 angular: vector(&entity.twist.angular),
@@ -190,7 +191,7 @@ impl Simulator {
         }
     }
 
-    /// Change of velocity over the last tick; zero where two ticks in a row are not known.
+    /// Mean acceleration over the last tick; zero unless two consecutive ticks are known.
     fn acceleration(&self, name: &str, time_ns: u64) -> Wrench {
         let [(before_ns, before), (now_ns, now)] = &self.twists;
         let find = |twists: &[(String, Twist)]| {
@@ -211,7 +212,7 @@ impl Simulator {
         world: &mut World<'_>,
     ) -> SetEntityStateResponse {
         let result = match self.find_entity(&request.entity, world) {
-            Err(why) => failed(SimResult::RESULT_NOT_FOUND, why),
+            Err(reason) => failed(SimResult::RESULT_NOT_FOUND, reason),
             Ok(entity) => match self.set_state(&entity, request, world) {
                 Ok(()) => ok(),
                 Err(result) => result,
@@ -228,19 +229,20 @@ impl Simulator {
     ) -> Result<(), SimResult> {
         const INVALID: u8 = SetEntityStateResponse::INVALID_POSE;
         let frame = self.frame(&request.state.header.frame_id, world);
-        let frame = frame.map_err(|why| failed(INVALID, why))?;
+        let frame = frame.map_err(|reason| failed(INVALID, reason))?;
         let mut pose = entity.pose;
         if request.set_pose {
-            pose = frame * read_pose(&request.state.pose).map_err(|why| failed(INVALID, why))?;
+            pose =
+                frame * read_pose(&request.state.pose).map_err(|reason| failed(INVALID, reason))?;
         }
         let mut twist = entity.twist;
         if request.set_twist {
-            let asked = &request.state.twist;
-            let linear = Vec3::new(asked.linear.x, asked.linear.y, asked.linear.z);
-            let angular = Vec3::new(asked.angular.x, asked.angular.y, asked.angular.z);
+            let requested = &request.state.twist;
+            let linear = Vec3::new(requested.linear.x, requested.linear.y, requested.linear.z);
+            let angular = Vec3::new(requested.angular.x, requested.angular.y, requested.angular.z);
             if [linear, angular].iter().any(|v| !v.norm_squared().is_finite()) {
-                let why = "the twist has numbers that are not finite";
-                return Err(failed(SimResult::RESULT_OPERATION_FAILED, why));
+                let reason = "the twist contains numbers that are not finite";
+                return Err(failed(SimResult::RESULT_OPERATION_FAILED, reason));
             }
             twist = Twist { linear: frame.rotation * linear, angular: frame.rotation * angular };
         }
@@ -249,19 +251,19 @@ impl Simulator {
         }
         let change = match entity.name.as_str() {
             TABLE => {
-                let why = "the table stands still";
-                return Err(failed(SimResult::RESULT_OPERATION_FAILED, why));
+                let reason = "the table cannot move";
+                return Err(failed(SimResult::RESULT_OPERATION_FAILED, reason));
             }
             FLANGE | BAG if request.set_twist && twist != Twist::zero() => {
-                let why = "the gripper moves as commanded on ~/flange/pose_cmd: set its pose only";
-                return Err(failed(SimResult::RESULT_OPERATION_FAILED, why));
+                let reason = "the gripper follows ~/flange/pose_cmd: set only its pose";
+                return Err(failed(SimResult::RESULT_OPERATION_FAILED, reason));
             }
             FLANGE | BAG => Change::PlaceFlange { pose },
             name => Change::PlaceObject { object: name.to_owned(), pose, twist },
         };
-        self.change(&change, world).map_err(|refusal| match refusal {
-            ChangeError::Overlap { .. } => failed(INVALID, refusal),
-            _ => failed(SimResult::RESULT_OPERATION_FAILED, refusal),
+        self.change(&change, world).map_err(|error| match error {
+            ChangeError::Overlap { .. } => failed(INVALID, error),
+            _ => failed(SimResult::RESULT_OPERATION_FAILED, error),
         })
     }
 
@@ -269,11 +271,11 @@ impl Simulator {
     pub(super) fn frame(&self, frame_id: &str, world: &World<'_>) -> Result<Pose, String> {
         match frame_id {
             "" | apply::WORLD => Ok(Pose::identity()),
-            FLANGE | "membrane" => Ok(world.seen.flange.pose),
+            FLANGE | "membrane" => Ok(world.snapshot.flange.pose),
             other => {
-                let objects = &world.seen.objects;
+                let objects = &world.snapshot.objects;
                 let found = objects.iter().find(|it| object_frame(&it.name) == other);
-                found.map(|it| it.body.pose).ok_or_else(|| format!("there is no frame `{other}`"))
+                found.map(|it| it.body.pose).ok_or_else(|| format!("unknown frame `{other}`"))
             }
         }
     }
@@ -285,10 +287,10 @@ impl Simulator {
     ) -> GetEntityInfoResponse {
         match self.find_entity(&request.entity, world) {
             Ok(entity) => {
-                GetEntityInfoResponse { result: ok(), info: self.register.get(&entity.name) }
+                GetEntityInfoResponse { result: ok(), info: self.entity_table.get(&entity.name) }
             }
-            Err(why) => {
-                let result = failed(SimResult::RESULT_NOT_FOUND, why);
+            Err(reason) => {
+                let result = failed(SimResult::RESULT_NOT_FOUND, reason);
                 GetEntityInfoResponse { result, ..Default::default() }
             }
         }
@@ -301,17 +303,17 @@ impl Simulator {
     ) -> SetEntityInfoResponse {
         let result = match self.find_entity(&request.entity, world) {
             Ok(entity) => {
-                self.register.set(&entity.name, request.info);
+                self.entity_table.set(&entity.name, request.info);
                 ok()
             }
-            Err(why) => failed(SimResult::RESULT_NOT_FOUND, why),
+            Err(reason) => failed(SimResult::RESULT_NOT_FOUND, reason),
         };
         SetEntityInfoResponse { result }
     }
 }
 
-/// A pose as it is told.
-pub(super) fn told_pose(pose: &Pose) -> g::Pose {
+/// A pose as a ROS 2 message.
+pub(super) fn pose_message(pose: &Pose) -> g::Pose {
     let (p, q) = (pose.translation.vector, pose.rotation);
     g::Pose {
         position: g::Point { x: p.x, y: p.y, z: p.z },
@@ -319,22 +321,25 @@ pub(super) fn told_pose(pose: &Pose) -> g::Pose {
     }
 }
 
-/// A pose as it came.
+/// Reads the pose in a message.
+///
+/// # Errors
+/// If a number is not finite or the quaternion is not normalized.
 pub(super) fn read_pose(pose: &g::Pose) -> Result<Pose, String> {
     let g::Pose { position: p, orientation: q } = pose;
     let position = Vec3::new(p.x, p.y, p.z);
     let quaternion = nalgebra::Quaternion::new(q.w, q.x, q.y, q.z);
     if !position.norm_squared().is_finite() {
-        return Err("the position has numbers that are not finite".to_owned());
+        return Err("the position contains numbers that are not finite".to_owned());
     }
-    let length = quaternion.norm();
-    // Written so that NaN does not pass.
-    let is_normalised = (length - 1.0).abs() <= NORMALISED;
-    if !is_normalised {
-        return Err(format!("the orientation has length {length}: normalise the quaternion"));
+    let norm = quaternion.norm();
+    // Written so that NaN is rejected.
+    let is_normalized = (norm - 1.0).abs() <= NORM_TOLERANCE;
+    if !is_normalized {
+        return Err(format!("the quaternion has norm {norm}: normalize it"));
     }
-    // What is 1 to the last bit stays as it came, so that a state read and set is the same state.
-    let is_exact = (length - 1.0).abs() <= 4.0 * f64::EPSILON;
+    // A unit quaternion is kept exactly, so that reading and setting a state does not change it.
+    let is_exact = (norm - 1.0).abs() <= 4.0 * f64::EPSILON;
     let rotation =
         if is_exact { Quat::new_unchecked(quaternion) } else { Quat::from_quaternion(quaternion) };
     Ok(Pose::from_parts(position.into(), rotation))
@@ -344,7 +349,7 @@ fn vector(v: &Vec3) -> g::Vector3 {
     g::Vector3 { x: v.x, y: v.y, z: v.z }
 }
 
-/// Simulated time as ROS 2 tells it.
+/// Simulation time as a ROS 2 message.
 pub(super) fn stamp(time_ns: u64) -> Time {
     Time {
         sec: i32::try_from(time_ns / 1_000_000_000).unwrap_or(i32::MAX),

@@ -1,4 +1,4 @@
-//! What is said of entities: category, description and tags, which others may change.
+//! Category, description and tags of entities, which clients can change.
 
 use std::collections::BTreeMap;
 
@@ -13,30 +13,35 @@ use crate::{
     wire::messages::simulation_interfaces::{EntityCategory, EntityInfo},
 };
 
-/// What is known of entities besides their motion, by name.
+/// Properties of entities other than their motion, by name.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Register {
+pub(super) struct EntityTable {
     infos: BTreeMap<String, EntityInfo>,
     extents: BTreeMap<String, Aabb>,
     corners: BTreeMap<String, Vec<Vec3>>,
 }
 
-impl Register {
+impl EntityTable {
     pub(super) fn new(scene: &Scene) -> Self {
-        let mut register = Self::default();
+        let mut table = Self::default();
         use EntityCategory as C;
-        register.add(FLANGE, C::CATEGORY_ROBOT, "the plate that the bag hangs from", "gripper");
-        register.add(BAG, C::CATEGORY_ROBOT, "membrane and grains of the gripper", "gripper");
-        register.add(TABLE, C::CATEGORY_STATIC_OBJECT, "the table", "table");
+        table.add(
+            FLANGE,
+            C::CATEGORY_ROBOT,
+            "the plate that the membrane is attached to",
+            "gripper",
+        );
+        table.add(BAG, C::CATEGORY_ROBOT, "membrane and grains of the gripper", "gripper");
+        table.add(TABLE, C::CATEGORY_STATIC_OBJECT, "the table", "table");
         for object in &scene.objects {
-            let what = "an object of the scene";
-            register.add(&object.name, C::CATEGORY_DYNAMIC_OBJECT, what, "object");
-            register.measure(scene, object);
+            let description = "an object of the scene";
+            table.add(&object.name, C::CATEGORY_DYNAMIC_OBJECT, description, "object");
+            table.measure(scene, object);
         }
-        register
+        table
     }
 
-    /// Notes how far an object reaches.
+    /// Stores the bounds of an object.
     fn measure(&mut self, scene: &Scene, object: &Object) {
         self.extents.insert(object.name.clone(), bounds::extent(scene, object));
         self.corners.insert(object.name.clone(), bounds::corners(scene, object));
@@ -51,39 +56,39 @@ impl Register {
         self.infos.insert(name.to_owned(), info);
     }
 
-    /// How far an object reaches along its own axes.
+    /// Bounding box of an object along its own axes.
     pub(super) fn extent(&self, name: &str) -> Option<Aabb> {
         self.extents.get(name).copied()
     }
 
-    /// Corners of an object's convex hull, if a box does not do.
+    /// Corners of an object's convex hull, if it is not described by its bounding box.
     pub(super) fn corners(&self, name: &str) -> &[Vec3] {
         self.corners.get(name).map_or(&[], Vec::as_slice)
     }
 
-    /// What is said of `name`.
+    /// The properties of `name`.
     pub(super) fn get(&self, name: &str) -> EntityInfo {
         self.infos.get(name).cloned().unwrap_or_default()
     }
 
-    /// Says something else of `name`.
+    /// Replaces the properties of `name`.
     pub(super) fn set(&mut self, name: &str, info: EntityInfo) {
         self.infos.insert(name.to_owned(), info);
     }
 
-    /// An object was added.
-    pub(super) fn spawned(&mut self, scene: &Scene, object: &Object, info: EntityInfo) {
+    /// Adds a spawned object.
+    pub(super) fn add_spawned(&mut self, scene: &Scene, object: &Object, info: EntityInfo) {
         self.infos.insert(object.name.clone(), info);
         self.measure(scene, object);
     }
 
-    /// Objects that were added are gone.
-    pub(super) fn forget_spawned(&mut self, scene: &Scene) {
-        let is_own = |name: &str| {
+    /// Removes all spawned objects.
+    pub(super) fn remove_spawned(&mut self, scene: &Scene) {
+        let is_permanent = |name: &str| {
             [FLANGE, BAG, TABLE].contains(&name) || scene.objects.iter().any(|it| it.name == name)
         };
-        self.infos.retain(|name, _| is_own(name));
-        self.extents.retain(|name, _| is_own(name));
-        self.corners.retain(|name, _| is_own(name));
+        self.infos.retain(|name, _| is_permanent(name));
+        self.extents.retain(|name, _| is_permanent(name));
+        self.corners.retain(|name, _| is_permanent(name));
     }
 }

@@ -1,58 +1,50 @@
-//! Which entities a question means: by name, category, tags and place, all at once.
+//! Entity filters: by name, category, tags and bounds; an entity must pass all of them.
 
 use regex::RegexBuilder;
 
-use super::{Simulator, bounds::Volume, entities::Entity, failed};
+use super::{Simulator, bounds::Volume, entities::Entity, failed, named_poses::has_tags};
 use crate::wire::messages::simulation_interfaces::{
-    EntityFilters, EntityInfo, Result as SimResult, TagsFilter,
+    EntityFilters, Result as SimResult, TagsFilter,
 };
 
-/// Memory that a name filter may take when compiled; matching takes linear time in any case.
+/// Largest size of a compiled name filter (bytes); matching always takes linear time.
 const REGEX_BYTES_MAX: usize = 1 << 18;
-/// Characters that a name filter may have.
+/// Largest length of a name filter (characters).
 const FILTER_MAX: usize = 1000;
 
 impl Simulator {
-    /// The entities that pass, in their order.
+    /// The entities that pass the filters, in the same order.
     ///
     /// # Errors
-    /// If a filter makes no sense; the result to answer with.
+    /// The result to respond with, if a filter is invalid.
     pub(super) fn filtered(
         &self,
         entities: Vec<Entity>,
         filters: &EntityFilters,
     ) -> Result<Vec<Entity>, SimResult> {
         if FILTER_MAX < filters.filter.len() {
-            let why = format!("the name filter has more than {FILTER_MAX} characters");
-            return Err(failed(SimResult::RESULT_OPERATION_FAILED, why));
+            let reason = format!("the name filter has more than {FILTER_MAX} characters");
+            return Err(failed(SimResult::RESULT_OPERATION_FAILED, reason));
         }
         let name = RegexBuilder::new(&filters.filter).size_limit(REGEX_BYTES_MAX).build();
         let name = name.map_err(|error| {
-            let why = format!("filter `{}` is no regular expression: {error}", filters.filter);
-            failed(SimResult::RESULT_OPERATION_FAILED, why)
+            let reason =
+                format!("filter `{}` is not a regular expression: {error}", filters.filter);
+            failed(SimResult::RESULT_OPERATION_FAILED, reason)
         })?;
-        let place = Volume::of_filter(&filters.bounds)
-            .map_err(|why| failed(SimResult::RESULT_OPERATION_FAILED, why))?;
+        let volume = Volume::of_filter(&filters.bounds)
+            .map_err(|reason| failed(SimResult::RESULT_OPERATION_FAILED, reason))?;
         if TagsFilter::FILTER_MODE_ALL < filters.tags.filter_mode {
-            let why = format!("there is no tags filter mode {}", filters.tags.filter_mode);
-            return Err(failed(SimResult::RESULT_OPERATION_FAILED, why));
+            let reason = format!("there is no tags filter mode {}", filters.tags.filter_mode);
+            return Err(failed(SimResult::RESULT_OPERATION_FAILED, reason));
         }
         let passes = |entity: &Entity| {
-            let info = self.register.get(&entity.name);
+            let info = self.entity_table.get(&entity.name);
             name.is_match(&entity.name)
                 && (filters.categories.is_empty() || filters.categories.contains(&info.category))
-                && has_tags(&info, &filters.tags)
-                && place.as_ref().is_none_or(|place| place.overlaps(&entity.volume()))
+                && has_tags(&info.tags, &filters.tags)
+                && volume.as_ref().is_none_or(|volume| volume.overlaps(&entity.volume()))
         };
         Ok(entities.into_iter().filter(passes).collect())
     }
-}
-
-fn has_tags(info: &EntityInfo, filter: &TagsFilter) -> bool {
-    let has = |tag: &String| info.tags.contains(tag);
-    filter.tags.is_empty()
-        || match filter.filter_mode {
-            TagsFilter::FILTER_MODE_ALL => filter.tags.iter().all(has),
-            _ => filter.tags.iter().any(has),
-        }
 }

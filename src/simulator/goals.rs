@@ -1,13 +1,13 @@
-//! Goals of actions: taken or refused, executing, cancelled, ended, and the clients that wait for
-//! their results.
+//! Action goals: accepting, executing, canceling and ending them, and sending their results to the
+//! waiting clients.
 
 use serde::Serialize;
 
 use super::{
-    Simulator, Unreadable,
+    DecodeError, Simulator,
     entities::stamp,
     failed, ok,
-    services::{Action, channels_of},
+    services::{Action, topics_of},
 };
 use crate::{
     io::server::{Outgoing, RequestId},
@@ -32,22 +32,22 @@ use crate::{
     },
 };
 
-/// Which goal.
+/// ID of a goal.
 pub(super) type GoalId = [u8; 16];
 
-/// Ended goals whose results are kept for those who ask late.
-const KEPT: usize = 64;
-/// Clients that may wait for one goal.
+/// Number of ended goals whose results are kept for late requests.
+const N_ENDED_MAX: usize = 64;
+/// Number of clients that may wait for one goal.
 const WAITING_MAX: usize = 64;
-/// Steps between two feedbacks; the first and the last are always told.
-const FEEDBACK_EVERY: u64 = 10;
+/// Steps between two feedback messages; the first and the last step always send one.
+const FEEDBACK_PERIOD: u64 = 10;
 
-/// All goals that are remembered, oldest first.
+/// All goals that are kept, oldest first.
 #[derive(Default)]
 pub(super) struct Goals {
     goals: Vec<Goal>,
-    /// How many channels there are; feedback goes to all places.
-    pub(super) n_channels: usize,
+    /// Number of action topics, in all namespaces.
+    pub(super) n_topics: usize,
 }
 
 struct Goal {
@@ -55,15 +55,15 @@ struct Goal {
     action: Action,
     stamp: Time,
     status: i8,
-    /// The response to those who wait, once there is one.
+    /// The response to result requests, once the goal has ended.
     result: Option<Cdr>,
     waiting: Vec<RequestId>,
 }
 
 impl Simulator {
-    /// Says how many channels there are for feedback and status.
-    pub fn with_channels(mut self, n_channels: usize) -> Self {
-        self.goals.n_channels = n_channels;
+    /// Sets the number of action topics for feedback and status.
+    pub fn with_n_topics(mut self, n_topics: usize) -> Self {
+        self.goals.n_topics = n_topics;
         self
     }
 
@@ -71,21 +71,21 @@ impl Simulator {
         &mut self,
         action: Action,
         body: &Cdr,
-        seen: &Snapshot,
-    ) -> Result<Cdr, Unreadable> {
-        let stamp = stamp(seen.time_ns);
-        let (id, begun) = match action {
+        snapshot: &Snapshot,
+    ) -> Result<Cdr, DecodeError> {
+        let stamp = stamp(snapshot.time_ns);
+        let (id, is_accepted) = match action {
             Action::Gripper => {
                 let request: SendGoalRequest<GripperCommandGoal> = body.read()?;
                 let id = request.goal_id.uuid;
                 let is_new = self.goals.find(id).is_none();
-                (id, is_new && self.begin_grip(id, &request.goal, seen))
+                (id, is_new && self.begin_grip(id, &request.goal, snapshot))
             }
             Action::ParallelGripper => {
                 let request: SendGoalRequest<ParallelGripperCommandGoal> = body.read()?;
                 let id = request.goal_id.uuid;
                 let is_new = self.goals.find(id).is_none();
-                (id, is_new && self.begin_parallel_grip(id, &request.goal, seen))
+                (id, is_new && self.begin_parallel_grip(id, &request.goal, snapshot))
             }
             Action::SimulateSteps => {
                 let request: SendGoalRequest<SimulateStepsGoal> = body.read()?;
@@ -94,32 +94,32 @@ impl Simulator {
                 (id, is_new && self.begin_steps(request.goal.steps, id).is_ok())
             }
         };
-        if begun {
+        if is_accepted {
             let status = GoalStatus::STATUS_EXECUTING;
             let goal =
                 Goal { id, action, stamp: stamp.clone(), status, result: None, waiting: vec![] };
             self.goals.add(goal);
-            self.tell_status(action);
-            if action == Action::SimulateSteps && !self.running.is_stepping() {
-                self.goal_stepped(id, 0, 0);
+            self.publish_status(action);
+            if action == Action::SimulateSteps && !self.run_state.is_stepping() {
+                self.report_goal_step(id, 0, 0);
             }
         }
-        Ok(Cdr::of(&SendGoalResponse { accepted: begun, stamp }))
+        Ok(Cdr::of(&SendGoalResponse { accepted: is_accepted, stamp }))
     }
 
     pub(super) fn get_result(
         &mut self,
         action: Action,
         body: &Cdr,
-        asker: &RequestId,
-    ) -> Result<Option<Cdr>, Unreadable> {
+        id: &RequestId,
+    ) -> Result<Option<Cdr>, DecodeError> {
         let request: GetResultRequest = body.read()?;
         let found = self.goals.find(request.goal_id.uuid);
         let Some(goal) = found.filter(|it| it.action == action) else {
             return Ok(Some(unknown_goal(action)));
         };
         if goal.result.is_none() && goal.waiting.len() < WAITING_MAX {
-            goal.waiting.push(asker.clone());
+            goal.waiting.push(id.clone());
         }
         Ok(goal.result.clone())
     }
@@ -128,10 +128,10 @@ impl Simulator {
         &mut self,
         action: Action,
         body: &Cdr,
-        seen: &Snapshot,
-    ) -> Result<Cdr, Unreadable> {
+        snapshot: &Snapshot,
+    ) -> Result<Cdr, DecodeError> {
         let CancelGoalRequest { goal_info } = body.read()?;
-        let ids = match self.goals.to_cancel(action, &goal_info) {
+        let ids = match self.goals.select(action, &goal_info) {
             Ok(ids) => ids,
             Err(return_code) => {
                 return Ok(Cdr::of(&CancelGoalResponse { return_code, ..Default::default() }));
@@ -143,10 +143,10 @@ impl Simulator {
                 let goal_id = UUID { uuid: id };
                 goals_canceling.push(GoalInfo { goal_id, stamp: goal.stamp.clone() });
             }
-            self.cancel_grip(id, seen);
+            self.cancel_grip(id, snapshot);
             if let Some((done, left)) = self.cancel_steps(id) {
-                let why = format!("cancelled after {done} steps, {left} were left");
-                let result = failed(SimResult::RESULT_OPERATION_FAILED, why);
+                let reason = format!("canceled after {done} steps with {left} remaining");
+                let result = failed(SimResult::RESULT_OPERATION_FAILED, reason);
                 let result = SimulateStepsResult { result };
                 self.end_goal(id, GoalStatus::STATUS_CANCELED, &result);
             }
@@ -155,11 +155,11 @@ impl Simulator {
         Ok(Cdr::of(&CancelGoalResponse { return_code, goals_canceling }))
     }
 
-    /// A step of a goal is done.
-    pub(super) fn goal_stepped(&mut self, id: GoalId, done: u64, left: u64) {
-        if done <= 1 || left == 0 || done.is_multiple_of(FEEDBACK_EVERY) {
+    /// Reports a completed step of a goal, and ends the goal after the last one.
+    pub(super) fn report_goal_step(&mut self, id: GoalId, done: u64, left: u64) {
+        if done <= 1 || left == 0 || done.is_multiple_of(FEEDBACK_PERIOD) {
             let feedback = SimulateStepsFeedback { completed_steps: done, remaining_steps: left };
-            self.tell_feedback(Action::SimulateSteps, id, &Cdr::of(&feedback));
+            self.publish_feedback(Action::SimulateSteps, id, &Cdr::of(&feedback));
         }
         if left == 0 {
             let result = SimulateStepsResult { result: ok() };
@@ -167,40 +167,40 @@ impl Simulator {
         }
     }
 
-    /// A goal cannot be reached any more.
+    /// Ends a goal that can no longer be reached.
     pub(super) fn abort_goal(&mut self, id: GoalId, result: SimResult) {
         self.end_goal(id, GoalStatus::STATUS_ABORTED, &SimulateStepsResult { result });
     }
 
     pub(super) fn end_goal<R: Serialize + Clone>(&mut self, id: GoalId, status: i8, result: &R) {
         let Some(goal) = self.goals.find(id) else { return };
-        let answer = Cdr::of(&GetResultResponse { status, result: result.clone() });
+        let response = Cdr::of(&GetResultResponse { status, result: result.clone() });
         goal.status = status;
-        goal.result = Some(answer.clone());
+        goal.result = Some(response.clone());
         let action = goal.action;
         let waiting = std::mem::take(&mut goal.waiting);
-        self.tell_status(action);
-        let answers = waiting.into_iter().map(|asker| Outgoing::Response(asker, answer.clone()));
-        self.out.extend(answers);
+        self.publish_status(action);
+        let responses = waiting.into_iter().map(|id| Outgoing::Response(id, response.clone()));
+        self.outgoing.extend(responses);
     }
 
-    /// Publishes how far a goal is. Its id comes first, sixteen bytes, so that what follows is
-    /// aligned as if it stood alone.
-    pub(super) fn tell_feedback(&mut self, action: Action, goal: GoalId, feedback: &Cdr) {
+    /// Publishes the progress of a goal. The goal's ID comes first; it has 16 bytes, so the
+    /// feedback after it is aligned as if it stood alone.
+    pub(super) fn publish_feedback(&mut self, action: Action, goal: GoalId, feedback: &Cdr) {
         let bytes = [&goal[..], &feedback.bytes].concat();
-        self.tell(action, 0, &Cdr { bytes, is_big_endian: false });
+        self.publish(action, 0, &Cdr { bytes, is_big_endian: false });
     }
 
-    fn tell_status(&mut self, action: Action) {
+    fn publish_status(&mut self, action: Action) {
         let of_action = self.goals.goals.iter().filter(|it| it.action == action);
         let status_list = of_action.map(Goal::status).collect();
-        self.tell(action, 1, &Cdr::of(&GoalStatusArray { status_list }));
+        self.publish(action, 1, &Cdr::of(&GoalStatusArray { status_list }));
     }
 
     /// Publishes feedback (0) or status (1) of an action.
-    fn tell(&mut self, action: Action, which: usize, body: &Cdr) {
-        for channels in channels_of(action, self.goals.n_channels) {
-            self.out.push(Outgoing::Message(channels[which], body.clone()));
+    fn publish(&mut self, action: Action, kind: usize, body: &Cdr) {
+        for topics in topics_of(action, self.goals.n_topics) {
+            self.outgoing.push(Outgoing::Message(topics[kind], body.clone()));
         }
     }
 }
@@ -212,7 +212,7 @@ impl Goals {
 
     fn add(&mut self, goal: Goal) {
         let n_ended = self.goals.iter().filter(|it| it.result.is_some()).count();
-        if KEPT <= n_ended
+        if N_ENDED_MAX <= n_ended
             && let Some(oldest) = self.goals.iter().position(|it| it.result.is_some())
         {
             self.goals.remove(oldest);
@@ -220,8 +220,8 @@ impl Goals {
         self.goals.push(goal);
     }
 
-    /// Goals that a request to cancel means: one by its name, those not younger than a time, or all.
-    fn to_cancel(&self, action: Action, info: &GoalInfo) -> Result<Vec<GoalId>, i8> {
+    /// The goals that a cancel request selects: one by its ID, those accepted up to a time, or all.
+    fn select(&self, action: Action, info: &GoalInfo) -> Result<Vec<GoalId>, i8> {
         let id = info.goal_id.uuid;
         let is_any = id == [0; 16];
         let until = (info.stamp.sec, info.stamp.nanosec);
@@ -233,11 +233,11 @@ impl Goals {
                 return Err(CancelGoalResponse::ERROR_GOAL_TERMINATED);
             }
         }
-        let is_meant = |it: &&Goal| {
+        let is_selected = |it: &&Goal| {
             let is_old = (it.stamp.sec, it.stamp.nanosec) <= until && until != (0, 0);
             it.result.is_none() && (it.id == id || is_old || (is_any && until == (0, 0)))
         };
-        Ok(of_action().filter(is_meant).map(|it| it.id).collect())
+        Ok(of_action().filter(is_selected).map(|it| it.id).collect())
     }
 }
 
@@ -249,7 +249,7 @@ impl Goal {
     }
 }
 
-/// What those are told who wait for a goal that is not there.
+/// The response to result requests for an unknown goal.
 fn unknown_goal(action: Action) -> Cdr {
     match action {
         Action::Gripper => Cdr::of(&GetResultResponse {

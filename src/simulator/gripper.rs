@@ -1,15 +1,14 @@
-//! The gripper as drivers of vacuum grippers and MoveIt know theirs.
+//! The interface of vacuum gripper drivers and MoveIt.
 //!
-//! A position is a share of the strongest vacuum: 0 is vented, 1 is all that the pump can. An effort
-//! is a pressure below the ambient one (Pa); as a limit it bounds the vacuum. A goal has been reached
-//! when the pressure is within 5 % of what was asked; it has `stalled` if the bag then holds
-//! something and can draw no further. A new goal aborts the one before, a cancelled one keeps the
-//! pressure that it has come to.
+//! A position is a fraction of the strongest vacuum: 0 is vented, 1 is the limit of the pump. An
+//! effort is a pressure below ambient (Pa); as a limit it bounds the vacuum. A goal is reached when
+//! the pressure is within 5 % of the requested one; it is `stalled` if the gripper then touches an
+//! object. A new goal aborts the one before. Canceling a goal keeps the present pressure.
 
 use super::{Simulator, World, goals::GoalId, services::Action};
 use crate::{
     command::{Command, change::Change},
-    cosim::refused::ChangeError,
+    cosim::change_error::ChangeError,
     snapshot::Snapshot,
     wire::{
         cdr::Cdr,
@@ -26,26 +25,26 @@ use crate::{
     },
 };
 
-/// How near the pressure must come, as a share of the strongest vacuum.
-const NEAR: f64 = 0.05;
-/// Simulated time after which a goal that is not reached is given up (ns).
-const PATIENCE_NS: u64 = 30_000_000_000;
-/// Ticks between two feedbacks.
-const FEEDBACK_EVERY: u64 = 20;
-/// Name of the joint that a vacuum is.
+/// Tolerance of the pressure, as a fraction of the strongest vacuum.
+const REACHED_TOLERANCE: f64 = 0.05;
+/// Simulation time after which an unreached goal is aborted (ns).
+const TIMEOUT_NS: u64 = 30_000_000_000;
+/// Ticks between two feedback messages.
+const FEEDBACK_PERIOD: u64 = 20;
+/// Name of the joint that represents the vacuum.
 const JOINT: &str = crate::command::JOINTS[0];
 
-/// A goal that is on its way.
-pub(super) struct Grip {
-    goal: GoalId,
+/// A running goal.
+pub(super) struct GripGoal {
+    id: GoalId,
     action: Action,
-    /// What was asked for, after limits (Pa).
+    /// The target pressure, within limits (Pa).
     gauge: f64,
-    since_ns: u64,
+    start_ns: u64,
     n_ticks: u64,
 }
 
-/// How far a goal has come.
+/// The progress of a goal.
 struct Progress {
     position: f64,
     gauge: f64,
@@ -61,44 +60,44 @@ impl Simulator {
         let gauge_pa = if request.data { self.scene.chamber.gauge_min } else { 0.0 };
         self.end_grip(GoalStatus::STATUS_ABORTED, None);
         self.commands.push(Command::Vacuum { gauge_pa });
-        SetBoolResponse { success: true, message: format!("{gauge_pa} Pa are set") }
+        SetBoolResponse { success: true, message: format!("the setpoint is {gauge_pa} Pa") }
     }
 
     pub(super) fn zero_force_sensor(&mut self, world: &mut World<'_>) -> TriggerResponse {
         match self.change(&Change::ZeroForceSensor, world) {
             Ok(()) => TriggerResponse {
                 success: true,
-                message: "~/flange/wrench reads zero from here on".to_owned(),
+                message: "~/flange/wrench now reads zero".to_owned(),
             },
             Err(ChangeError::Unchangeable) | Err(_) => {
-                TriggerResponse { success: false, message: "there is no sensor".to_owned() }
+                TriggerResponse { success: false, message: "there is no force sensor".to_owned() }
             }
         }
     }
 
-    /// Begins a goal of GripperCommand; false if it makes no sense.
+    /// Begins a goal of `GripperCommand`. Returns false if it is invalid.
     pub(super) fn begin_grip(
         &mut self,
         goal: GoalId,
-        asked: &GripperCommandGoal,
-        seen: &Snapshot,
+        request: &GripperCommandGoal,
+        snapshot: &Snapshot,
     ) -> bool {
-        let command = &asked.command;
-        self.begin(Action::Gripper, goal, [command.position, command.max_effort], seen)
+        let command = &request.command;
+        self.begin(Action::Gripper, goal, [command.position, command.max_effort], snapshot)
     }
 
-    /// Begins a goal of ParallelGripperCommand; false if it makes no sense.
+    /// Begins a goal of `ParallelGripperCommand`. Returns false if it is invalid.
     pub(super) fn begin_parallel_grip(
         &mut self,
         goal: GoalId,
-        asked: &ParallelGripperCommandGoal,
-        seen: &Snapshot,
+        request: &ParallelGripperCommandGoal,
+        snapshot: &Snapshot,
     ) -> bool {
-        let JointState { name, position, effort, .. } = &asked.command;
-        let is_ours = name.is_empty() || name.iter().map(String::as_str).eq([JOINT]);
+        let JointState { name, position, effort, .. } = &request.command;
+        let is_known_joint = name.is_empty() || name.iter().map(String::as_str).eq([JOINT]);
         let [position] = position.as_slice() else { return false };
         let effort = effort.first().copied().unwrap_or(0.0);
-        is_ours && self.begin(Action::ParallelGripper, goal, [*position, effort], seen)
+        is_known_joint && self.begin(Action::ParallelGripper, goal, [*position, effort], snapshot)
     }
 
     fn begin(
@@ -106,65 +105,66 @@ impl Simulator {
         action: Action,
         goal: GoalId,
         [position, max_effort]: [f64; 2],
-        seen: &Snapshot,
+        snapshot: &Snapshot,
     ) -> bool {
-        let is_sensible = (0.0..=1.0).contains(&position) && max_effort.is_finite();
-        if !is_sensible || !self.has_world() {
+        let is_valid = (0.0..=1.0).contains(&position) && max_effort.is_finite();
+        if !is_valid || !self.has_world() {
             return false;
         }
         self.end_grip(GoalStatus::STATUS_ABORTED, None);
         let strongest = self.scene.chamber.gauge_min;
-        // An effort of zero or less is no limit, as controllers of grippers have it.
+        // An effort of zero or less means no limit, as in other gripper controllers.
         let limit = if 0.0 < max_effort { -max_effort } else { strongest };
         let gauge = (position * strongest).max(limit);
         self.commands.push(Command::Vacuum { gauge_pa: gauge });
-        self.grip = Some(Grip { goal, action, gauge, since_ns: seen.time_ns, n_ticks: 0 });
+        self.grip =
+            Some(GripGoal { id: goal, action, gauge, start_ns: snapshot.time_ns, n_ticks: 0 });
         true
     }
 
-    /// A tick has ended: tells how far a goal is, and ends it.
-    pub(super) fn grip_ticked(&mut self, seen: &Snapshot) {
+    /// Reports the progress of the goal after a tick, and ends it if it is reached or timed out.
+    pub(super) fn update_grip(&mut self, snapshot: &Snapshot) {
         let Some(grip) = &mut self.grip else { return };
         grip.n_ticks += 1;
-        let is_told = grip.n_ticks % FEEDBACK_EVERY == 1;
-        let is_late = PATIENCE_NS < seen.time_ns.saturating_sub(grip.since_ns);
-        let (action, goal) = (grip.action, grip.goal);
-        let progress = self.progress(seen);
-        if is_told || progress.is_reached {
+        let is_feedback_due = grip.n_ticks % FEEDBACK_PERIOD == 1;
+        let is_timed_out = TIMEOUT_NS < snapshot.time_ns.saturating_sub(grip.start_ns);
+        let (action, goal) = (grip.action, grip.id);
+        let progress = self.progress(snapshot);
+        if is_feedback_due || progress.is_reached {
             let body = feedback(action, &progress);
-            self.tell_feedback(action, goal, &body);
+            self.publish_feedback(action, goal, &body);
         }
         if progress.is_reached {
             self.end_grip(GoalStatus::STATUS_SUCCEEDED, Some(&progress));
-        } else if is_late {
+        } else if is_timed_out {
             self.end_grip(GoalStatus::STATUS_ABORTED, Some(&progress));
         }
     }
 
-    /// The goal is not wanted any more: the pressure stays what it is.
-    pub(super) fn cancel_grip(&mut self, goal: GoalId, seen: &Snapshot) {
-        if self.grip.as_ref().is_some_and(|it| it.goal == goal) {
-            let progress = self.progress(seen);
+    /// Cancels the goal, and keeps the present pressure.
+    pub(super) fn cancel_grip(&mut self, goal: GoalId, snapshot: &Snapshot) {
+        if self.grip.as_ref().is_some_and(|it| it.id == goal) {
+            let progress = self.progress(snapshot);
             self.commands.push(Command::Vacuum { gauge_pa: progress.gauge });
             self.end_grip(GoalStatus::STATUS_CANCELED, Some(&progress));
         }
     }
 
-    /// The world that a goal is about goes.
-    pub(super) fn give_up_grip(&mut self) {
+    /// Aborts the goal, because its world is being replaced or unloaded.
+    pub(super) fn abort_grip(&mut self) {
         self.end_grip(GoalStatus::STATUS_ABORTED, None);
     }
 
-    fn progress(&self, seen: &Snapshot) -> Progress {
+    fn progress(&self, snapshot: &Snapshot) -> Progress {
         let strongest = self.scene.chamber.gauge_min;
-        let wanted = self.grip.as_ref().map_or(0.0, |it| it.gauge);
-        let gauge = seen.chamber.gauge;
-        let is_reached = (gauge - wanted).abs() <= NEAR * strongest.abs();
+        let target = self.grip.as_ref().map_or(0.0, |it| it.gauge);
+        let gauge = snapshot.chamber.gauge;
+        let is_reached = (gauge - target).abs() <= REACHED_TOLERANCE * strongest.abs();
         Progress {
             position: if strongest < 0.0 { gauge / strongest } else { 0.0 },
             gauge,
             is_reached,
-            is_stalled: is_reached && wanted < 0.0 && 0 < seen.jamming.n_object_contacts,
+            is_stalled: is_reached && target < 0.0 && 0 < snapshot.jamming.n_object_contacts,
         }
     }
 
@@ -177,12 +177,12 @@ impl Simulator {
             Action::ParallelGripper => {
                 let state = joint(it);
                 let result = ParallelGripperCommandResult { state, stalled, reached_goal };
-                self.end_goal(grip.goal, status, &result);
+                self.end_goal(grip.id, status, &result);
             }
             Action::Gripper | Action::SimulateSteps => {
                 let (position, effort) = (it.position, -it.gauge);
                 let result = GripperCommandResult { position, effort, stalled, reached_goal };
-                self.end_goal(grip.goal, status, &result);
+                self.end_goal(grip.id, status, &result);
             }
         }
     }

@@ -1,13 +1,14 @@
-//! The simulator as ROS 2 users know it: the services and the action of `simulation_interfaces`, and
-//! those of grippers.
+//! The simulator as ROS 2 users know it: the services and the action of `simulation_interfaces`,
+//! and those of vacuum grippers.
 //!
-//! Questions are answered between two ticks, from the snapshot of the last one; what they change goes
-//! to the world as plain values. Nothing here knows a socket, a clock or a thread, so a test asks
-//! it directly.
+//! Requests are handled between two ticks, from the snapshot of the last tick. Changes go to the
+//! world as plain values. This module uses no sockets, clocks or threads, so tests can call it
+//! directly.
 //!
-//! Where the standard contradicts itself: a stopped simulation may be paused, as the comment on its
-//! states says; a step of a simulation that is not paused is `RESULT_OPERATION_FAILED`, as
-//! the service's comment says. A name filter may match anywhere in a name, as POSIX expressions do.
+//! Where the standard contradicts itself: a stopped simulation may be paused, as the comment on the
+//! states says; stepping a simulation that is not paused is `RESULT_OPERATION_FAILED`, as the
+//! comment of the service says. A name filter may match anywhere in a name, as POSIX expressions
+//! do.
 
 mod bounds; // bounding volumes of entities
 mod entities; // the entities of the world
@@ -15,10 +16,10 @@ mod entity_info; // category, tags, description
 mod filters; // entity filters
 mod goals; // actions
 mod gripper; // vacuum gripper interfaces
-mod named_poses; // named poses
+mod named_poses; // named poses of the scene
 mod parameters; // ROS 2 parameters
-mod running; // states, steps, resets
-pub mod services; // the closed list of services
+mod run_state; // playing, paused or stopped; steps and resets
+pub mod services; // the list of services
 mod spawning; // spawns and deletes objects
 mod worlds; // loads and unloads worlds
 
@@ -29,16 +30,18 @@ use std::{
 };
 
 use serde::{Serialize, de::DeserializeOwned};
-pub use services::{Endpoint, Service, asked};
+pub use services::{Endpoint, Service, endpoints};
 
-use self::{entity_info::Register, goals::Goals, gripper::Grip, running::Running, worlds::Loading};
+use self::{
+    entity_info::EntityTable, goals::Goals, gripper::GripGoal, run_state::RunState, worlds::Loading,
+};
 use crate::{
     base::real::Twist,
     command::{Command, change::Change},
-    cosim::refused::ChangeError,
+    cosim::change_error::ChangeError,
     io::server::{Outgoing, RequestId, ServiceRequest},
     physics::boundary::shape::Aabb,
-    scene::{Scene, resource::Shelf},
+    scene::{Scene, resource::FolderState},
     snapshot::Snapshot,
     wire::{
         cdr::Cdr,
@@ -48,28 +51,28 @@ use crate::{
     },
 };
 
-/// What can be looked at and changed between two ticks.
-pub trait Subject {
-    /// A copy of what the outside may see, with all large parts.
-    fn look(&self) -> Snapshot;
+/// The operations on the world that requests need between two ticks.
+pub trait WorldAccess {
+    /// A snapshot with all large parts.
+    fn full_snapshot(&self) -> Snapshot;
 
-    /// Changes the world.
+    /// Applies a change.
     ///
     /// # Errors
-    /// If the change cannot be made; nothing is changed then.
+    /// If the change is impossible; the world is unchanged then.
     fn change(&mut self, change: &Change) -> Result<(), ChangeError>;
 }
 
-/// The world between two ticks.
+/// The world between two ticks, and its last snapshot.
 pub struct World<'a> {
-    /// The thing itself.
-    pub subject: &'a mut dyn Subject,
-    /// How it was at the end of the last tick.
-    pub seen: &'a Snapshot,
+    /// The world.
+    pub access: &'a mut dyn WorldAccess,
+    /// The snapshot of the last tick.
+    pub snapshot: &'a Snapshot,
 }
 
-/// Which of the two wire formats of `simulation_interfaces` is answered in where they differ.
-/// Questions are understood in both.
+/// The wire format of responses, where the two versions of `simulation_interfaces` differ. Requests
+/// are accepted in both.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Version {
     /// 1.x: Humble, Jazzy, Kilted.
@@ -79,236 +82,240 @@ pub enum Version {
     Two,
 }
 
-/// What questions have done to the world since the last look.
+/// What requests have changed since the last call of [`Simulator::take_changed`].
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Changed {
-    /// What was changed, in this order.
+    /// Changes of the world, in order.
     pub changes: Vec<Change>,
-    /// Simulated time is zero again.
+    /// True if simulation time was reset to zero.
     pub is_time_reset: bool,
-    /// The state is that of the start again.
+    /// True if the state was reset to the start.
     pub is_state_reset: bool,
-    /// It is another scene.
+    /// True if another scene was loaded.
     pub is_scene_loaded: bool,
 }
 
-/// The simulator.
+/// The state of the simulator's services.
 pub struct Simulator {
     scene: Arc<Scene>,
-    /// Where it is from, and the folder that others are looked for in.
+    /// Where the scene comes from, and the folder in which others are looked up.
     resource: Resource,
     folder: PathBuf,
     version: Version,
-    asked: Vec<Endpoint>,
-    running: Running,
-    register: Register,
+    endpoints: Vec<Endpoint>,
+    run_state: RunState,
+    entity_table: EntityTable,
     goals: Goals,
-    grip: Option<Grip>,
-    /// Lists that were made, and of what.
-    spawnables: Option<(Shelf, Vec<Spawnable>)>,
-    worlds: Option<(Shelf, Vec<WorldResource>)>,
-    /// A scene that someone waits for, and the same until it is handed on.
+    grip: Option<GripGoal>,
+    /// Cached lists, with the state of the folders that they were made from.
+    spawnables: Option<(FolderState, Vec<Spawnable>)>,
+    worlds: Option<(FolderState, Vec<WorldResource>)>,
+    /// The request to load a scene, and the scene until it is taken to be settled.
     loading: Option<Loading>,
-    wanted: Option<Scene>,
+    scene_to_settle: Option<Scene>,
     is_monotonic: bool,
     /// Velocities at the ends of the last two ticks, with their times (ns).
     twists: [(u64, Vec<(String, Twist)>); 2],
-    out: Vec<Outgoing>,
+    outgoing: Vec<Outgoing>,
     commands: Vec<Command>,
     changed: Changed,
-    /// Extent of the bag at a time and digest, once someone asked.
-    bag: RefCell<Option<((u64, u64), Aabb)>>,
+    /// Extent of membrane and grains, with the time and digest for which it was computed.
+    membrane_extent: RefCell<Option<((u64, u64), Aabb)>>,
 }
 
-/// Why a question has no answer.
-type Unreadable = cdr_encoding::Error;
+/// The error of a request that cannot be decoded.
+type DecodeError = cdr_encoding::Error;
 
 impl Simulator {
-    /// A simulator of `scene` that is asked by `asked`, in the order of the services offered. If it is
-    /// stopped, it stands still until a first command or until it is told to play.
-    pub fn new(scene: &Arc<Scene>, asked: Vec<Endpoint>, is_stopped: bool) -> Self {
+    /// Creates a simulator of `scene` with these endpoints, in the order of the services offered.
+    /// If `is_stopped`, it waits for a first command or a request to play.
+    pub fn new(scene: &Arc<Scene>, endpoints: Vec<Endpoint>, is_stopped: bool) -> Self {
         Self {
             scene: Arc::clone(scene),
             resource: Resource::default(),
             folder: PathBuf::new(),
             version: Version::default(),
-            asked,
-            running: Running::new(is_stopped),
-            register: Register::new(scene),
+            endpoints,
+            run_state: RunState::new(is_stopped),
+            entity_table: EntityTable::new(scene),
             goals: Goals::default(),
             grip: None,
             spawnables: None,
             worlds: None,
             loading: None,
-            wanted: None,
+            scene_to_settle: None,
             is_monotonic: scene.outputs.ros.monotonic_clock,
             twists: Default::default(),
-            out: Vec::new(),
+            outgoing: Vec::new(),
             commands: Vec::new(),
             changed: Changed::default(),
-            bag: RefCell::new(None),
+            membrane_extent: RefCell::new(None),
         }
     }
 
-    /// The scene, with the parameters as they are now.
+    /// The scene, with the present values of the parameters.
     pub fn scene(&self) -> &Arc<Scene> {
         &self.scene
     }
 
-    /// Answers in this version.
-    pub fn speaking(self, version: Version) -> Self {
+    /// Sets the version of responses.
+    pub fn with_version(self, version: Version) -> Self {
         Self { version, ..self }
     }
 
-    /// The scene is from this file; others are looked for beside it.
-    pub fn beside(self, file: &Path) -> Self {
+    /// Sets the scene file; other scenes are looked up in its folder.
+    pub fn with_scene_file(self, file: &Path) -> Self {
         let file = std::path::absolute(file).unwrap_or_else(|_| file.to_owned());
         let folder = file.parent().map_or_else(PathBuf::new, Path::to_owned);
         let uri = format!("file://{}", file.display());
         Self { resource: Resource { uri, resource_string: String::new() }, folder, ..self }
     }
 
-    /// Answers a question, now or later.
+    /// Handles a request. The response is queued now or later.
     ///
     /// # Errors
-    /// If the question cannot be read; there is no answer then.
-    pub fn handle_requests(
+    /// If the request cannot be decoded; there is no response then.
+    pub fn handle_request(
         &mut self,
-        call: &ServiceRequest,
+        request: &ServiceRequest,
         world: &mut World<'_>,
     ) -> Result<(), String> {
-        let Some(asked) = self.asked.get(call.asker.offer).copied() else { return Ok(()) };
-        let answer = self
-            .answer(asked, call, world)
-            .map_err(|fault| format!("{}: {fault}", asked.name()))?;
-        if let Some(body) = answer {
-            self.out.push(Outgoing::Response(call.asker.clone(), body));
+        let Some(endpoint) = self.endpoints.get(request.id.service).copied() else { return Ok(()) };
+        let response = self
+            .respond(endpoint, request, world)
+            .map_err(|error| format!("{}: {error}", endpoint.name()))?;
+        if let Some(body) = response {
+            self.outgoing.push(Outgoing::Response(request.id.clone(), body));
         }
         Ok(())
     }
 
-    fn answer(
+    fn respond(
         &mut self,
-        asked: Endpoint,
-        call: &ServiceRequest,
+        endpoint: Endpoint,
+        request: &ServiceRequest,
         world: &mut World<'_>,
-    ) -> Result<Option<Cdr>, Unreadable> {
-        let (body, asker) = (&call.body, &call.asker);
-        let ask = match asked {
-            Endpoint::Service(ask) => ask,
+    ) -> Result<Option<Cdr>, DecodeError> {
+        let (body, id) = (&request.body, &request.id);
+        let service = match endpoint {
+            Endpoint::Service(service) => service,
             Endpoint::SendGoal(action) => {
-                return self.send_goal(action, body, world.seen).map(Some);
+                return self.send_goal(action, body, world.snapshot).map(Some);
             }
             Endpoint::CancelGoal(action) => {
-                return self.cancel_goals(action, body, world.seen).map(Some);
+                return self.cancel_goals(action, body, world.snapshot).map(Some);
             }
-            Endpoint::GetResult(action) => return self.get_result(action, body, asker),
+            Endpoint::GetResult(action) => return self.get_result(action, body, id),
         };
-        let answer = match ask {
+        let response = match service {
             Service::GetSimulatorFeatures => Cdr::of(&self.features()),
             Service::GetSimulationState => Cdr::of(&self.simulation_state()),
-            Service::SetSimulationState => reply(body, |it| self.set_simulation_state(&it, world))?,
-            Service::ResetSimulation => reply(body, |it| self.reset_simulation(&it, world))?,
-            Service::StepSimulation => return self.step_simulation(body, asker),
-            Service::GetEntities => reply(body, |it| self.get_entities(&it, world))?,
-            Service::GetEntitiesStates => reply(body, |it| self.get_entities_states(&it, world))?,
-            Service::GetEntityState => reply(body, |it| self.get_entity_state(&it, world))?,
+            Service::SetSimulationState => {
+                respond_to(body, |it| self.set_simulation_state(&it, world))?
+            }
+            Service::ResetSimulation => respond_to(body, |it| self.reset_simulation(&it, world))?,
+            Service::StepSimulation => return self.step_simulation(body, id),
+            Service::GetEntities => respond_to(body, |it| self.get_entities(&it, world))?,
+            Service::GetEntitiesStates => {
+                respond_to(body, |it| self.get_entities_states(&it, world))?
+            }
+            Service::GetEntityState => respond_to(body, |it| self.get_entity_state(&it, world))?,
             Service::SetEntityState => {
                 let request = entities::read_set_entity_state(body)?;
                 Cdr::of(&self.set_entity_state(&request, world))
             }
-            Service::GetEntityInfo => reply(body, |it| self.get_entity_info(&it, world))?,
-            Service::SetEntityInfo => reply(body, |it| self.set_entity_info(it, world))?,
-            Service::GetEntityBounds => reply(body, |it| self.get_entity_bounds(&it, world))?,
-            Service::SpawnEntity => reply(body, |it| self.spawn_entity(it, world))?,
-            Service::SpawnEntities => reply(body, |it| self.spawn_entities(&it, world))?,
-            Service::DeleteEntity => reply(body, |it| self.delete_entity(&it, world))?,
+            Service::GetEntityInfo => respond_to(body, |it| self.get_entity_info(&it, world))?,
+            Service::SetEntityInfo => respond_to(body, |it| self.set_entity_info(it, world))?,
+            Service::GetEntityBounds => respond_to(body, |it| self.get_entity_bounds(&it, world))?,
+            Service::SpawnEntity => respond_to(body, |it| self.spawn_entity(it, world))?,
+            Service::SpawnEntities => respond_to(body, |it| self.spawn_entities(&it, world))?,
+            Service::DeleteEntity => respond_to(body, |it| self.delete_entity(&it, world))?,
             Service::GetSpawnables => self.get_spawnables(&body.read()?),
-            Service::GetNamedPoses => reply(body, |it| self.get_named_poses(&it))?,
-            Service::GetNamedPoseBounds => reply(body, |it| self.get_named_pose_bounds(&it))?,
-            Service::LoadWorld => return self.load_world(body, asker),
+            Service::GetNamedPoses => respond_to(body, |it| self.get_named_poses(&it))?,
+            Service::GetNamedPoseBounds => respond_to(body, |it| self.get_named_pose_bounds(&it))?,
+            Service::LoadWorld => return self.load_world(body, id),
             Service::UnloadWorld => Cdr::of(&self.unload_world()),
             Service::GetCurrentWorld => Cdr::of(&self.get_current_world()),
-            Service::GetAvailableWorlds => reply(body, |it| self.get_available_worlds(&it))?,
-            Service::GripCommand => reply(body, |it| self.grip_command(&it))?,
-            Service::DescribeParameters => reply(body, |it| self.describe_parameters(&it))?,
-            Service::GetParameters => reply(body, |it| self.get_parameters(&it))?,
-            Service::GetParameterTypes => reply(body, |it| self.get_parameter_types(&it))?,
-            Service::ListParameters => reply(body, |it| self.list_parameters(&it))?,
-            Service::SetParameters => reply(body, |it| self.set_parameters(&it, world))?,
+            Service::GetAvailableWorlds => respond_to(body, |it| self.get_available_worlds(&it))?,
+            Service::GripCommand => respond_to(body, |it| self.grip_command(&it))?,
+            Service::DescribeParameters => respond_to(body, |it| self.describe_parameters(&it))?,
+            Service::GetParameters => respond_to(body, |it| self.get_parameters(&it))?,
+            Service::GetParameterTypes => respond_to(body, |it| self.get_parameter_types(&it))?,
+            Service::ListParameters => respond_to(body, |it| self.list_parameters(&it))?,
+            Service::SetParameters => respond_to(body, |it| self.set_parameters(&it, world))?,
             Service::SetParametersAtomically => {
-                reply(body, |it| self.set_parameters_atomically(&it, world))?
+                respond_to(body, |it| self.set_parameters_atomically(&it, world))?
             }
             Service::ZeroForceSensor => Cdr::of(&self.zero_force_sensor(world)),
         };
-        Ok(Some(answer))
+        Ok(Some(response))
     }
 
     /// True if the next tick may begin.
     pub fn may_tick(&self) -> bool {
-        self.running.may_tick()
+        self.run_state.may_tick()
     }
 
-    /// True while steps are made that someone waits for.
+    /// True while a requested series of steps is running.
     pub fn is_stepping(&self) -> bool {
-        self.running.is_stepping()
+        self.run_state.is_stepping()
     }
 
-    /// True once someone has asked the simulator to quit.
+    /// True once a client has requested to quit.
     pub fn is_quitting(&self) -> bool {
-        self.running.is_quitting()
+        self.run_state.is_quitting()
     }
 
-    /// True until a first command or a question has moved it out of its first stop.
+    /// True until a first command or request ends the initial stop.
     pub fn is_waiting(&self) -> bool {
-        self.running.is_waiting()
+        self.run_state.is_waiting()
     }
 
-    /// A first command has come: a simulator that waited for it plays.
+    /// Starts the simulation if it waits for a first command.
     pub fn first_command(&mut self) {
-        self.running.first_command();
+        self.run_state.first_command();
     }
 
-    /// A tick has ended.
-    pub fn ticked(&mut self, seen: &Snapshot) {
+    /// Updates goals and steps after a tick.
+    pub fn finish_tick(&mut self, snapshot: &Snapshot) {
         self.twists.swap(0, 1);
-        self.twists[1] = (seen.time_ns, entities::twists(seen));
-        self.steps_ticked();
-        self.grip_ticked(seen);
+        self.twists[1] = (snapshot.time_ns, entities::twists(snapshot));
+        self.count_step();
+        self.update_grip(snapshot);
     }
 
-    /// Stops time where it is.
+    /// Pauses the simulation.
     pub fn pause(&mut self) {
-        self.running.pause();
+        self.run_state.pause();
     }
 
-    /// True if there are some.
+    /// True if requests have led to commands that were not taken yet.
     pub fn has_commands(&self) -> bool {
         !self.commands.is_empty()
     }
 
-    /// Commands that questions have led to.
+    /// Takes the commands that requests have led to.
     pub fn take_commands(&mut self) -> Vec<Command> {
         std::mem::take(&mut self.commands)
     }
 
-    /// What is to leave.
-    pub fn take_out(&mut self) -> Vec<Outgoing> {
-        std::mem::take(&mut self.out)
+    /// Takes the responses and messages to send.
+    pub fn take_outgoing(&mut self) -> Vec<Outgoing> {
+        std::mem::take(&mut self.outgoing)
     }
 
-    /// How the world is not the one of the last tick any more; asking clears it.
+    /// Takes what requests have changed since the last call.
     pub fn take_changed(&mut self) -> Changed {
         std::mem::take(&mut self.changed)
     }
 
-    fn send_answer<T: Serialize>(&mut self, asker: RequestId, answer: &T) {
-        self.out.push(Outgoing::Response(asker, Cdr::of(answer)));
+    fn send_response<T: Serialize>(&mut self, request: RequestId, response: &T) {
+        self.outgoing.push(Outgoing::Response(request, Cdr::of(response)));
     }
 
-    /// True if there is a scene that can be asked about and changed.
+    /// True if a scene is loaded.
     fn has_world(&self) -> bool {
-        self.running.has_world()
+        self.run_state.has_world()
     }
 
     fn change(&mut self, change: &Change, world: &mut World<'_>) -> Result<(), ChangeError> {
@@ -319,7 +326,7 @@ impl Simulator {
     }
 
     fn apply(&mut self, change: &Change, world: &mut World<'_>) -> Result<(), ChangeError> {
-        let changed = world.subject.change(change);
+        let changed = world.access.change(change);
         if changed.is_ok() {
             self.changed.changes.push(change.clone());
             if let Change::Reset(scope) = change {
@@ -338,19 +345,19 @@ impl Simulator {
     }
 }
 
-fn reply<Q: DeserializeOwned, A: Serialize>(
+fn respond_to<Q: DeserializeOwned, A: Serialize>(
     body: &Cdr,
-    answer: impl FnOnce(Q) -> A,
-) -> Result<Cdr, Unreadable> {
-    body.read::<Q>().map(|question| Cdr::of(&answer(question)))
+    respond: impl FnOnce(Q) -> A,
+) -> Result<Cdr, DecodeError> {
+    body.read::<Q>().map(|request| Cdr::of(&respond(request)))
 }
 
-/// All went well.
+/// The result of a request that succeeded.
 fn ok() -> SimResult {
     SimResult { result: SimResult::RESULT_OK, error_message: String::new() }
 }
 
-/// It did not.
-fn failed(result: u8, why: impl std::fmt::Display) -> SimResult {
-    SimResult { result, error_message: why.to_string() }
+/// The result of a request that failed.
+fn failed(result: u8, reason: impl std::fmt::Display) -> SimResult {
+    SimResult { result, error_message: reason.to_string() }
 }

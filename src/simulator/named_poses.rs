@@ -1,6 +1,6 @@
-//! Places with names: what is known of a scene before anything runs.
+//! Named poses of the scene: the start poses and a free area on the table.
 
-use super::{Simulator, bounds, entities::told_pose, failed, ok};
+use super::{Simulator, bounds, entities::pose_message, failed, ok};
 use crate::{
     base::{Pose, Vec3},
     physics::boundary::shape::Aabb,
@@ -10,51 +10,66 @@ use crate::{
     },
 };
 
-/// Half of the edge of the free place on the table (m).
-const FREE_PLACE: f64 = 0.1;
-/// Distance of the free place from the middle of the table, where the gripper works (m).
-const FREE_PLACE_X: f64 = 0.5;
+/// Half of the edge length of the free area on the table (m).
+const FREE_AREA_HALF: f64 = 0.1;
+/// Distance of the free area from the center of the table, where the gripper works (m).
+const FREE_AREA_X: f64 = 0.5;
 
-/// A place, and how much room there is.
-struct Place {
+/// A named pose with its bounds.
+struct BoundedPose {
     pose: NamedPose,
     bounds: Bounds,
 }
 
 impl Simulator {
-    fn places(&self) -> Vec<Place> {
+    fn named_poses(&self) -> Vec<BoundedPose> {
         if !self.has_world() {
             return Vec::new();
         }
-        let place = |name: String, what: &str, tag: &str, pose: &Pose, bounds| Place {
-            pose: NamedPose {
-                name,
-                description: what.to_owned(),
-                tags: vec![tag.to_owned()],
-                pose: told_pose(pose),
-            },
-            bounds,
-        };
+        let named_pose =
+            |name: String, description: &str, tag: &str, pose: &Pose, bounds| BoundedPose {
+                pose: NamedPose {
+                    name,
+                    description: description.to_owned(),
+                    tags: vec![tag.to_owned()],
+                    pose: pose_message(pose),
+                },
+                bounds,
+            };
         let flange = &self.scene.flange.pose;
-        let nothing = Bounds::default();
-        let what = "where the flange starts";
-        let mut places = vec![place("flange_start".to_owned(), what, "gripper", flange, nothing)];
+        let empty = Bounds::default();
+        let description = "start pose of the flange";
+        let mut named_poses =
+            vec![named_pose("flange_start".to_owned(), description, "gripper", flange, empty)];
         for object in &self.scene.objects {
             let extent = bounds::extent(&self.scene, object);
-            let (name, what) = (format!("{}_start", object.name), "where the object starts");
-            let pose = bounds::centre(&self.scene, object);
-            places.push(place(name, what, "object", &pose, bounds::told(&extent)));
+            let (name, description) =
+                (format!("{}_start", object.name), "start pose of the object");
+            let pose = bounds::center(&self.scene, object);
+            named_poses.push(named_pose(
+                name,
+                description,
+                "object",
+                &pose,
+                bounds::box_bounds(&extent),
+            ));
         }
-        let free = Pose::translation(FREE_PLACE_X, 0.0, self.scene.table.height);
-        let half = Vec3::new(FREE_PLACE, FREE_PLACE, 0.0);
-        let room = Aabb { min: -half, max: half + Vec3::z() * (2.0 * FREE_PLACE) };
-        let what = "a free place on the table, out of the gripper's way";
-        places.push(place("table_free".to_owned(), what, "table", &free, bounds::told(&room)));
-        places
+        let free = Pose::translation(FREE_AREA_X, 0.0, self.scene.table.height);
+        let half = Vec3::new(FREE_AREA_HALF, FREE_AREA_HALF, 0.0);
+        let extent = Aabb { min: -half, max: half + Vec3::z() * (2.0 * FREE_AREA_HALF) };
+        let description = "a free area on the table, out of the gripper's reach";
+        named_poses.push(named_pose(
+            "table_free".to_owned(),
+            description,
+            "table",
+            &free,
+            bounds::box_bounds(&extent),
+        ));
+        named_poses
     }
 
     pub(super) fn get_named_poses(&self, request: &GetNamedPosesRequest) -> GetNamedPosesResponse {
-        let poses = self.places().into_iter().map(|it| it.pose);
+        let poses = self.named_poses().into_iter().map(|it| it.pose);
         let poses = poses.filter(|it| has_tags(&it.tags, &request.tags)).collect();
         GetNamedPosesResponse { result: ok(), poses }
     }
@@ -63,9 +78,9 @@ impl Simulator {
         &self,
         request: &GetNamedPoseBoundsRequest,
     ) -> GetNamedPoseBoundsResponse {
-        let found = self.places().into_iter().find(|it| it.pose.name == request.name);
+        let found = self.named_poses().into_iter().find(|it| it.pose.name == request.name);
         match found {
-            Some(place) => GetNamedPoseBoundsResponse { result: ok(), bounds: place.bounds },
+            Some(it) => GetNamedPoseBoundsResponse { result: ok(), bounds: it.bounds },
             None => GetNamedPoseBoundsResponse {
                 result: failed(
                     SimResult::RESULT_NOT_FOUND,

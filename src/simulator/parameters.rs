@@ -1,8 +1,8 @@
-//! Parameters, as ROS 2 tools list, describe, read and set them.
+//! ROS 2 parameters: listing, describing, reading and setting them.
 //!
-//! Those of the materials and the pump and the rates of topics may be changed while the simulation
-//! runs; they act from the next tick on and survive resets. The others are told only. What was changed
-//! is told on `/parameter_events`.
+//! Parameters of the materials and the pump and the rates of topics can be changed while the
+//! simulation runs; changes take effect with the next tick and survive resets. The other parameters
+//! are read-only. Changes are published on `/parameter_events`.
 
 use std::sync::Arc;
 
@@ -24,58 +24,58 @@ use crate::{
     },
 };
 
-/// What a parameter is.
+/// How a parameter is read and set.
 enum Kind {
-    /// A number of the world that may be changed.
-    TunableParameter(TunableParameter),
-    /// A rate of topics, which may be changed (Hz).
+    /// A number of the model that can be changed.
+    Tunable(TunableParameter),
+    /// A rate of topics (Hz), which can be changed.
     Rate(fn(&mut Outputs) -> &mut f64),
-    /// Something that is told.
-    SimResult(fn(&Scene) -> ParameterValue),
+    /// A read-only value.
+    ReadOnly(fn(&Scene) -> ParameterValue),
 }
 
-/// Slowest rate of a topic (Hz).
+/// Lowest rate of a topic (Hz).
 const RATE_MIN: f64 = 1e-3;
 
-/// A change that has been checked.
+/// A valid change of a parameter.
 #[derive(Clone, Copy)]
 enum Setting {
-    TunableParameter(TunableParameter),
+    Tunable(TunableParameter),
     Rate(fn(&mut Outputs) -> &mut f64),
 }
 
-/// Name, what it is, description with unit.
+/// Name, kind, and description with unit.
 type Row = (&'static str, Kind, &'static str);
 
 const PARAMETERS: [Row; 16] = [
     (
         "chamber.lag",
-        Kind::TunableParameter(TunableParameter::ChamberLag),
+        Kind::Tunable(TunableParameter::ChamberLag),
         "time constant of pump and line [s]",
     ),
     (
         "chamber.rate_max",
-        Kind::TunableParameter(TunableParameter::ChamberRateMax),
+        Kind::Tunable(TunableParameter::ChamberRateMax),
         "largest rate of the pressure [Pa/s]",
     ),
     (
         "grains.dissipation_time",
-        Kind::TunableParameter(TunableParameter::GrainDissipationTime),
-        "dissipation time of contacts between grains, from which their restitution follows [s]",
+        Kind::Tunable(TunableParameter::GrainDissipationTime),
+        "dissipation time of contacts between grains, which determines their restitution [s]",
     ),
     (
         "grains.friction",
-        Kind::TunableParameter(TunableParameter::GrainFriction),
+        Kind::Tunable(TunableParameter::GrainFriction),
         "friction between grains [-]",
     ),
     (
         "membrane.friction",
-        Kind::TunableParameter(TunableParameter::MembraneFriction),
+        Kind::Tunable(TunableParameter::MembraneFriction),
         "friction of grains on the membrane [-]",
     ),
     (
         "object.friction",
-        Kind::TunableParameter(TunableParameter::ObjectFriction),
+        Kind::Tunable(TunableParameter::ObjectFriction),
         "friction of all objects on the membrane [-]",
     ),
     ("outputs.contacts_rate", Kind::Rate(|it| &mut it.contacts_rate), "rate of contacts [Hz]"),
@@ -88,10 +88,14 @@ const PARAMETERS: [Row; 16] = [
         Kind::Rate(|it| &mut it.statistics_rate),
         "rate of statistics [Hz]",
     ),
-    ("scene", Kind::SimResult(|it| text(&it.name)), "name of the scene"),
-    ("seed", Kind::SimResult(|it| whole(it.seed)), "seed of all random numbers"),
-    ("time.tick", Kind::SimResult(|it| double(tick_s(it))), "length of a tick [s]"),
-    ("use_sim_time", Kind::SimResult(|_| flag(false)), "the simulator itself runs on wall time"),
+    ("scene", Kind::ReadOnly(|it| text(&it.name)), "name of the scene"),
+    ("seed", Kind::ReadOnly(|it| integer(it.seed)), "seed of all random numbers"),
+    ("time.tick", Kind::ReadOnly(|it| double(tick_s(it))), "length of a tick [s]"),
+    (
+        "use_sim_time",
+        Kind::ReadOnly(|_| boolean(false)),
+        "false: the simulator itself is the source of time",
+    ),
 ];
 
 fn tick_s(scene: &Scene) -> f64 {
@@ -103,7 +107,7 @@ fn double(value: f64) -> ParameterValue {
     ParameterValue { r#type, double_value: value, ..Default::default() }
 }
 
-fn whole(value: u64) -> ParameterValue {
+fn integer(value: u64) -> ParameterValue {
     let integer_value = i64::try_from(value).unwrap_or(i64::MAX);
     let r#type = ParameterType::PARAMETER_INTEGER;
     ParameterValue { r#type, integer_value, ..Default::default() }
@@ -114,7 +118,7 @@ fn text(value: &str) -> ParameterValue {
     ParameterValue { r#type, string_value: value.to_owned(), ..Default::default() }
 }
 
-fn flag(value: bool) -> ParameterValue {
+fn boolean(value: bool) -> ParameterValue {
     let r#type = ParameterType::PARAMETER_BOOL;
     ParameterValue { r#type, bool_value: value, ..Default::default() }
 }
@@ -126,18 +130,18 @@ fn find(name: &str) -> Option<&'static Row> {
 impl Simulator {
     fn value(&self, row: &Row) -> ParameterValue {
         match &row.1 {
-            Kind::TunableParameter(parameter) => double(parameter.get(&self.scene)),
+            Kind::Tunable(parameter) => double(parameter.get(&self.scene)),
             Kind::Rate(rate) => double(*rate(&mut self.scene.outputs.clone())),
-            Kind::SimResult(tell) => tell(&self.scene),
+            Kind::ReadOnly(read) => read(&self.scene),
         }
     }
 
-    /// Smallest and largest value of a parameter that may be changed.
+    /// Smallest and largest value of a parameter that can be changed.
     fn range(&self, kind: &Kind) -> Option<[f64; 2]> {
         match kind {
-            Kind::TunableParameter(parameter) => Some(parameter.range()),
+            Kind::Tunable(parameter) => Some(parameter.range()),
             Kind::Rate(_) => Some([RATE_MIN, 1.0 / tick_s(&self.scene)]),
-            Kind::SimResult(_) => None,
+            Kind::ReadOnly(_) => None,
         }
     }
 
@@ -171,7 +175,7 @@ impl Simulator {
                 name: name.clone(),
                 r#type: self.value(row).r#type,
                 description: row.2.to_owned(),
-                read_only: matches!(row.1, Kind::SimResult(_)),
+                read_only: matches!(row.1, Kind::ReadOnly(_)),
                 floating_point_range: range.into_iter().collect(),
                 ..Default::default()
             }
@@ -179,24 +183,24 @@ impl Simulator {
         DescribeParametersResponse { descriptors: request.names.iter().map(describe).collect() }
     }
 
-    /// Names below any of the prefixes, at most `depth` levels deep; 0 is any depth.
+    /// Names with any of the prefixes, at most `depth` levels deep; 0 means any depth.
     pub(super) fn list_parameters(
         &self,
         request: &ListParametersRequest,
     ) -> ListParametersResponse {
         let depth = usize::try_from(request.depth).unwrap_or(usize::MAX);
-        let is_near = |rest: &str| depth == 0 || rest.split('.').count() <= depth;
-        let is_meant = |name: &str| {
+        let is_within_depth = |rest: &str| depth == 0 || rest.split('.').count() <= depth;
+        let is_selected = |name: &str| {
             let below = |prefix: &String| {
                 let rest = name.strip_prefix(prefix.as_str())?;
                 if rest.is_empty() { Some(rest) } else { rest.strip_prefix('.') }
             };
             match request.prefixes.as_slice() {
-                [] => is_near(name),
-                prefixes => prefixes.iter().filter_map(below).any(is_near),
+                [] => is_within_depth(name),
+                prefixes => prefixes.iter().filter_map(below).any(is_within_depth),
             }
         };
-        let names = PARAMETERS.iter().map(|it| it.0).filter(|name| is_meant(name));
+        let names = PARAMETERS.iter().map(|it| it.0).filter(|name| is_selected(name));
         let names: Vec<String> = names.map(str::to_owned).collect();
         let sections = names.iter().filter_map(|it| it.rsplit_once('.').map(|(above, _)| above));
         let mut prefixes: Vec<String> = sections.map(str::to_owned).collect();
@@ -211,14 +215,14 @@ impl Simulator {
     ) -> SetParametersResponse {
         let mut results = Vec::with_capacity(request.parameters.len());
         let mut changed = Vec::new();
-        for asked in &request.parameters {
-            let set = self.check(asked).and_then(|it| self.set(it, asked, world));
+        for parameter in &request.parameters {
+            let set = self.check(parameter).and_then(|it| self.set(it, parameter, world));
             if set.is_ok() {
-                changed.push(asked.clone());
+                changed.push(parameter.clone());
             }
             results.push(result_of(set));
         }
-        self.tell_parameters(changed, world);
+        self.publish_changes(changed, world);
         SetParametersResponse { results }
     }
 
@@ -227,54 +231,55 @@ impl Simulator {
         request: &SetParametersAtomicallyRequest,
         world: &mut World<'_>,
     ) -> SetParametersAtomicallyResponse {
-        let asked = &request.parameters;
-        let checked: Result<Vec<Setting>, String> = asked.iter().map(|it| self.check(it)).collect();
-        // What has been checked can fail only if the world does not change at all.
+        let parameters = &request.parameters;
+        let checked: Result<Vec<Setting>, String> =
+            parameters.iter().map(|it| self.check(it)).collect();
+        // After the check, setting can fail only if the world cannot be changed at all.
         let set = checked.and_then(|all| {
-            all.into_iter().zip(asked).try_for_each(|(it, asked)| self.set(it, asked, world))
+            all.into_iter()
+                .zip(parameters)
+                .try_for_each(|(it, parameter)| self.set(it, parameter, world))
         });
         if set.is_ok() {
-            self.tell_parameters(asked.clone(), world);
+            self.publish_changes(parameters.clone(), world);
         }
         SetParametersAtomicallyResponse { result: result_of(set) }
     }
 
-    fn check(&self, asked: &Parameter) -> Result<Setting, String> {
-        let name = &asked.name;
+    fn check(&self, parameter: &Parameter) -> Result<Setting, String> {
+        let name = &parameter.name;
         let row = find(name).ok_or_else(|| format!("there is no parameter `{name}`"))?;
         let setting = match row.1 {
-            Kind::TunableParameter(parameter) => Setting::TunableParameter(parameter),
+            Kind::Tunable(parameter) => Setting::Tunable(parameter),
             Kind::Rate(rate) => Setting::Rate(rate),
-            Kind::SimResult(_) => {
-                return Err(format!(
-                    "`{name}` is read-only: change it in the scene, and start anew"
-                ));
+            Kind::ReadOnly(_) => {
+                return Err(format!("`{name}` is read-only: change it in the scene and restart"));
             }
         };
-        let value = match asked.value.r#type {
-            ParameterType::PARAMETER_DOUBLE => asked.value.double_value,
-            kind => return Err(format!("`{name}` is a double (3), not of type {kind}")),
+        let value = match parameter.value.r#type {
+            ParameterType::PARAMETER_DOUBLE => parameter.value.double_value,
+            kind => return Err(format!("`{name}` must be a double (type 3), not type {kind}")),
         };
         match self.range(&row.1) {
             Some([min, max]) if !(min..=max).contains(&value) => {
-                Err(format!("`{name}` is {value}: {} lies from {min} to {max}", row.2))
+                Err(format!("`{name}` is {value}: {} must be between {min} and {max}", row.2))
             }
             _ => Ok(setting),
         }
     }
 
-    /// Sets what has been checked.
+    /// Applies a valid change.
     fn set(
         &mut self,
         setting: Setting,
-        asked: &Parameter,
+        parameter: &Parameter,
         world: &mut World<'_>,
     ) -> Result<(), String> {
-        let value = asked.value.double_value;
+        let value = parameter.value.double_value;
         match setting {
-            Setting::TunableParameter(parameter) => {
+            Setting::Tunable(parameter) => {
                 let change = Change::SetParameter { parameter, value };
-                self.change(&change, world).map_err(|refusal| refusal.to_string())?;
+                self.change(&change, world).map_err(|error| error.to_string())?;
                 parameter.set(Arc::make_mut(&mut self.scene), value);
             }
             Setting::Rate(rate) => {
@@ -284,19 +289,19 @@ impl Simulator {
         Ok(())
     }
 
-    /// Tells on `/parameter_events` what has been changed.
-    fn tell_parameters(&mut self, changed_parameters: Vec<Parameter>, world: &World<'_>) {
+    /// Publishes changed parameters on `/parameter_events`.
+    fn publish_changes(&mut self, changed_parameters: Vec<Parameter>, world: &World<'_>) {
         if changed_parameters.is_empty() {
             return;
         }
         let event = ParameterEvent {
-            stamp: stamp(world.seen.time_ns),
+            stamp: stamp(world.snapshot.time_ns),
             node: self.scene.outputs.ros.node.clone(),
             changed_parameters,
             ..ParameterEvent::default()
         };
-        if let Some(channel) = parameter_events(self.goals.n_channels) {
-            self.out.push(Outgoing::Message(channel, Cdr::of(&event)));
+        if let Some(topic) = parameter_events(self.goals.n_topics) {
+            self.outgoing.push(Outgoing::Message(topic, Cdr::of(&event)));
         }
     }
 }

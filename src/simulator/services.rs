@@ -1,4 +1,4 @@
-//! The closed list of questions, with the names and types of their services.
+//! The list of services and actions, with their names and types.
 
 use crate::{
     io::server::{ServiceSpec, TopicSpec},
@@ -24,7 +24,7 @@ use crate::{
     },
 };
 
-/// What may be asked by a service of its own.
+/// The services.
 #[expect(missing_docs, reason = "named after the services of simulation_interfaces")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Service {
@@ -60,10 +60,10 @@ pub enum Service {
     SetParametersAtomically,
 }
 
-/// What may be asked by an action.
+/// The actions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Action {
-    /// Many steps, with feedback.
+    /// `simulation_interfaces/SimulateSteps`: many steps, with feedback.
     SimulateSteps,
     /// `control_msgs/GripperCommand`.
     Gripper,
@@ -71,20 +71,20 @@ pub enum Action {
     ParallelGripper,
 }
 
-/// What a service is asked for.
+/// What a DDS service is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Endpoint {
-    /// A question of its own.
+    /// A service.
     Service(Service),
-    /// An action's hidden service that takes goals.
+    /// The hidden service of an action that receives goals.
     SendGoal(Action),
-    /// An action's hidden service that cancels goals.
+    /// The hidden service of an action that cancels goals.
     CancelGoal(Action),
-    /// An action's hidden service that waits for results.
+    /// The hidden service of an action that returns results.
     GetResult(Action),
 }
 
-/// Name below the node, type.
+/// Services with their names relative to the node, and types.
 const SERVICES: [(Service, &str, ServiceType); 30] = [
     (Service::GetSimulatorFeatures, "get_simulator_features", GetSimulatorFeatures::TYPE),
     (Service::GetSimulationState, "get_simulation_state", GetSimulationState::TYPE),
@@ -125,10 +125,12 @@ const ACTIONS: [(Action, &str, ActionType); 3] = [
 ];
 
 impl Endpoint {
-    /// For messages to people.
+    /// Name of the service or action, for log messages.
     pub fn name(self) -> &'static str {
         match self {
-            Self::Service(ask) => SERVICES.iter().find(|it| it.0 == ask).map_or("", |it| it.1),
+            Self::Service(service) => {
+                SERVICES.iter().find(|it| it.0 == service).map_or("", |it| it.1)
+            }
             Self::SendGoal(action) | Self::CancelGoal(action) | Self::GetResult(action) => {
                 ACTIONS.iter().find(|it| it.0 == action).map_or("", |it| it.1)
             }
@@ -136,67 +138,68 @@ impl Endpoint {
     }
 }
 
-/// All services below `node` and, if there is one, below `prefix` too; and what each is asked for.
-pub fn asked(node: &str, prefix: Option<&str>) -> (Vec<ServiceSpec>, Vec<Endpoint>) {
-    let mut offers = Vec::new();
-    let mut asked = Vec::new();
-    let mut offer = |name: String, service_type, what| {
-        offers.push(ServiceSpec { name, service_type });
-        asked.push(what);
+/// All services of `node`, with what each is for. The standard ones are repeated under `prefix`.
+pub fn endpoints(node: &str, prefix: Option<&str>) -> (Vec<ServiceSpec>, Vec<Endpoint>) {
+    let mut specs = Vec::new();
+    let mut endpoints = Vec::new();
+    let mut add = |name: String, service_type, endpoint| {
+        specs.push(ServiceSpec { name, service_type });
+        endpoints.push(endpoint);
     };
-    for place in std::iter::once(node).chain(prefix) {
+    for namespace in std::iter::once(node).chain(prefix) {
         let is_standard = |service_type: &ServiceType| {
-            place == node || service_type.name.starts_with("simulation_interfaces/")
+            namespace == node || service_type.name.starts_with("simulation_interfaces/")
         };
-        for (ask, name, service_type) in SERVICES.into_iter().filter(|it| is_standard(&it.2)) {
-            offer(format!("{place}/{name}"), service_type, Endpoint::Service(ask));
+        for (service, name, service_type) in SERVICES.into_iter().filter(|it| is_standard(&it.2)) {
+            add(format!("{namespace}/{name}"), service_type, Endpoint::Service(service));
         }
-        for (action, name, of) in ACTIONS {
-            let hidden = format!("{place}/{name}/_action");
-            offer(format!("{hidden}/send_goal"), of.send_goal, Endpoint::SendGoal(action));
-            offer(format!("{hidden}/cancel_goal"), CancelGoal::TYPE, Endpoint::CancelGoal(action));
-            offer(format!("{hidden}/get_result"), of.get_result, Endpoint::GetResult(action));
+        for (action, name, types) in ACTIONS {
+            let hidden = format!("{namespace}/{name}/_action");
+            add(format!("{hidden}/send_goal"), types.send_goal, Endpoint::SendGoal(action));
+            add(format!("{hidden}/cancel_goal"), CancelGoal::TYPE, Endpoint::CancelGoal(action));
+            add(format!("{hidden}/get_result"), types.get_result, Endpoint::GetResult(action));
         }
     }
-    (offers, asked)
+    (specs, endpoints)
 }
 
-/// Feedback and status of all actions, in this order, below each place; last, changed parameters.
-pub fn channels(node: &str, prefix: Option<&str>) -> Vec<TopicSpec> {
-    let mut channels = Vec::new();
-    for place in std::iter::once(node).chain(prefix) {
-        for (_, name, of) in ACTIONS {
-            let hidden = format!("{place}/{name}/_action");
-            channels.push(TopicSpec {
+/// Topics for feedback and status of all actions, in this order, in each namespace; the last one is
+/// `/parameter_events`.
+pub fn action_topics(node: &str, prefix: Option<&str>) -> Vec<TopicSpec> {
+    let mut topics = Vec::new();
+    for namespace in std::iter::once(node).chain(prefix) {
+        for (_, name, types) in ACTIONS {
+            let hidden = format!("{namespace}/{name}/_action");
+            topics.push(TopicSpec {
                 name: format!("{hidden}/feedback"),
-                dds_name: of.feedback_dds_name.to_owned(),
+                dds_name: types.feedback_dds_name.to_owned(),
                 is_latched: false,
             });
-            channels.push(TopicSpec {
+            topics.push(TopicSpec {
                 name: format!("{hidden}/status"),
                 dds_name: "action_msgs::msg::dds_::GoalStatusArray_".to_owned(),
                 is_latched: true,
             });
         }
     }
-    channels.push(TopicSpec {
+    topics.push(TopicSpec {
         name: "/parameter_events".to_owned(),
         dds_name: "rcl_interfaces::msg::dds_::ParameterEvent_".to_owned(),
         is_latched: false,
     });
-    channels
+    topics
 }
 
-/// Index of the channel of changed parameters.
-pub(super) fn parameter_events(n_channels: usize) -> Option<usize> {
-    n_channels.checked_sub(1)
+/// Index of the topic `/parameter_events`.
+pub(super) fn parameter_events(n_topics: usize) -> Option<usize> {
+    n_topics.checked_sub(1)
 }
 
-/// Indices of an action's channels: feedback and status, below each of `n_places` places.
-pub(super) fn channels_of(action: Action, n_channels: usize) -> Vec<[usize; 2]> {
-    let place = ACTIONS.iter().position(|it| it.0 == action).unwrap_or(0);
-    let per_place = 2 * ACTIONS.len();
-    (0..n_channels / per_place)
-        .map(|i| [i * per_place + 2 * place, i * per_place + 2 * place + 1])
+/// Indices of an action's feedback and status topics, in each namespace.
+pub(super) fn topics_of(action: Action, n_topics: usize) -> Vec<[usize; 2]> {
+    let index = ACTIONS.iter().position(|it| it.0 == action).unwrap_or(0);
+    let per_namespace = 2 * ACTIONS.len();
+    (0..n_topics / per_namespace)
+        .map(|i| [i * per_namespace + 2 * index, i * per_namespace + 2 * index + 1])
         .collect()
 }

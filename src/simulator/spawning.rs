@@ -1,7 +1,8 @@
-//! Objects in and out: from files and texts, alone or many at once.
+//! Spawning and deleting objects, from files or texts, alone or many at once.
 //!
-//! A spawned object's frame is that of its centre of mass, like every object's, along the axes of
-//! its file. It is published like the scene's own, and commanded on `~/object_cmd`.
+//! The frame of a spawned object has its origin in the center of mass, like those of all objects,
+//! and the axes of its file. The object is published like the scene's own, and commanded on
+//! `~/object_cmd`.
 
 use super::{
     Simulator, Version, World, bounds,
@@ -10,10 +11,10 @@ use super::{
 };
 use crate::{
     command::change::Change,
-    cosim::{compile::body, refused::ChangeError},
+    cosim::{change_error::ChangeError, compile::body},
     scene::{
         Object,
-        resource::{self, ResourceFault, Shelf},
+        resource::{self, FolderState, ResourceError},
     },
     wire::{
         cdr::Cdr,
@@ -26,11 +27,11 @@ use crate::{
     },
 };
 
-/// Most characters of a name.
+/// Largest length of a name (characters).
 const NAME_MAX: usize = 64;
-/// Objects that may be there at a time; each costs the membrane's pass over it.
+/// Largest number of objects at a time; each one costs a membrane pass.
 const OBJECTS_MAX: usize = 64;
-/// Files that are looked at for one list of spawnables.
+/// Largest number of files read for a list of spawnables.
 const FILES_MAX: usize = 200;
 
 impl Simulator {
@@ -62,7 +63,7 @@ impl Simulator {
             0 => ok(),
             _ => failed(
                 SpawnEntitiesResponse::ENTITIES_SPAWN_FAILED,
-                format!("{n_failed} of {} were not spawned", results.len()),
+                format!("{n_failed} of {} objects could not be spawned", results.len()),
             ),
         };
         SpawnEntitiesResponse { result, results }
@@ -83,88 +84,89 @@ impl Simulator {
         if !self.has_world() {
             return Err(failed(SimResult::RESULT_INCORRECT_STATE, ChangeError::NoScene));
         }
-        if OBJECTS_MAX <= world.seen.objects.len() {
-            let why = format!("there are {OBJECTS_MAX} objects already");
-            return Err(failed(SimResult::RESULT_OPERATION_FAILED, why));
+        if OBJECTS_MAX <= world.snapshot.objects.len() {
+            let reason = format!("there are already {OBJECTS_MAX} objects");
+            return Err(failed(SimResult::RESULT_OPERATION_FAILED, reason));
         }
         let Resource { uri, resource_string } = &request.entity_resource;
         let found = resource::object(uri, resource_string, &self.folder);
-        let mut object = found.map_err(|fault| failed(code(&fault), fault))?;
+        let mut object = found.map_err(|error| failed(code(&error), error))?;
         object.name = self.name(request, &object.name, world)?;
-        self.place(&mut object, request, world)?;
+        self.set_pose(&mut object, request, world)?;
         let name = object.name.clone();
-        self.change(&Change::Insert(Box::new(object.clone())), world).map_err(|refusal| {
-            let code = match refusal {
+        self.change(&Change::Insert(Box::new(object.clone())), world).map_err(|error| {
+            let code = match error {
                 ChangeError::NameTaken { .. } => SpawnResult::NAME_NOT_UNIQUE,
                 ChangeError::Overlap { .. } => SpawnResult::INVALID_POSE,
                 ChangeError::Unusable(_) => SpawnResult::UNSUPPORTED_ASSETS,
                 _ => SimResult::RESULT_OPERATION_FAILED,
             };
-            failed(code, refusal)
+            failed(code, error)
         })?;
         let info = EntityInfo {
             category: EntityCategory { category: EntityCategory::CATEGORY_DYNAMIC_OBJECT },
             description: "a spawned object".to_owned(),
             tags: vec!["object".to_owned(), "spawned".to_owned()],
         };
-        self.register.spawned(&self.scene, &object, info);
+        self.entity_table.add_spawned(&self.scene, &object, info);
         Ok(name)
     }
 
-    /// The name that an entity gets: unique, and good for frames.
+    /// The name of the new entity: unique, and valid in names of frames.
     fn name(
         &self,
         request: &SpawnEntity,
-        own: &str,
+        default_name: &str,
         world: &World<'_>,
     ) -> Result<String, SimResult> {
         let namespace = request.entity_namespace.trim_matches('/');
         if !namespace.is_empty() && !namespace.split('/').all(is_word) {
-            let why = format!("`{namespace}` is no namespace of ROS 2");
-            return Err(failed(SpawnResult::NAMESPACE_INVALID, why));
+            let reason = format!("`{namespace}` is not a ROS 2 namespace");
+            return Err(failed(SpawnResult::NAMESPACE_INVALID, reason));
         }
-        let own = if is_word(own) { own } else { "object" };
-        let wanted = if request.name.is_empty() { own } else { &request.name };
-        if !is_word(wanted) || NAME_MAX < wanted.len() {
-            let why = format!(
-                "`{wanted}` is no name: use letters, digits and _, at most {NAME_MAX}, a letter first"
+        let default_name = if is_word(default_name) { default_name } else { "object" };
+        let requested = if request.name.is_empty() { default_name } else { &request.name };
+        if !is_word(requested) || NAME_MAX < requested.len() {
+            let reason = format!(
+                "`{requested}` is not a valid name: start with a letter, use letters, digits and _, at \
+                most {NAME_MAX} characters"
             );
-            return Err(failed(SpawnResult::NAME_INVALID, why));
+            return Err(failed(SpawnResult::NAME_INVALID, reason));
         }
-        let wanted = match namespace {
-            "" => wanted.to_owned(),
-            _ => format!("{namespace}/{wanted}"),
+        let requested = match namespace {
+            "" => requested.to_owned(),
+            _ => format!("{namespace}/{requested}"),
         };
-        let is_taken = |name: &str| {
+        let is_in_use = |name: &str| {
             [FLANGE, BAG, TABLE].contains(&name)
-                || world.seen.objects.iter().any(|it| it.name == name)
+                || world.snapshot.objects.iter().any(|it| it.name == name)
                 || self.scene.objects.iter().any(|it| it.name == name)
         };
-        if !is_taken(&wanted) {
-            return Ok(wanted);
+        if !is_in_use(&requested) {
+            return Ok(requested);
         }
         if !request.allow_renaming && !request.name.is_empty() {
-            let why = format!("the name `{wanted}` is taken");
-            return Err(failed(SpawnResult::NAME_NOT_UNIQUE, why));
+            let reason = format!("the name `{requested}` is already in use");
+            return Err(failed(SpawnResult::NAME_NOT_UNIQUE, reason));
         }
-        let numbered = (1_u64..).map(|i| format!("{wanted}_{i}")).find(|it| !is_taken(it));
-        Ok(numbered.unwrap_or(wanted))
+        let numbered = (1_u64..).map(|i| format!("{requested}_{i}")).find(|it| !is_in_use(it));
+        Ok(numbered.unwrap_or(requested))
     }
 
-    /// Puts the centre of mass where the request says.
-    fn place(
+    /// Places the center of mass at the requested pose.
+    fn set_pose(
         &self,
         object: &mut Object,
         request: &SpawnEntity,
         world: &World<'_>,
     ) -> Result<(), SimResult> {
-        let invalid = |why: String| failed(SpawnResult::INVALID_POSE, why);
+        let invalid = |reason: String| failed(SpawnResult::INVALID_POSE, reason);
         let frame = self.frame(&request.initial_pose.header.frame_id, world).map_err(invalid)?;
         let pose = frame * read_pose(&request.initial_pose.pose).map_err(invalid)?;
         let (_, bulk) = body(&self.scene, object)
-            .map_err(|fault| failed(SpawnResult::UNSUPPORTED_ASSETS, fault))?;
+            .map_err(|error| failed(SpawnResult::UNSUPPORTED_ASSETS, error))?;
         object.pose = pose;
-        object.pose.translation.vector -= pose.rotation * bulk.centre_of_mass;
+        object.pose.translation.vector -= pose.rotation * bulk.center_of_mass;
         Ok(())
     }
 
@@ -175,32 +177,32 @@ impl Simulator {
     ) -> DeleteEntityResponse {
         let name = &request.entity;
         let result = if [FLANGE, BAG, TABLE].contains(&name.as_str()) {
-            failed(SimResult::RESULT_OPERATION_FAILED, format!("`{name}` belongs to the world"))
+            failed(SimResult::RESULT_OPERATION_FAILED, format!("`{name}` cannot be deleted"))
         } else {
             match self.change(&Change::Remove { object: name.clone() }, world) {
                 Ok(()) => ok(),
-                Err(refusal @ ChangeError::UnknownObject { .. }) => {
-                    failed(SimResult::RESULT_NOT_FOUND, refusal)
+                Err(error @ ChangeError::UnknownObject { .. }) => {
+                    failed(SimResult::RESULT_NOT_FOUND, error)
                 }
-                Err(refusal @ ChangeError::NoScene) => failed(SimResult::RESULT_NOT_FOUND, refusal),
-                Err(refusal) => failed(SimResult::RESULT_OPERATION_FAILED, refusal),
+                Err(error @ ChangeError::NoScene) => failed(SimResult::RESULT_NOT_FOUND, error),
+                Err(error) => failed(SimResult::RESULT_OPERATION_FAILED, error),
             }
         };
         DeleteEntityResponse { result }
     }
 
-    /// The list in the wire format that clients of this version read.
+    /// The list of spawnables, in the wire format of this version.
     pub(super) fn get_spawnables(&mut self, request: &GetSpawnablesRequest) -> Cdr {
-        let answer = self.spawnables(request);
+        let response = self.spawnables(request);
         match self.version {
-            Version::Two => Cdr::of(&answer),
+            Version::Two => Cdr::of(&response),
             Version::One => {
-                let of_one = |it: &Spawnable| {
+                let version_one = |it: &Spawnable| {
                     let uri = it.entity_resource.uri.clone();
                     (uri, it.description.clone(), it.spawn_bounds.clone())
                 };
-                let spawnables: Vec<_> = answer.spawnables.iter().map(of_one).collect();
-                Cdr::of(&(answer.result, spawnables))
+                let spawnables: Vec<_> = response.spawnables.iter().map(version_one).collect();
+                Cdr::of(&(response.result, spawnables))
             }
         }
     }
@@ -211,14 +213,14 @@ impl Simulator {
             match resource::path(source, &self.folder).filter(|it| it.is_dir()) {
                 Some(folder) => folders.push(folder),
                 None => {
-                    let why = format!("source `{source}` is no folder");
-                    let result = failed(SimResult::RESULT_NOT_FOUND, why);
+                    let reason = format!("source `{source}` is not a folder");
+                    let result = failed(SimResult::RESULT_NOT_FOUND, reason);
                     return GetSpawnablesResponse { result, ..Default::default() };
                 }
             }
         }
-        // Reading them all takes a while: a list is made again only if a folder has changed.
-        let shelf = Shelf::of(&folders);
+        // Reading all files takes a while, so the list is cached until a folder changes.
+        let shelf = FolderState::of(&folders);
         if let Some((_, spawnables)) = self.spawnables.as_ref().filter(|it| it.0 == shelf) {
             return GetSpawnablesResponse { result: ok(), spawnables: spawnables.clone() };
         }
@@ -229,7 +231,7 @@ impl Simulator {
             Some(Spawnable {
                 entity_resource: Resource { uri, resource_string: String::new() },
                 description: format!("object `{}`", object.name),
-                spawn_bounds: bounds::told(&bounds::extent(&self.scene, &object)),
+                spawn_bounds: bounds::box_bounds(&bounds::extent(&self.scene, &object)),
             })
         });
         let spawnables: Vec<Spawnable> = spawnables.collect();
@@ -238,17 +240,17 @@ impl Simulator {
     }
 }
 
-fn code(fault: &ResourceFault) -> u8 {
-    match fault {
-        ResourceFault::UnsupportedFormat(_) => SpawnResult::UNSUPPORTED_FORMAT,
-        ResourceFault::NoResource(_) => SpawnResult::NO_RESOURCE,
-        ResourceFault::Malformed(_) => SpawnResult::RESOURCE_PARSE_ERROR,
-        ResourceFault::MissingAssets(_) => SpawnResult::MISSING_ASSETS,
-        ResourceFault::Unsupported(_) => SpawnResult::UNSUPPORTED_ASSETS,
+fn code(error: &ResourceError) -> u8 {
+    match error {
+        ResourceError::UnsupportedFormat(_) => SpawnResult::UNSUPPORTED_FORMAT,
+        ResourceError::NoResource(_) => SpawnResult::NO_RESOURCE,
+        ResourceError::Malformed(_) => SpawnResult::RESOURCE_PARSE_ERROR,
+        ResourceError::MissingAssets(_) => SpawnResult::MISSING_ASSETS,
+        ResourceError::Unsupported(_) => SpawnResult::UNSUPPORTED_ASSETS,
     }
 }
 
-/// A word as ROS 2 wants names: letters, digits and `_`, a letter first.
+/// True for a valid token of ROS 2 names: letters, digits and `_`, starting with a letter.
 fn is_word(text: &str) -> bool {
     text.starts_with(|c: char| c.is_ascii_alphabetic())
         && text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')

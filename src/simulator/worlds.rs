@@ -1,20 +1,22 @@
-//! Worlds are scenes: which there are, which one is there, another one in its place, or none.
+//! Worlds, which are scenes: listing, loading and unloading them.
 //!
-//! A scene to be loaded is read at once and settled elsewhere, which takes a while; meanwhile there is
-//! none. What cannot be had leaves the present one as it was. Of a loaded scene all is taken but what
-//! belongs to the run: outputs, who commands, and the length of a tick.
+//! A requested scene is read at once and settled in the background, which takes a while; until
+//! then, no scene is loaded. If loading fails, the present scene stays as it was. A loaded scene
+//! replaces everything except what belongs to the run: outputs, the kind of controller, and the
+//! length of a tick.
 
 use std::sync::Arc;
 
 use super::{
-    Simulator, Unreadable, Version, World, entity_info::Register, failed, named_poses::has_tags, ok,
+    DecodeError, Simulator, Version, World, entity_info::EntityTable, failed,
+    named_poses::has_tags, ok,
 };
 use crate::{
     command::change::{Change, SettledScene},
     io::server::RequestId,
     scene::{
         self, Controller, Scene,
-        resource::{self, ResourceFault, Shelf},
+        resource::{self, FolderState, ResourceError},
     },
     wire::{
         cdr::Cdr,
@@ -26,49 +28,49 @@ use crate::{
     },
 };
 
-/// A scene on its way.
+/// A scene that is being loaded.
 pub(super) struct Loading {
-    asker: RequestId,
+    id: RequestId,
     scene: Scene,
-    /// Where it is from, as told.
+    /// Where the scene comes from, as reported to clients.
     resource: Resource,
-    /// The state to go back to if it cannot be had.
-    before: u8,
+    /// The state to return to if loading fails.
+    state_before: u8,
 }
 
 impl Simulator {
     pub(super) fn load_world(
         &mut self,
         body: &Cdr,
-        asker: &RequestId,
-    ) -> Result<Option<Cdr>, Unreadable> {
+        id: &RequestId,
+    ) -> Result<Option<Cdr>, DecodeError> {
         let request: LoadWorldRequest = body.read()?;
-        let refused = |result| Ok(Some(Cdr::of(&Loaded { result, ..Loaded::default() })));
+        let rejected = |result| Ok(Some(Cdr::of(&Loaded { result, ..Loaded::default() })));
         if self.loading.is_some() {
-            let why = "a world is being loaded already: wait for it";
-            return refused(failed(SimResult::RESULT_INCORRECT_STATE, why));
+            let reason = "a world is already being loaded: wait for it";
+            return rejected(failed(SimResult::RESULT_INCORRECT_STATE, reason));
         }
         let (scene, resource) = match self.find_world(request) {
             Ok(found) => found,
-            Err(result) => return refused(result),
+            Err(result) => return rejected(result),
         };
-        self.end_all("another world is loaded");
-        self.wanted = Some(scene.clone());
-        let before = self.running.begin_loading();
-        self.loading = Some(Loading { asker: asker.clone(), scene, resource, before });
+        self.end_running("another world is loaded");
+        self.scene_to_settle = Some(scene.clone());
+        let state_before = self.run_state.begin_loading();
+        self.loading = Some(Loading { id: id.clone(), scene, resource, state_before });
         Ok(None)
     }
 
-    /// The scene that a request means, as this run can have it.
+    /// The requested scene, adapted to this run.
     fn find_world(&self, request: LoadWorldRequest) -> Result<(Scene, Resource), SimResult> {
         let Resource { uri, resource_string } = &request.world_resource;
-        let ignores = request.ignore_missing_or_unsupported_assets;
-        let found = resource::scene(uri, resource_string, &self.folder, ignores);
-        let scene = found.map_err(|fault| failed(code(&fault), fault))?;
-        let [its, ours] = [&scene, &self.scene].map(|it| it.time.tick_ns);
-        if request.fail_on_unsupported_element && its != ours {
-            let why = format!("time.tick is {its} ns, and stays {ours} ns in this run");
-            return Err(failed(Loaded::UNSUPPORTED_ELEMENTS, why));
+        let ignores_missing = request.ignore_missing_or_unsupported_assets;
+        let found = resource::scene(uri, resource_string, &self.folder, ignores_missing);
+        let scene = found.map_err(|error| failed(code(&error), error))?;
+        let [its_tick_ns, tick_ns] = [&scene, &self.scene].map(|it| it.time.tick_ns);
+        if request.fail_on_unsupported_element && its_tick_ns != tick_ns {
+            let reason = format!("time.tick is {its_tick_ns} ns, but this run needs {tick_ns} ns");
+            return Err(failed(Loaded::UNSUPPORTED_ELEMENTS, reason));
         }
         let resource = match resource::path(uri, &self.folder) {
             Some(file) if !uri.is_empty() => Resource {
@@ -77,11 +79,11 @@ impl Simulator {
             },
             _ => request.world_resource,
         };
-        Ok((self.of_this_run(scene), resource))
+        Ok((self.adapted_to_run(scene), resource))
     }
 
-    /// The scene with what belongs to the run.
-    fn of_this_run(&self, scene: Scene) -> Scene {
+    /// The scene with the settings that belong to the run.
+    fn adapted_to_run(&self, scene: Scene) -> Scene {
         let mut time = scene.time;
         time.tick_ns = self.scene.time.tick_ns;
         let controller = match (&self.scene.controller, scene.controller) {
@@ -91,43 +93,45 @@ impl Simulator {
         Scene { time, controller, outputs: self.scene.outputs.clone(), ..scene }
     }
 
-    /// The scene to be settled, once.
-    pub fn take_wanted(&mut self) -> Option<Scene> {
-        self.wanted.take()
+    /// Takes the scene to settle, once.
+    pub fn take_scene_to_settle(&mut self) -> Option<Scene> {
+        self.scene_to_settle.take()
     }
 
-    /// The scene that was wanted has been settled, or cannot be.
-    pub fn loaded(&mut self, settled: Result<Vec<u8>, String>, world: &mut World<'_>) {
-        let Some(Loading { asker, scene, resource, before }) = self.loading.take() else { return };
-        let entered = settled.and_then(|start| {
+    /// Finishes loading, once the scene has been settled or settling has failed.
+    pub fn finish_loading(&mut self, settled: Result<Vec<u8>, String>, world: &mut World<'_>) {
+        let Some(Loading { id, scene, resource, state_before }) = self.loading.take() else {
+            return;
+        };
+        let changed = settled.and_then(|start| {
             let keeps_time = self.is_monotonic;
             let settled = SettledScene { scene: scene.clone(), start, keeps_time };
             let change = Change::LoadScene(Box::new(settled));
-            self.apply(&change, world).map_err(|refusal| refusal.to_string())
+            self.apply(&change, world).map_err(|error| error.to_string())
         });
-        let answer = match entered {
+        let response = match changed {
             Ok(()) => {
-                self.running.end_loading();
-                self.enter(scene, resource);
+                self.run_state.end_loading();
+                self.replace_scene(scene, resource);
                 Loaded { result: ok(), world: self.world() }
             }
-            Err(why) => {
-                self.running.give_up_loading(before);
-                let result = failed(SimResult::RESULT_OPERATION_FAILED, why);
+            Err(reason) => {
+                self.run_state.abort_loading(state_before);
+                let result = failed(SimResult::RESULT_OPERATION_FAILED, reason);
                 Loaded { result, ..Loaded::default() }
             }
         };
-        self.send_answer(asker, &answer);
+        self.send_response(id, &response);
     }
 
-    /// Everything that is known goes by another scene now.
-    fn enter(&mut self, scene: Scene, resource: Resource) {
-        self.register = Register::new(&scene);
+    /// Replaces the scene and everything derived from it.
+    fn replace_scene(&mut self, scene: Scene, resource: Resource) {
+        self.entity_table = EntityTable::new(&scene);
         self.scene = Arc::new(scene);
         self.resource = resource;
         self.spawnables = None;
         self.commands.clear();
-        *self.bag.borrow_mut() = None;
+        *self.membrane_extent.borrow_mut() = None;
     }
 
     pub(super) fn unload_world(&mut self) -> UnloadWorldResponse {
@@ -136,23 +140,23 @@ impl Simulator {
         } else if !self.has_world() {
             failed(UnloadWorldResponse::NO_WORLD_LOADED, "no world is loaded")
         } else {
-            self.end_all("the world was unloaded");
-            self.running.unload();
+            self.end_running("the world was unloaded");
+            self.run_state.unload();
             ok()
         };
         UnloadWorldResponse { result }
     }
 
-    /// Whatever is under way belongs to a world that goes.
-    fn end_all(&mut self, why: &str) {
-        self.end_steps(why);
-        self.give_up_grip();
+    /// Ends running steps and goals before the world is replaced or unloaded.
+    fn end_running(&mut self, reason: &str) {
+        self.end_steps(reason);
+        self.abort_grip();
     }
 
     pub(super) fn get_current_world(&self) -> GetCurrentWorldResponse {
         if !self.has_world() {
-            let why = "no world is loaded";
-            let result = failed(GetCurrentWorldResponse::NO_WORLD_LOADED, why);
+            let reason = "no world is loaded";
+            let result = failed(GetCurrentWorldResponse::NO_WORLD_LOADED, reason);
             return GetCurrentWorldResponse { result, ..Default::default() };
         }
         GetCurrentWorldResponse { result: ok(), world: self.world() }
@@ -172,14 +176,14 @@ impl Simulator {
                 Some(folder) => folders.push(folder),
                 None if request.continue_on_error => {}
                 None => {
-                    let why = format!("source `{source}` is no folder");
-                    let result = failed(SimResult::RESULT_NOT_FOUND, why);
+                    let reason = format!("source `{source}` is not a folder");
+                    let result = failed(SimResult::RESULT_NOT_FOUND, reason);
                     return GetAvailableWorldsResponse { result, ..Default::default() };
                 }
             }
         }
-        // Reading them all takes a while: a list is made again only if a folder has changed.
-        let shelf = Shelf::of(&folders);
+        // Reading all files takes a while, so the list is cached until a folder changes.
+        let shelf = FolderState::of(&folders);
         if self.worlds.as_ref().is_none_or(|it| it.0 != shelf) {
             let files = folders.iter().flat_map(|folder| resource::files(folder, &["yaml"]));
             let worlds = files.filter_map(|file| {
@@ -205,18 +209,18 @@ fn world_of(scene: &Scene, world_resource: Resource) -> WorldResource {
     }
 }
 
-fn code(fault: &ResourceFault) -> u8 {
-    match fault {
-        ResourceFault::UnsupportedFormat(_) => Loaded::UNSUPPORTED_FORMAT,
-        ResourceFault::NoResource(_) => Loaded::NO_RESOURCE,
-        ResourceFault::Malformed(_) => Loaded::RESOURCE_PARSE_ERROR,
-        ResourceFault::MissingAssets(_) => Loaded::MISSING_ASSETS,
-        ResourceFault::Unsupported(_) => Loaded::UNSUPPORTED_ASSETS,
+fn code(error: &ResourceError) -> u8 {
+    match error {
+        ResourceError::UnsupportedFormat(_) => Loaded::UNSUPPORTED_FORMAT,
+        ResourceError::NoResource(_) => Loaded::NO_RESOURCE,
+        ResourceError::Malformed(_) => Loaded::RESOURCE_PARSE_ERROR,
+        ResourceError::MissingAssets(_) => Loaded::MISSING_ASSETS,
+        ResourceError::Unsupported(_) => Loaded::UNSUPPORTED_ASSETS,
     }
 }
 
 impl Version {
-    /// The version that a distribution of ROS 2 carries.
+    /// The version that a ROS 2 distribution uses.
     pub fn of_distribution(name: &str) -> Self {
         match name {
             "humble" | "iron" | "jazzy" | "kilted" => Self::One,

@@ -1,48 +1,48 @@
-//! The messages that every action hides behind its goal, result and feedback.
+//! The hidden messages that every action adds to its goal, result and feedback.
 
 use serde::{Deserialize, Serialize};
 
 use super::messages::{builtin_interfaces::Time, unique_identifier_msgs::UUID};
 
-/// The hidden request of every action that sends a goal.
+/// The hidden request that sends a goal.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct SendGoalRequest<G> {
     /// Chosen by the client.
     pub goal_id: UUID,
-    /// What is to be done.
+    /// The goal.
     pub goal: G,
 }
 
-/// Its answer.
+/// The response to a goal.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct SendGoalResponse {
-    /// False if the goal is not taken.
+    /// False if the goal is rejected.
     pub accepted: bool,
-    /// When it was.
+    /// Time of acceptance.
     pub stamp: Time,
 }
 
-/// The hidden request of every action that waits for a result.
+/// The hidden request that waits for a result.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct GetResultRequest {
-    /// Which goal.
+    /// ID of the goal.
     pub goal_id: UUID,
 }
 
-/// Its answer, once the goal has ended.
+/// The response with the result, once the goal has ended.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct GetResultResponse<R> {
-    /// How it ended.
+    /// The final status of the goal.
     pub status: i8,
-    /// What came of it.
+    /// The result.
     pub result: R,
 }
 
-/// Feedback of every action.
+/// Feedback about a goal.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct FeedbackMessage<F> {
-    /// Of which goal.
+    /// ID of the goal.
     pub goal_id: UUID,
-    /// How far it is.
+    /// The feedback.
     pub feedback: F,
 }

@@ -1,29 +1,29 @@
-//! CDR of any type that serde knows: what services and actions carry.
+//! CDR encoding of any serde type, for services and actions.
 
 use byteorder::{BigEndian, LittleEndian};
 use serde::{Serialize, de::DeserializeOwned};
 
-/// A message's body with its byte order, without the four bytes that name the encoding.
+/// A message body with its byte order, without the encapsulation header of four bytes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Cdr {
     /// The bytes.
     pub bytes: Vec<u8>,
-    /// True for the byte order of networks.
+    /// True for big endian.
     pub is_big_endian: bool,
 }
 
 impl Cdr {
-    /// `value`, little endian.
+    /// Encodes `value` as little endian.
     pub fn of<T: Serialize>(value: &T) -> Self {
         let bytes = cdr_encoding::to_vec_with_size_hint::<T, LittleEndian>(value, 64)
-            .expect("message types have only fields that CDR can carry");
+            .expect("message types have only fields that CDR can encode");
         Self { bytes, is_big_endian: false }
     }
 
-    /// Reads a value. Bytes behind it are left alone.
+    /// Decodes a value. Bytes after it are ignored.
     ///
     /// # Errors
-    /// If the bytes end early or hold something that the type cannot.
+    /// If the bytes end early or are invalid for the type.
     pub fn read<T: DeserializeOwned>(&self) -> Result<T, cdr_encoding::Error> {
         let read = if self.is_big_endian {
             cdr_encoding::from_bytes::<T, BigEndian>(&self.bytes)
@@ -39,17 +39,17 @@ mod tests {
     use super::*;
     use crate::wire::messages::simulation_interfaces::SpawnEntityRequest;
 
-    /// Oracle: the contract. What is cut off is an error, whatever the byte order, and never a panic.
+    /// Oracle: a truncated message is an error in either byte order, and never a panic.
     #[test]
-    fn cut_messages_are_errors() {
+    fn truncated_messages_are_errors() {
         let mut request = SpawnEntityRequest { name: "ball".to_owned(), ..Default::default() };
         request.initial_pose.pose.orientation.w = 1.0;
-        let whole = Cdr::of(&request);
-        assert_eq!(whole.read::<SpawnEntityRequest>().unwrap(), request);
-        for n in 0..whole.bytes.len() {
+        let complete = Cdr::of(&request);
+        assert_eq!(complete.read::<SpawnEntityRequest>().unwrap(), request);
+        for n in 0..complete.bytes.len() {
             for is_big_endian in [false, true] {
-                let cut = Cdr { bytes: whole.bytes[..n].to_vec(), is_big_endian };
-                assert!(cut.read::<SpawnEntityRequest>().is_err(), "{n} bytes");
+                let truncated = Cdr { bytes: complete.bytes[..n].to_vec(), is_big_endian };
+                assert!(truncated.read::<SpawnEntityRequest>().is_err(), "{n} bytes");
             }
         }
     }

@@ -1,7 +1,8 @@
-//! The closed list of topics, and messages encoded once for all who carry them.
+//! The list of topics, and encoded messages.
 //!
-//! First come the topics that every scene has, in the order of `Common`, then those of each
-//! object, in the order of `OfObject`. So the index of a topic is known without looking it up.
+//! First come the topics that every scene has, in the order of [`CommonTopic`], then those of each
+//! object, in the order of [`ObjectTopic`]. The index of a topic is therefore known without a
+//! search.
 
 use super::messages::{
     MessageType, RosMessage, diagnostic_msgs::DiagnosticArray, geometry_msgs::PoseStamped,
@@ -14,7 +15,7 @@ use super::messages::{
 };
 use crate::scene::{Ros, Scene};
 
-/// Name of the ROS 2 node if the scene gives it no other.
+/// Name of the ROS 2 node unless the scene sets another.
 pub const NODE: &str = "/jamgrip";
 
 /// A ROS 2 topic.
@@ -22,32 +23,32 @@ pub const NODE: &str = "/jamgrip";
 pub struct Topic {
     /// Full name, such as `/jamgrip/wrench`.
     pub name: String,
-    /// Its type.
+    /// Type of the messages.
     pub message_type: MessageType,
-    /// How it is offered.
+    /// Quality of service.
     pub qos: Qos,
-    /// True for topics that carry commands to us.
+    /// True for topics that carry commands to the node.
     pub is_input: bool,
 }
 
-/// Quality of service, as far as we use it. History is always keep-last.
+/// The quality of service settings in use. The history is always keep-last.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Qos {
-    /// Reliable, else best effort.
+    /// True for reliable, false for best effort.
     pub is_reliable: bool,
     /// Depth of the history.
     pub depth: u32,
-    /// Transient local (latched), else volatile.
+    /// True for transient local (latched), false for volatile.
     pub is_latched: bool,
 }
 
 impl Topic {
-    /// A topic that we publish, if messages `M` go by `qos` on it.
+    /// A topic that the node publishes, with messages `M`.
     pub fn output<M: RosMessage>(name: &str, qos: Qos) -> Self {
         Self { name: name.to_owned(), message_type: M::TYPE, qos, is_input: false }
     }
 
-    /// The same, if we listen there.
+    /// A topic that the node subscribes to, with messages `M`.
     pub fn input<M: RosMessage>(name: &str, qos: Qos) -> Self {
         Self { is_input: true, ..Self::output::<M>(name, qos) }
     }
@@ -59,63 +60,63 @@ impl Qos {
         Self { is_reliable: true, depth, is_latched: false }
     }
 
-    /// Reliable, transient local: who comes late gets the last one.
+    /// Reliable and transient local: late joiners receive the last message.
     pub const fn latched() -> Self {
         Self { is_reliable: true, depth: 1, is_latched: true }
     }
 }
 
-/// One message, encoded once: ROS 2 and bags carry the same bytes.
+/// An encoded message. ROS 2 and recordings use the same bytes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Message {
     /// Index into the list of topics.
     pub topic: usize,
-    /// Simulated time (ns).
+    /// Simulation time (ns).
     pub time_ns: u64,
-    /// The body in CDR, little endian, without the four bytes that name the encoding.
+    /// The body in CDR, little endian, without the encapsulation header of four bytes.
     pub cdr: Vec<u8>,
 }
 
-/// The topics that every scene has. The value is the index into the list of topics.
+/// The topics that every scene has. The value is the index in the list of topics.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Common {
-    /// Simulated time, each tick.
+pub enum CommonTopic {
+    /// Simulation time, after every tick.
     Clock,
-    /// Force of the objects on the gripper, at the flange, in its axes.
+    /// Contact force of the objects on the gripper, at the flange and along its axes.
     Wrench,
     /// Pose of the flange in the world.
     FlangePose,
-    /// Velocity of the flange, world axes.
+    /// Velocity of the flange, along world axes.
     FlangeTwist,
-    /// What the gripper puts on its mount, as a wrist sensor reads it.
+    /// Force of the gripper on its mount, as a wrist sensor measures it.
     FlangeWrench,
     /// Contacts between membrane and objects.
     Contacts,
-    /// The same as arrows.
+    /// The contacts as arrows.
     ContactMarkers,
     /// Vertices of the membrane.
     Membrane,
-    /// Triangles of the membrane, once.
+    /// Triangles of the membrane; published once.
     MembraneMesh,
-    /// The membrane as a surface to look at.
+    /// The membrane as a surface for display.
     MembraneMarker,
     /// The grains.
     Grains,
-    /// Absolute pressure in the membrane.
+    /// Absolute pressure inside the membrane.
     Pressure,
     /// Pressure, volume, jamming.
     VacuumState,
-    /// Whether something is held.
+    /// Whether an object is held.
     ObjectDetectionStatus,
     /// Vacuum and flange as joints.
     JointStates,
-    /// How the run goes.
+    /// Statistics of the run.
     Statistics,
-    /// The same for the diagnostics tools of ROS.
+    /// The statistics as ROS diagnostics.
     Diagnostics,
     /// Moving frames.
     Tf,
-    /// Frames that stay.
+    /// Static frames.
     TfStatic,
     /// Command: gauge pressure.
     VacuumCommand,
@@ -123,68 +124,74 @@ pub enum Common {
     FlangePoseCommand,
     /// Command: drive or release an object.
     ObjectCommand,
-    /// Command: set-points of vacuum and flange as joints.
+    /// Command: setpoints of vacuum and flange as joints.
     JointCommands,
     /// True once the node is ready.
     Ready,
 }
 
-/// The topics of each object. The value is the place among the object's topics.
+/// The topics of each object. The value is the index among the object's topics.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum OfObject {
-    /// Total contact wrench about the centre of mass, world axes, gravity excluded.
+pub enum ObjectTopic {
+    /// Total contact wrench about the center of mass, along world axes, without gravity.
     ContactWrench,
     /// Pose of the body frame in the world.
     Pose,
-    /// Velocity of the body frame, world axes.
+    /// Velocity of the body frame, along world axes.
     Twist,
     /// Command: pose that drives the object.
     PoseCommand,
 }
 
-/// A row of the list: what, name, type, quality of service, whether it carries commands to us.
-type Row<T> = (T, &'static str, MessageType, Qos, bool);
+/// An entry of the list: topic, name, type, quality of service, and whether it is an input.
+type Entry<T> = (T, &'static str, MessageType, Qos, bool);
 
-const COMMON: [Row<Common>; 24] = [
-    (Common::Clock, "/clock", Clock::TYPE, Qos::reliable(1), false),
-    (Common::Wrench, "~/wrench", WrenchStamped::TYPE, Qos::reliable(10), false),
-    (Common::FlangePose, "~/flange/pose", PoseStamped::TYPE, Qos::reliable(10), false),
-    (Common::FlangeTwist, "~/flange/twist", TwistStamped::TYPE, Qos::reliable(10), false),
-    (Common::FlangeWrench, "~/flange/wrench", WrenchStamped::TYPE, Qos::reliable(10), false),
-    (Common::Contacts, "~/contacts", ContactArray::TYPE, Qos::reliable(5), false),
-    (Common::ContactMarkers, "~/contact_markers", MarkerArray::TYPE, Qos::reliable(1), false),
-    (Common::Membrane, "~/membrane", PointCloud2::TYPE, Qos::reliable(5), false),
-    (Common::MembraneMesh, "~/membrane/mesh", Mesh::TYPE, Qos::latched(), false),
-    (Common::MembraneMarker, "~/membrane/marker", Marker::TYPE, Qos::reliable(1), false),
-    (Common::Grains, "~/grains", PointCloud2::TYPE, Qos::reliable(1), false),
-    (Common::Pressure, "~/pressure", FluidPressure::TYPE, Qos::reliable(10), false),
-    (Common::VacuumState, "~/vacuum_state", VacuumState::TYPE, Qos::reliable(10), false),
+const COMMON: [Entry<CommonTopic>; 24] = [
+    (CommonTopic::Clock, "/clock", Clock::TYPE, Qos::reliable(1), false),
+    (CommonTopic::Wrench, "~/wrench", WrenchStamped::TYPE, Qos::reliable(10), false),
+    (CommonTopic::FlangePose, "~/flange/pose", PoseStamped::TYPE, Qos::reliable(10), false),
+    (CommonTopic::FlangeTwist, "~/flange/twist", TwistStamped::TYPE, Qos::reliable(10), false),
+    (CommonTopic::FlangeWrench, "~/flange/wrench", WrenchStamped::TYPE, Qos::reliable(10), false),
+    (CommonTopic::Contacts, "~/contacts", ContactArray::TYPE, Qos::reliable(5), false),
+    (CommonTopic::ContactMarkers, "~/contact_markers", MarkerArray::TYPE, Qos::reliable(1), false),
+    (CommonTopic::Membrane, "~/membrane", PointCloud2::TYPE, Qos::reliable(5), false),
+    (CommonTopic::MembraneMesh, "~/membrane/mesh", Mesh::TYPE, Qos::latched(), false),
+    (CommonTopic::MembraneMarker, "~/membrane/marker", Marker::TYPE, Qos::reliable(1), false),
+    (CommonTopic::Grains, "~/grains", PointCloud2::TYPE, Qos::reliable(1), false),
+    (CommonTopic::Pressure, "~/pressure", FluidPressure::TYPE, Qos::reliable(10), false),
+    (CommonTopic::VacuumState, "~/vacuum_state", VacuumState::TYPE, Qos::reliable(10), false),
     (
-        Common::ObjectDetectionStatus,
+        CommonTopic::ObjectDetectionStatus,
         "~/object_detection_status",
         ObjectDetectionStatus::TYPE,
         Qos::latched(),
         false,
     ),
-    (Common::JointStates, "~/joint_states", JointState::TYPE, Qos::reliable(10), false),
-    (Common::Statistics, "~/statistics", Statistics::TYPE, Qos::reliable(1), false),
-    (Common::Diagnostics, "/diagnostics", DiagnosticArray::TYPE, Qos::reliable(10), false),
-    (Common::Tf, "/tf", TFMessage::TYPE, Qos::reliable(100), false),
-    (Common::TfStatic, "/tf_static", TFMessage::TYPE, Qos::latched(), false),
-    (Common::VacuumCommand, "~/vacuum_cmd", Float64::TYPE, Qos::reliable(1), true),
-    (Common::FlangePoseCommand, "~/flange/pose_cmd", PoseStamped::TYPE, Qos::reliable(1), true),
+    (CommonTopic::JointStates, "~/joint_states", JointState::TYPE, Qos::reliable(10), false),
+    (CommonTopic::Statistics, "~/statistics", Statistics::TYPE, Qos::reliable(1), false),
+    (CommonTopic::Diagnostics, "/diagnostics", DiagnosticArray::TYPE, Qos::reliable(10), false),
+    (CommonTopic::Tf, "/tf", TFMessage::TYPE, Qos::reliable(100), false),
+    (CommonTopic::TfStatic, "/tf_static", TFMessage::TYPE, Qos::latched(), false),
+    (CommonTopic::VacuumCommand, "~/vacuum_cmd", Float64::TYPE, Qos::reliable(1), true),
+    (
+        CommonTopic::FlangePoseCommand,
+        "~/flange/pose_cmd",
+        PoseStamped::TYPE,
+        Qos::reliable(1),
+        true,
+    ),
     // Two commands in a row, such as release and drive, must both arrive.
-    (Common::ObjectCommand, "~/object_cmd", ObjectCommand::TYPE, Qos::reliable(10), true),
-    (Common::JointCommands, "~/joint_commands", JointState::TYPE, Qos::reliable(1), true),
-    (Common::Ready, "~/ready", Bool::TYPE, Qos::latched(), false),
+    (CommonTopic::ObjectCommand, "~/object_cmd", ObjectCommand::TYPE, Qos::reliable(10), true),
+    (CommonTopic::JointCommands, "~/joint_commands", JointState::TYPE, Qos::reliable(1), true),
+    (CommonTopic::Ready, "~/ready", Bool::TYPE, Qos::latched(), false),
 ];
 
-/// Names are below `~/object/<name>/`.
-const OF_OBJECT: [Row<OfObject>; 4] = [
-    (OfObject::ContactWrench, "contact_wrench", WrenchStamped::TYPE, Qos::reliable(10), false),
-    (OfObject::Pose, "pose", PoseStamped::TYPE, Qos::reliable(10), false),
-    (OfObject::Twist, "twist", TwistStamped::TYPE, Qos::reliable(10), false),
-    (OfObject::PoseCommand, "pose_cmd", PoseStamped::TYPE, Qos::reliable(1), true),
+/// Names are relative to `~/object/<name>/`.
+const PER_OBJECT: [Entry<ObjectTopic>; 4] = [
+    (ObjectTopic::ContactWrench, "contact_wrench", WrenchStamped::TYPE, Qos::reliable(10), false),
+    (ObjectTopic::Pose, "pose", PoseStamped::TYPE, Qos::reliable(10), false),
+    (ObjectTopic::Twist, "twist", TwistStamped::TYPE, Qos::reliable(10), false),
+    (ObjectTopic::PoseCommand, "pose_cmd", PoseStamped::TYPE, Qos::reliable(1), true),
 ];
 
 /// All topics of a scene, inputs and outputs.
@@ -196,7 +203,7 @@ pub fn topics(scene: &Scene) -> Vec<Topic> {
         is_input,
     });
     let of_objects = scene.objects.iter().flat_map(|object| {
-        OF_OBJECT.iter().map(|&(_, name, message_type, qos, is_input)| Topic {
+        PER_OBJECT.iter().map(|&(_, name, message_type, qos, is_input)| Topic {
             name: full_name(&scene.outputs.ros, &format!("~/object/{}/{name}", object.name)),
             message_type,
             qos,
@@ -206,11 +213,11 @@ pub fn topics(scene: &Scene) -> Vec<Topic> {
     common.chain(of_objects).collect()
 }
 
-/// What is published of an object that is not the scene's own, in the order of `OfObject`. It is
-/// commanded on `~/object_cmd`.
-pub fn topics_of_guest(ros: &Ros, object: &str) -> Vec<Topic> {
-    let outputs = OF_OBJECT.iter().filter(|it| !it.4);
-    let topic = |&(_, name, message_type, qos, is_input): &Row<OfObject>| Topic {
+/// The output topics of a spawned object, in the order of [`ObjectTopic`]. Commands for it go to
+/// `~/object_cmd`.
+pub fn topics_of_spawned(ros: &Ros, object: &str) -> Vec<Topic> {
+    let outputs = PER_OBJECT.iter().filter(|it| !it.4);
+    let topic = |&(_, name, message_type, qos, is_input): &Entry<ObjectTopic>| Topic {
         name: full_name(ros, &format!("~/object/{object}/{name}")),
         message_type,
         qos,
@@ -219,7 +226,7 @@ pub fn topics_of_guest(ros: &Ros, object: &str) -> Vec<Topic> {
     outputs.map(topic).collect()
 }
 
-/// A name as others see it: `~` is the node, and names that are to be replaced are.
+/// The full name of a topic or service: `~` is replaced by the node, and remappings are applied.
 pub fn full_name(ros: &Ros, name: &str) -> String {
     let namespace = ros.node.rsplit_once('/').map_or("", |(namespace, _)| namespace);
     let full = |name: &str| match name.strip_prefix('~') {
@@ -227,49 +234,49 @@ pub fn full_name(ros: &Ros, name: &str) -> String {
         None if name.starts_with('/') => name.to_owned(),
         None => format!("{namespace}/{name}"),
     };
-    let wanted = full(name);
-    let replaced = ros.remaps.iter().find(|(from, _)| full(from) == wanted);
-    replaced.map_or(wanted, |(_, to)| full(to))
+    let expanded = full(name);
+    let remapped = ros.remaps.iter().find(|(from, _)| full(from) == expanded);
+    remapped.map_or(expanded, |(_, to)| full(to))
 }
 
 /// Index of a topic that every scene has.
-pub fn common(topic: Common) -> usize {
+pub fn common(topic: CommonTopic) -> usize {
     topic as usize
 }
 
-/// Index of a topic of the object with this place in the scene.
-pub fn of_object(object: usize, topic: OfObject) -> usize {
-    COMMON.len() + object * OF_OBJECT.len() + topic as usize
+/// Index of a topic of the object with this index in the scene.
+pub fn object_topic(object: usize, topic: ObjectTopic) -> usize {
+    COMMON.len() + object * PER_OBJECT.len() + topic as usize
 }
 
-/// What the topic with this index is: one that every scene has, or one of an object.
-pub fn place(topic: usize) -> Place {
+/// The topic with this index.
+pub fn topic_id(topic: usize) -> TopicId {
     match COMMON.get(topic) {
-        Some(&(common, ..)) => Place::Common(common),
+        Some(&(common, ..)) => TopicId::Common(common),
         None => {
-            let beyond = topic - COMMON.len();
-            let (of_object, ..) = OF_OBJECT[beyond % OF_OBJECT.len()];
-            Place::OfObject(beyond / OF_OBJECT.len(), of_object)
+            let offset = topic - COMMON.len();
+            let (kind, ..) = PER_OBJECT[offset % PER_OBJECT.len()];
+            TopicId::Object(offset / PER_OBJECT.len(), kind)
         }
     }
 }
 
-/// Where a topic stands in the list.
+/// A topic, identified by its kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
+pub enum TopicId {
     /// One that every scene has.
-    Common(Common),
-    /// One of the object with this place in the scene.
-    OfObject(usize, OfObject),
+    Common(CommonTopic),
+    /// A topic of the object with this index in the scene.
+    Object(usize, ObjectTopic),
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// Oracle: ROS 2's rules for private, relative and full names, and for their replacement.
+    /// Oracle: the rules of ROS 2 for private, relative and full names, and for remapping.
     #[test]
-    fn names_are_full_and_replaced() {
+    fn names_are_expanded_and_remapped() {
         let to = |from: &str, to: &str| (from.to_owned(), to.to_owned());
         let remaps = vec![to("~/wrench", "/ft"), to("/clock", "sim/clock"), to("pose", "~/p")];
         let ros = Ros { node: "/left/grip".to_owned(), remaps, ..Ros::OFF };
@@ -285,15 +292,16 @@ mod tests {
     }
 
     #[test]
-    fn rows_stand_where_their_index_says() {
-        // Oracle: `common` and `place` are inverse to each other; a row out of order breaks that.
+    fn entries_are_at_their_index() {
+        // Oracle: `common` and `topic_id` are inverse to each other; an entry out of order breaks
+        // that.
         for (index, (topic, ..)) in COMMON.iter().enumerate() {
             assert_eq!(common(*topic), index);
-            assert_eq!(place(index), Place::Common(*topic));
+            assert_eq!(topic_id(index), TopicId::Common(*topic));
         }
         for object in 0..3 {
-            for (topic, ..) in OF_OBJECT {
-                assert_eq!(place(of_object(object, topic)), Place::OfObject(object, topic));
+            for (topic, ..) in PER_OBJECT {
+                assert_eq!(topic_id(object_topic(object, topic)), TopicId::Object(object, topic));
             }
         }
     }

@@ -1,4 +1,4 @@
-//! Recordings: what goes in comes out, in other people's libraries too; full disks lose nothing.
+//! Recordings: the contents as read by other libraries, and full disks.
 
 use std::{
     collections::BTreeMap, fs, io::Write, path::Path, process::Command as Process, sync::Arc,
@@ -6,7 +6,7 @@ use std::{
 };
 
 use jamgrip::{
-    bag::sink::{Bag, BagError, BagReport, Format, Subject},
+    bag::sink::{Bag, BagError, BagReport, Format, RunDescription},
     base::{
         Vec3,
         random::{Random, Stream},
@@ -27,8 +27,8 @@ const SCENE_TEXT: &str = "name: synthetic\n";
 /// Digest of the state after 1000 ticks, in `synthetic::snapshot`.
 const DIGEST: u64 = 1000_u64.wrapping_mul(0x9e37_79b9_7f4a_7c15);
 
-fn subject() -> Subject {
-    Subject {
+fn description() -> RunDescription {
+    RunDescription {
         scene_text: SCENE_TEXT.to_owned(),
         scene_files: vec![("parameter.obj".to_owned(), b"v 0 0 0\n".to_vec())],
         facts: vec![("seed", "7".to_owned())],
@@ -37,30 +37,30 @@ fn subject() -> Subject {
 }
 
 fn create(folder: &Path) -> Result<Bag, BagError> {
-    Bag::create(folder, synthetic::encoder(), subject())
+    Bag::create(folder, synthetic::encoder(), description())
 }
 
-/// Records a second of simulated time, as a run does.
+/// Records a second of simulation time, as a run does.
 fn record_second(folder: &Path) -> BagReport {
     let bag = create(folder).unwrap();
     let reporter = bag.reporter();
     let mut fanout = Fanout::new();
     fanout.add(Box::new(bag), Delivery::Every { depth: 64 }).unwrap();
     (1..=1000).for_each(|tick| fanout.publish(&synthetic::packet(tick)));
-    let (ends, faults) = fanout.close(Duration::from_secs(60));
-    assert!(ends[0].is_closed && faults.is_empty(), "{faults:?}");
+    let (ends, errors) = fanout.close(Duration::from_secs(60));
+    assert!(ends[0].is_closed && errors.is_empty(), "{errors:?}");
     reporter.report()
 }
 
-/// What `rosbags` and `mcap-ros2-support` find in a recording.
+/// The contents of a recording as read by `rosbags` and `mcap-ros2-support`.
 fn read_back(folder: &Path) -> Value {
     let json = peers::run("read_bag.py", &[folder.to_str().unwrap()]);
     serde_json::from_str(&json).unwrap()
 }
 
-/// How many messages a second of the synthetic scene has on each topic.
+/// Number of messages on each topic in a second of the synthetic scene.
 ///
-/// Oracle: the rates in `synthetic::outputs`, the ticks at which its snapshots have heavy parts,
+/// Oracle: the rates in `synthetic::outputs`, the ticks at which its snapshots have large parts,
 /// and its five commands.
 fn expected_counts() -> BTreeMap<String, u64> {
     let state = 100;
@@ -86,9 +86,9 @@ fn expected_counts() -> BTreeMap<String, u64> {
         ("/tf_static", 1),
         ("/jamgrip/vacuum_cmd", 1),
         ("/jamgrip/flange/pose_cmd", 1),
-        // The command for an object that does not exist, and the release.
+        // The command for an unknown object, and the release.
         ("/jamgrip/object_cmd", 2),
-        // Offered, but not used in this second; readiness is news for those who wait only.
+        // Not used in this second; readiness only concerns waiting subscribers.
         ("/jamgrip/joint_commands", 0),
         ("/jamgrip/ready", 0),
         ("/jamgrip/world_change", 0),
@@ -102,7 +102,7 @@ fn expected_counts() -> BTreeMap<String, u64> {
 }
 
 #[test]
-fn a_second_has_what_the_rates_say() {
+fn a_second_has_the_expected_counts() {
     let folder = tempfile::tempdir().unwrap();
     let report = record_second(&folder.path().join("bag"));
     let found: BTreeMap<String, u64> = report.message_counts.into_iter().collect();
@@ -110,7 +110,7 @@ fn a_second_has_what_the_rates_say() {
 }
 
 #[test]
-fn the_mcap_crate_reads_what_was_encoded() {
+fn the_mcap_crate_reads_the_encoded_messages() {
     let folder = tempfile::tempdir().unwrap();
     record_second(&folder.path().join("bag"));
     let bytes = fs::read(folder.path().join("bag/bag_0.mcap")).unwrap();
@@ -143,7 +143,7 @@ fn the_mcap_crate_reads_what_was_encoded() {
 #[test]
 fn other_libraries_read_every_topic() {
     let folder = tempfile::tempdir().unwrap();
-    // A name that YAML would take for something else.
+    // A name with characters that are special in YAML.
     let bag = folder.path().join("bag: 'first', #1");
     record_second(&bag);
     let read = read_back(&bag);
@@ -151,7 +151,8 @@ fn other_libraries_read_every_topic() {
     let counts: BTreeMap<String, u64> =
         topics.iter().map(|(name, it)| (name.clone(), it["count"].as_u64().unwrap())).collect();
     assert_eq!(counts, expected_counts());
-    // The first messages come at the start of the first tick, the last at the end of the last.
+    // The first messages are logged at the start of the first tick, the last at the end of the
+    // last.
     assert_eq!(read["rosbags"]["start_ns"], 0);
     assert_eq!(read["rosbags"]["end_ns"].as_u64().unwrap() / 1000, 1_000_000);
     let mcap = &read["mcap"];
@@ -162,8 +163,8 @@ fn other_libraries_read_every_topic() {
     assert_eq!(mcap["attachments"]["scene_file/parameter.obj"], "v 0 0 0\n");
     assert_eq!(mcap["metadata"]["jamgrip"]["seed"], "7");
     assert_eq!(mcap["metadata"]["jamgrip_end"]["state_digest"], format!("{DIGEST:016x}"));
-    let whole = mcap["metadata"]["rosbag2"]["serialized_metadata"].as_str().unwrap();
-    assert!(whole.starts_with("version: 9\nstorage_identifier: mcap\n"));
+    let metadata = mcap["metadata"]["rosbag2"]["serialized_metadata"].as_str().unwrap();
+    assert!(metadata.starts_with("version: 9\nstorage_identifier: mcap\n"));
     let qos = mcap["qos"]["/tf_static"].as_str().unwrap();
     assert!(qos.contains("durability: transient_local") && qos.contains("depth: 1\n"), "{qos}");
 }
@@ -195,14 +196,14 @@ fn values_arrive_in_other_libraries() {
     let frames = first("/tf")["transforms"].clone();
     assert_eq!(frames[0]["child_frame_id"], "gripper_flange");
     assert_eq!(frames[1]["child_frame_id"], "object/cylinder");
-    // Refused commands are there as they came.
+    // Rejected commands are recorded as received.
     assert_eq!(first("/jamgrip/flange/pose_cmd")["pose"]["position"]["z"], "nan");
     assert_eq!(first("/jamgrip/flange/pose_cmd")["header"]["stamp"]["nanosec"], 123);
     assert_eq!(first("/jamgrip/object_cmd")["object"], "ghost");
 }
 
 #[test]
-fn metadata_is_there_from_the_beginning() {
+fn metadata_is_written_from_the_beginning() {
     let folder = tempfile::tempdir().unwrap();
     let bag = create(folder.path()).unwrap();
     let text = fs::read_to_string(folder.path().join("metadata.yaml")).unwrap();
@@ -211,7 +212,7 @@ fn metadata_is_there_from_the_beginning() {
 }
 
 #[test]
-fn a_folder_in_use_is_refused_and_left_alone() {
+fn a_folder_in_use_is_rejected_and_unchanged() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("thesis.tex"), "years of work").unwrap();
     let error = create(folder.path()).err().unwrap();
@@ -221,7 +222,7 @@ fn a_folder_in_use_is_refused_and_left_alone() {
 }
 
 #[test]
-fn a_folder_that_cannot_be_is_refused() {
+fn a_folder_that_cannot_be_created_is_an_error() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("file");
     fs::write(&file, "").unwrap();
@@ -229,31 +230,31 @@ fn a_folder_that_cannot_be_is_refused() {
     assert!(matches!(error, BagError::CannotCreate { .. }), "{error}");
 }
 
-/// Runs only inside the mount namespace that the next test makes; there it is the whole test.
+/// Set only inside the mount namespace that the next test creates; there it is the whole test.
 const SMALL_DISK: &str = "JAMGRIP_TEST_SMALL_DISK";
 
-/// A disk of 12 MB is filled by a recording that does not compress; what was recorded stays readable.
+/// Oracle: the counts that the recording reported. Incompressible data fill a disk of 12 MB.
 #[test]
-fn on_a_full_disk_what_was_recorded_stays_readable() {
+fn a_recording_on_a_full_disk_stays_readable() {
     if let Some(disk) = std::env::var_os(SMALL_DISK) {
         return fill(Path::new(&disk));
     }
-    let kept = tempfile::tempdir().unwrap();
+    let output_folder = tempfile::tempdir().unwrap();
     let myself = std::env::current_exe().unwrap();
-    let test = "bags::on_a_full_disk_what_was_recorded_stays_readable";
-    // The disk is visible to this process only, and gone with it; what was recorded is copied out.
+    let test = "bags::a_recording_on_a_full_disk_stays_readable";
+    // The disk is only visible to this process and ends with it, so the recording is copied.
     let script = "mkdir \"$0/disk\" && mount -t tmpfs -o size=12m none \"$0/disk\" && \
                   env \"$1=$0/disk\" \"$2\" --exact \"$3\" --nocapture && cp -r \"$0/disk/bag\" \"$0/\"";
     let output = Process::new("unshare")
         .args(["--mount", "--map-root-user", "sh", "-ec", script])
-        .arg(kept.path())
+        .arg(output_folder.path())
         .args([SMALL_DISK.as_ref(), myself.as_os_str(), test.as_ref()])
         .output()
         .unwrap();
-    let said = String::from_utf8_lossy(&output.stdout).into_owned()
+    let output_text = String::from_utf8_lossy(&output.stdout).into_owned()
         + &String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{said}");
-    let bag = kept.path().join("bag");
+    assert!(output.status.success(), "{output_text}");
+    let bag = output_folder.path().join("bag");
     let read = read_back(&bag);
     // Oracle: the counts that the recording itself reported, written by `fill`.
     let reported: BTreeMap<String, u64> =
@@ -264,12 +265,12 @@ fn on_a_full_disk_what_was_recorded_stays_readable() {
     assert!(100 < reported["/jamgrip/grains"], "megabytes were recorded");
 }
 
-/// Records until the disk is full, and checks what the recording says.
+/// Records until the disk is full, and checks the error messages.
 fn fill(disk: &Path) {
     let folder = disk.join("bag");
     fs::write(disk.join("other"), vec![0; 9 << 20]).unwrap();
     let error = create(&folder).err().unwrap();
-    assert!(error.to_string().contains("at least 4 MiB of room"), "{error}");
+    assert!(error.to_string().contains("at least 4 MiB of free space"), "{error}");
     fs::remove_file(disk.join("other")).unwrap();
     let mut bag = create(&folder).unwrap();
     let reporter = bag.reporter();
@@ -277,8 +278,8 @@ fn fill(disk: &Path) {
         .find_map(|tick| bag.write(&synthetic::incompressible_packet(tick)).err())
         .unwrap();
     let text = fault.to_string();
-    assert!(text.contains("the disk is full after") && text.contains("make room"), "{text}");
-    // The same fault for every packet from now on; closing has nothing left to do.
+    assert!(text.contains("the disk is full after") && text.contains("free some space"), "{text}");
+    // The same error for every packet from now on; closing has nothing left to do.
     assert_eq!(bag.write(&synthetic::packet(100_000)).unwrap_err().to_string(), text);
     bag.close().unwrap();
     let counts: BTreeMap<String, u64> = reporter.report().message_counts.into_iter().collect();
@@ -286,28 +287,28 @@ fn fill(disk: &Path) {
 }
 
 #[test]
-fn a_killed_recording_keeps_what_was_flushed() {
+fn a_killed_recording_keeps_flushed_data() {
     let folder = tempfile::tempdir().unwrap();
     let mut bag = create(folder.path()).unwrap();
     (1..=300).for_each(|tick| bag.write(&synthetic::packet(tick)).unwrap());
-    bag.idle().unwrap(); // what happens each second
+    bag.idle().unwrap(); // as happens every second
     let report = bag.reporter().report();
     let name = folder.path().file_name().unwrap().to_str().unwrap().to_owned();
-    // What a killed process leaves behind is what is in the file now.
+    // The present contents of the file are what a killed process leaves.
     let bytes = fs::read(folder.path().join(format!("{name}_0.mcap"))).unwrap();
     let options = mcap::read::Options::IgnoreEndMagic.into();
     let found = mcap::MessageStream::new_with_options(&bytes, options).unwrap();
     let n_found = found.take_while(Result::is_ok).count() as u64;
     let n_reported: u64 = report.message_counts.iter().map(|(_, count)| count).sum();
-    // Oracle: what the recording reported when it flushed.
+    // Oracle: the counts that the recording reported when it flushed.
     assert_eq!(n_found, n_reported);
     assert!(300 < n_found);
 }
 
 /// Oracle: the number of ticks over the length of a file; two independent libraries read all files,
-/// and what late readers get is there from each file's beginning.
+/// and each file begins with the latched messages.
 #[test]
-fn a_long_recording_is_split_and_every_file_stands_alone() {
+fn a_long_recording_is_split_into_self_contained_files() {
     let folder = tempfile::tempdir().unwrap();
     for (name, format, n_files) in [
         ("by_time", Format { split_ns: Some(250_000_000), ..Format::default() }, 4),
@@ -315,9 +316,13 @@ fn a_long_recording_is_split_and_every_file_stands_alone() {
         ("lz4", Format { compression: BagCompression::Lz4, ..Format::default() }, 1),
         ("none", Format { compression: BagCompression::Uncompressed, ..Format::default() }, 1),
     ] {
-        let place = folder.path().join(name);
-        let mut bag =
-            Bag::create(&place, synthetic::encoder(), Subject { format, ..subject() }).unwrap();
+        let bag_folder = folder.path().join(name);
+        let mut bag = Bag::create(
+            &bag_folder,
+            synthetic::encoder(),
+            RunDescription { format, ..description() },
+        )
+        .unwrap();
         for tick in 1..=1000 {
             bag.write(&synthetic::packet(tick)).unwrap();
             if tick == 100 {
@@ -328,7 +333,7 @@ fn a_long_recording_is_split_and_every_file_stands_alone() {
             }
         }
         bag.close().unwrap();
-        let read = read_back(&place);
+        let read = read_back(&bag_folder);
         let n_found = read["mcap"]["files"].as_u64().unwrap();
         assert!(n_found == n_files || n_files == 0, "{name}: {n_found} files");
         let counts = &read["mcap"]["counts"];
@@ -348,14 +353,14 @@ fn a_long_recording_is_split_and_every_file_stands_alone() {
             _ => "zstd",
         };
         assert_eq!(read["mcap"]["compressions"], serde_json::json!([expected]), "{name}");
-        let findings = jamgrip::bag::check::check(&place).unwrap();
+        let findings = jamgrip::bag::check::check(&bag_folder).unwrap();
         assert!(findings.is_empty(), "{name}: {findings:?}");
     }
 }
 
-/// Oracle: the numbers of `synthetic::snapshot`, and a parser of pages that is not ours.
+/// Oracle: the numbers of `synthetic::snapshot`, and an independent HTML parser.
 #[test]
-fn a_recording_becomes_a_page() {
+fn a_page_shows_a_recording() {
     let folder = tempfile::tempdir().unwrap();
     let bag = folder.path().join("bag");
     record_second(&bag);
@@ -364,28 +369,28 @@ fn a_recording_becomes_a_page() {
     fs::write(&file, &page).unwrap();
     let read = peers::run("read_page.py", &[file.to_str().unwrap()]);
     assert!(!read.is_empty());
-    for told in [
+    for expected in [
         "Force on the gripper",
-        "Gauge pressure in the bag",
+        "Gauge pressure in the gripper",
         "Heights",
         "command: gauge pressure -80 kPa",
         "command: release cylinder",
         "object detected, vacuum builds up",
         "phase lift",
     ] {
-        assert!(page.contains(told), "{told}");
+        assert!(page.contains(expected), "{expected}");
     }
     assert_eq!(page.matches("<figure>").count(), 6);
 }
 
-/// Processor time of this process's thread of that name (s).
+/// Processor time of this process's thread with this name (s).
 fn thread_time_s(name: &str) -> f64 {
     for task in fs::read_dir("/proc/self/task").unwrap().map(|it| it.unwrap().path()) {
         let read = |file: &str| fs::read_to_string(task.join(file)).unwrap_or_default();
         if read("comm").trim() != name {
             continue;
         }
-        // After the name in parentheses: the 12th and 13th fields are ticks of a hundredth.
+        // After the name in parentheses, the 12th and 13th fields are in hundredths of a second.
         let stat = read("stat");
         let fields: Vec<&str> = stat.rsplit(") ").next().unwrap().split(' ').collect();
         let ticks: f64 = fields[11..13].iter().map(|it| it.parse::<f64>().unwrap()).sum();
@@ -394,8 +399,8 @@ fn thread_time_s(name: &str) -> f64 {
     panic!("no thread {name}");
 }
 
-/// 1 kHz of states and 100 Hz of all grains and vertices, as fast as real time, with numbers that do
-/// not compress, for two seconds or `JAMGRIP_RECORD_SECONDS`. Oracles: what was given is what is there;
+/// Records 1 kHz of states and 100 Hz of all grains and vertices in real time, with incompressible
+/// numbers, for two seconds or `JAMGRIP_RECORD_SECONDS`. Oracles: all messages are recorded;
 /// writing takes less processor time than the recorded time, however busy the machine is.
 #[test]
 fn a_recording_keeps_up_with_real_time() {
@@ -412,15 +417,15 @@ fn a_recording_keeps_up_with_real_time() {
     let lists: Vec<(Vec<Vec3>, Vec<Vec3>)> =
         (0..8).map(|_| (vectors(by_tick::N_GRAINS), vectors(by_tick::N_VERTICES))).collect();
     let folder = tempfile::tempdir().unwrap();
-    let place = folder.path().join("bag");
-    let bag = Bag::create(&place, encoder, subject()).unwrap();
+    let bag_folder = folder.path().join("bag");
+    let bag = Bag::create(&bag_folder, encoder, description()).unwrap();
     let reporter = bag.reporter();
     let mut fanout = Fanout::new();
     let depth = usize::try_from(n_ticks).unwrap();
     fanout.add(Box::new(bag), Delivery::Latest { depth }).unwrap();
     let mut system = by_tick::Synthetic::new("cylinder");
     let (grains, membrane) = (system.grains(), system.membrane());
-    #[expect(clippy::disallowed_methods, reason = "real time is what is tested")]
+    #[expect(clippy::disallowed_methods, reason = "the test runs in real time")]
     let start = std::time::Instant::now();
     for tick in 1..=n_ticks {
         system.snapshot.tick = jamgrip::base::Tick(tick);
@@ -441,17 +446,17 @@ fn a_recording_keeps_up_with_real_time() {
         assert!(start.elapsed() < Duration::from_millis(n_ticks) + Duration::from_secs(60));
         std::thread::sleep(Duration::from_millis(1));
     }
-    let share = thread_time_s("sink-bag") / Duration::from_millis(n_ticks).as_secs_f64();
-    assert!(share < 1.0, "{share} s of processor time for each recorded second");
-    let (ends, faults) = fanout.close(Duration::from_secs(60));
-    assert!(faults.is_empty(), "{faults:?}");
+    let load = thread_time_s("sink-bag") / Duration::from_millis(n_ticks).as_secs_f64();
+    assert!(load < 1.0, "{load} s of processor time for each recorded second");
+    let (ends, errors) = fanout.close(Duration::from_secs(60));
+    assert!(errors.is_empty(), "{errors:?}");
     let counters = &ends[0].counters;
     assert_eq!((counters.n_dropped, counters.n_written), (0, n_ticks));
     let counts: BTreeMap<String, u64> = reporter.report().message_counts.into_iter().collect();
     assert_eq!((counts["/jamgrip/wrench"], counts["/jamgrip/grains"]), (n_ticks, n_ticks / 10));
     assert_eq!(counts["/jamgrip/membrane"], n_ticks / 10);
-    let n_bytes = fs::metadata(place.join("bag_0.mcap")).unwrap().len();
-    // For people who ask with `--nocapture`.
-    let text = format!("{n_ticks} ticks, {n_bytes} bytes, {:.1} % of a processor", 100.0 * share);
+    let n_bytes = fs::metadata(bag_folder.join("bag_0.mcap")).unwrap().len();
+    // Shown with `--nocapture`.
+    let text = format!("{n_ticks} ticks, {n_bytes} bytes, {:.1} % of a processor", 100.0 * load);
     writeln!(std::io::stderr().lock(), "{text}").unwrap();
 }

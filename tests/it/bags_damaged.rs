@@ -1,4 +1,4 @@
-//! Recordings that were killed, cut off, altered or made by others, and what is saved of them.
+//! Recordings that were killed, truncated, altered or written by other programs, and their repair.
 
 use std::{
     fs,
@@ -15,7 +15,7 @@ use jamgrip::{
         reader::{Channel, Damage, Item, Reader},
         recording::Recording,
         recover,
-        sink::{Bag, Format, Subject},
+        sink::{Bag, Format, RunDescription},
     },
     base::{
         Tick,
@@ -28,8 +28,8 @@ use serde_json::Value;
 
 use crate::{peers, synthetic};
 
-fn subject(format: Format) -> Subject {
-    Subject {
+fn description(format: Format) -> RunDescription {
+    RunDescription {
         scene_text: "name: synthetic\n".to_owned(),
         scene_files: Vec::new(),
         facts: vec![("tick_ns", synthetic::TICK_NS.to_string())],
@@ -38,7 +38,7 @@ fn subject(format: Format) -> Subject {
 }
 
 fn create(folder: &Path) -> Bag {
-    Bag::create(folder, synthetic::encoder(), subject(Format::default())).unwrap()
+    Bag::create(folder, synthetic::encoder(), description(Format::default())).unwrap()
 }
 
 fn packet(tick: u64) -> Packet {
@@ -50,7 +50,7 @@ fn packet(tick: u64) -> Packet {
     Packet::new(snapshot, None).with_checkpoints(checkpoints.into_iter().collect())
 }
 
-/// A recording of 200 ticks in some twenty chunks.
+/// A recording of 200 ticks in about twenty chunks.
 fn recording(folder: &Path) -> PathBuf {
     let mut bag = create(folder);
     for tick in 1..=200 {
@@ -64,11 +64,11 @@ fn recording(folder: &Path) -> PathBuf {
     folder.join(format!("{name}_0.mcap"))
 }
 
-fn course(path: &Path) -> jamgrip::bag::recording::Course {
-    Recording::open(path).unwrap().course_of_all(synthetic::TICK_NS).unwrap()
+fn history(path: &Path) -> jamgrip::bag::recording::RunHistory {
+    Recording::open(path).unwrap().history_without_scene(synthetic::TICK_NS).unwrap()
 }
 
-/// Messages, attachments and damages in the first bytes of a file.
+/// Messages, attachments and damaged parts in a prefix of a file.
 fn count(bytes: &[u8]) -> (usize, usize, Vec<Damage>) {
     let (mut n_messages, mut n_attachments, mut damages) = (0, 0, Vec::new());
     for item in Reader::new(bytes, bytes.len() as u64) {
@@ -82,9 +82,9 @@ fn count(bytes: &[u8]) -> (usize, usize, Vec<Damage>) {
     (n_messages, n_attachments, damages)
 }
 
-/// Where each record begins and ends, and what kind it is.
+/// Start, end and opcode of each record.
 ///
-/// Oracle for the cuts: the specification's own framing, one byte and eight of length.
+/// Oracle: the framing in the specification: one byte of opcode and eight of length.
 fn records(bytes: &[u8]) -> Vec<(usize, usize, u8)> {
     let (mut at, mut found) = (8, Vec::new());
     while at + 9 <= bytes.len() - 8 {
@@ -98,7 +98,7 @@ fn records(bytes: &[u8]) -> Vec<(usize, usize, u8)> {
 }
 
 #[test]
-fn whatever_is_cut_off_the_rest_is_read() {
+fn a_truncated_recording_is_read_up_to_the_cut() {
     const CHUNK: u8 = 6;
     let folder = tempfile::tempdir().unwrap();
     let bytes = fs::read(recording(&folder.path().join("bag"))).unwrap();
@@ -109,7 +109,7 @@ fn whatever_is_cut_off_the_rest_is_read() {
     assert!(20 <= n_chunks, "{n_chunks} chunks");
     let mut n_before = 0;
     for &(begin, end, kind) in &records {
-        // At the boundary, all before it and nothing else.
+        // At a record boundary: everything before it and nothing else.
         let (n_found, _, damages) = count(&bytes[..begin]);
         assert_eq!(n_found, n_before, "cut at {begin}");
         let is_closed = n_found == n_all && damages.is_empty();
@@ -130,7 +130,7 @@ fn whatever_is_cut_off_the_rest_is_read() {
 }
 
 #[test]
-fn a_chunk_that_was_altered_is_left_out_and_told() {
+fn an_altered_chunk_is_dropped_and_reported() {
     let folder = tempfile::tempdir().unwrap();
     let path = recording(&folder.path().join("bag"));
     let bytes = fs::read(&path).unwrap();
@@ -141,7 +141,7 @@ fn a_chunk_that_was_altered_is_left_out_and_told() {
     let mut altered = bytes.clone();
     altered[(begin + end) / 2] ^= 0x10;
     let (n_found, _, damages) = count(&altered);
-    assert_eq!(n_found, n_all - n_of_chunk, "all but the messages of that chunk");
+    assert_eq!(n_found, n_all - n_of_chunk, "all messages except those of the chunk");
     assert!(matches!(damages[..], [Damage::BadChunk { .. }]), "{damages:?}");
     fs::write(&path, &altered).unwrap();
     let findings = check::check(path.parent().unwrap()).unwrap();
@@ -150,12 +150,12 @@ fn a_chunk_that_was_altered_is_left_out_and_told() {
 }
 
 #[test]
-fn a_whole_recording_has_nothing_to_complain_of() {
+fn a_complete_recording_has_no_findings() {
     let folder = tempfile::tempdir().unwrap();
     recording(&folder.path().join("bag"));
     let findings = check::check(&folder.path().join("bag")).unwrap();
     assert!(findings.is_empty(), "{findings:?}");
-    // What metadata.yaml tells is compared: one message more is noticed, topic and total.
+    // metadata.yaml is compared: one message too many is reported, for the topic and in total.
     let metadata = folder.path().join("bag/metadata.yaml");
     let text = fs::read_to_string(&metadata).unwrap();
     fs::write(&metadata, text.replace("message_count: 200\n", "message_count: 201\n")).unwrap();
@@ -167,7 +167,7 @@ fn a_whole_recording_has_nothing_to_complain_of() {
 }
 
 #[test]
-fn what_was_saved_is_whole_in_other_libraries() {
+fn other_libraries_read_repaired_recordings() {
     let folder = tempfile::tempdir().unwrap();
     let path = recording(&folder.path().join("bag"));
     let bytes = fs::read(&path).unwrap();
@@ -177,8 +177,8 @@ fn what_was_saved_is_whole_in_other_libraries() {
     let output = recover::default_output(&damaged);
     let saved = recover::recover(&damaged, &output).unwrap();
     assert!(matches!(saved.damages[..], [(_, Damage::Cut { .. })]), "{:?}", saved.damages);
-    let refused = recover::recover(&damaged, &output).unwrap_err().to_string();
-    assert!(refused.contains("is there already"), "{refused}");
+    let error = recover::recover(&damaged, &output).unwrap_err().to_string();
+    assert!(error.contains("already exists"), "{error}");
     // Oracle: two independent libraries, and the damaged file itself.
     let read: Value =
         serde_json::from_str(&peers::run("read_bag.py", &[output.to_str().unwrap()])).unwrap();
@@ -187,37 +187,37 @@ fn what_was_saved_is_whole_in_other_libraries() {
     let qos = read["mcap"]["qos"]["/tf_static"].as_str().unwrap();
     assert!(qos.contains("durability: transient_local"), "{qos}");
     assert_eq!(read["mcap"]["attachments"]["scene.yaml"], "name: synthetic\n");
-    let (before, after) = (course(&damaged), course(&output));
+    let (before, after) = (history(&damaged), history(&output));
     assert_eq!(before.digests, after.digests);
     assert_eq!(before.commands, after.commands);
     assert!(after.broken_at.is_none() && after.gap_after.is_none());
     assert!(!after.checkpoints.is_empty());
-    for place in &after.checkpoints {
-        assert_eq!(place.read().unwrap(), vec![7; 10_000]);
+    for checkpoint in &after.checkpoints {
+        assert_eq!(checkpoint.read().unwrap(), vec![7; 10_000]);
     }
     let findings = check::check(&output).unwrap();
     assert!(findings.is_empty(), "{findings:?}");
 }
 
 #[test]
-fn recordings_of_others_are_saved_too() {
+fn recordings_of_other_programs_are_repaired() {
     let folder = tempfile::tempdir().unwrap();
-    let theirs = folder.path().join("theirs");
-    peers::run("write_bag.py", &[theirs.to_str().unwrap()]);
-    let whole = Info::read(&theirs).unwrap();
-    assert!(whole.is_whole(), "{whole}");
-    assert_eq!(whole.topics["/numbers"].n_messages, 500);
+    let foreign = folder.path().join("theirs");
+    peers::run("write_bag.py", &[foreign.to_str().unwrap()]);
+    let complete = Info::read(&foreign).unwrap();
+    assert!(complete.is_undamaged(), "{complete}");
+    assert_eq!(complete.topics["/numbers"].n_messages, 500);
     let errors: Vec<_> =
-        check::check(&theirs).unwrap().into_iter().filter(|it| it.is_error).collect();
+        check::check(&foreign).unwrap().into_iter().filter(|it| it.is_error).collect();
     assert!(errors.is_empty(), "{errors:?}");
-    let file = whole.files[0].path.clone();
+    let file = complete.files[0].path.clone();
     let bytes = fs::read(&file).unwrap();
     fs::write(&file, &bytes[..bytes.len() / 3]).unwrap();
-    for (path, output) in [(theirs.clone(), "folder"), (file, "file.mcap")] {
+    for (path, output) in [(foreign.clone(), "folder"), (file, "file.mcap")] {
         let output = folder.path().join(output);
         let saved = recover::recover(&path, &output).unwrap();
         assert!(0 < saved.n_messages && saved.n_messages < 600, "{}", saved.n_messages);
-        assert!(Info::read(&output).unwrap().is_whole());
+        assert!(Info::read(&output).unwrap().is_undamaged());
     }
     let saved = folder.path().join("folder");
     let read: Value =
@@ -228,31 +228,31 @@ fn recordings_of_others_are_saved_too() {
 }
 
 #[test]
-fn what_is_no_recording_is_told() {
+fn files_that_are_not_recordings_are_errors() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("x.mcap");
     for bytes in [&b""[..], b"\x89MCAP0\r\n", b"a letter to a friend, of some length"] {
         fs::write(&path, bytes).unwrap();
         let output = folder.path().join("saved.mcap");
         let error = recover::recover(&path, &output).unwrap_err().to_string();
-        assert!(error.contains("nothing in it can be saved"), "{error}");
+        assert!(error.contains("contains no readable messages"), "{error}");
         assert!(!output.exists());
         assert!(check::check(&path).unwrap().iter().any(|it| it.is_error));
     }
 }
 
-/// Names the folder that the killed process records into; there it is the whole test.
+/// Environment variable with the folder for the killed process, which then only records.
 const KILLED: &str = "JAMGRIP_TEST_KILLED_RECORDING";
-/// How often a recording is killed.
+/// Number of recordings to kill.
 const N_KILLS: u64 = 110;
 
-/// Records until it is killed, and says after each flush up to which tick it has flushed.
+/// Records until it is killed, and prints the last tick after each flush.
 fn record_until_killed(folder: &Path) {
     let mut bag = create(folder);
     let mut out = std::io::stdout().lock();
     for tick in 1..u64::MAX {
         bag.write(&packet(tick)).unwrap();
-        // Now and then, as happens once a second in a run.
+        // From time to time, as happens once a second in a run.
         if tick.is_multiple_of(7) {
             bag.idle().unwrap();
             writeln!(out, "flushed {tick}").unwrap();
@@ -260,9 +260,9 @@ fn record_until_killed(folder: &Path) {
     }
 }
 
-/// Oracle: what the killed process itself said it had flushed, and the chain of digests.
+/// Oracle: the ticks that the killed process reported as flushed, and the chain of digests.
 #[test]
-fn killed_a_hundred_times_nothing_that_was_flushed_is_lost() {
+fn flushed_data_survive_a_hundred_kills() {
     if let Some(folder) = std::env::var_os(KILLED) {
         return record_until_killed(Path::new(&folder));
     }
@@ -272,48 +272,45 @@ fn killed_a_hundred_times_nothing_that_was_flushed_is_lost() {
     for i in 0..N_KILLS {
         let bag = folder.path().join(format!("bag{i}"));
         let mut child = Process::new(std::env::current_exe().unwrap())
-            .args([
-                "--exact",
-                "bags_damaged::killed_a_hundred_times_nothing_that_was_flushed_is_lost",
-            ])
+            .args(["--exact", "bags_damaged::flushed_data_survive_a_hundred_kills"])
             .arg("--nocapture")
             .env(KILLED, &bag)
             .stdout(Stdio::piped())
             .stderr(Stdio::null())
             .spawn()
             .unwrap();
-        let mut said = BufReader::new(child.stdout.take().unwrap());
-        let mut flushed = read_flushed(&mut said);
+        let mut output = BufReader::new(child.stdout.take().unwrap());
+        let mut flushed = read_flushed(&mut output);
         std::thread::sleep(Duration::from_secs_f64(random.between(0.0, 0.02)));
         child.kill().unwrap();
         child.wait().unwrap();
         let mut rest = String::new();
-        said.read_to_string(&mut rest).unwrap();
-        // The last line may be cut off by the kill.
-        let whole = rest.rfind('\n').map_or("", |end| &rest[..end]);
-        let later = whole.lines().filter_map(|it| it.strip_prefix("flushed ")?.parse().ok());
+        output.read_to_string(&mut rest).unwrap();
+        // The kill may truncate the last line.
+        let complete = rest.rfind('\n').map_or("", |end| &rest[..end]);
+        let later = complete.lines().filter_map(|it| it.strip_prefix("flushed ")?.parse().ok());
         flushed = later.max().unwrap_or(flushed).max(flushed);
         let output = folder.path().join("saved");
         let saved = recover::recover(&bag, &output).unwrap();
         n_cut += u64::from(saved.damages.iter().any(|(_, it)| matches!(it, Damage::Cut { .. })));
-        let course = course(&output);
-        assert!(flushed <= course.last_tick(), "{flushed} flushed, {} saved", course.last_tick());
-        assert!(course.broken_at.is_none() && course.gap_after.is_none(), "kill {i}");
-        assert_eq!(course.digests[0].0, 1, "kill {i}");
-        assert!(Info::read(&output).unwrap().is_whole());
+        let history = history(&output);
+        assert!(flushed <= history.last_tick(), "{flushed} flushed, {} saved", history.last_tick());
+        assert!(history.broken_at.is_none() && history.gap_after.is_none(), "kill {i}");
+        assert_eq!(history.digests[0].0, 1, "kill {i}");
+        assert!(Info::read(&output).unwrap().is_undamaged());
         fs::remove_dir_all(&output).unwrap();
         fs::remove_dir_all(&bag).unwrap();
         n_flushed += flushed;
     }
-    // For people who ask with `--nocapture`.
+    // Shown with `--nocapture`.
     writeln!(std::io::stderr().lock(), "{N_KILLS} kills, {n_cut} in mid-record").unwrap();
-    assert!(N_KILLS * 7 <= n_flushed, "every one had flushed something: {n_flushed}");
+    assert!(N_KILLS * 7 <= n_flushed, "every recording was flushed at least once: {n_flushed}");
 }
 
 /// Waits for the first flush.
-fn read_flushed(said: &mut impl BufRead) -> u64 {
-    for line in said.lines() {
-        // The test harness may write on the same line before us.
+fn read_flushed(output: &mut impl BufRead) -> u64 {
+    for line in output.lines() {
+        // The test harness may have written to the same line.
         if let Some((_, tick)) = line.unwrap().split_once("flushed ") {
             return tick.trim().parse().unwrap();
         }
@@ -321,9 +318,9 @@ fn read_flushed(said: &mut impl BufRead) -> u64 {
     panic!("the recording ended by itself");
 }
 
-/// Oracle: `write_variants.py`, which writes with the library of the format's authors.
+/// Oracle: `write_variants.py`, which uses the library of the format's authors.
 #[test]
-fn every_variant_that_others_write_is_read() {
+fn every_variant_of_the_format_is_read() {
     let folder = tempfile::tempdir().unwrap();
     let n_files: usize =
         peers::run("write_variants.py", &[folder.path().to_str().unwrap()]).trim().parse().unwrap();
@@ -331,7 +328,7 @@ fn every_variant_that_others_write_is_read() {
     assert_eq!((n_files, files.len()), (384, 384));
     for file in files {
         let name = file.file_name().unwrap().to_str().unwrap().to_owned();
-        let (mut messages, mut attached, mut noted) = (Vec::new(), 0, 0);
+        let (mut messages, mut n_attached, mut n_metadata) = (Vec::new(), 0, 0);
         for item in Reader::open(&file).unwrap() {
             match item {
                 Item::Message(it) => {
@@ -342,17 +339,17 @@ fn every_variant_that_others_write_is_read() {
                 Item::Attachment(it) => {
                     assert_eq!((it.name.as_str(), it.times), ("file", (2, 1)), "{name}");
                     assert_eq!(it.data, b"contents", "{name}");
-                    attached += 1;
+                    n_attached += 1;
                 }
                 Item::Metadata(it) => {
                     assert_eq!((it.name.as_str(), it.metadata["a"].as_str()), ("notes", "b"));
-                    noted += 1;
+                    n_metadata += 1;
                 }
                 Item::Damage(damage) => panic!("{name}: {damage}"),
                 _ => {}
             }
         }
-        assert_eq!((messages.len(), attached, noted), (5, 1, 1), "{name}");
+        assert_eq!((messages.len(), n_attached, n_metadata), (5, 1, 1), "{name}");
         for (i, (topic, type_name, log_time, publish_time, data)) in
             messages.into_iter().enumerate()
         {
@@ -362,18 +359,19 @@ fn every_variant_that_others_write_is_read() {
             assert_eq!((log_time, publish_time), (i as u64, 10 + i as u64), "{name}");
             assert_eq!(data, vec![u8::try_from(i).unwrap(); 40], "{name}");
         }
-        // What is saved of it reads the same in the end.
+        // The repaired file has the same contents.
         let saved = folder.path().join("saved.mcap");
         assert_eq!(recover::recover(&file, &saved).unwrap().n_messages, 5, "{name}");
         fs::remove_file(&saved).unwrap();
     }
 }
 
-/// What is in a file of the conformance data: messages as sequence and times, attachments, metadata.
-type Held = (Vec<(u32, u64, u64)>, usize, usize);
+/// The contents of a file of the conformance data: messages as sequence and times, attachments,
+/// metadata.
+type FileContents = (Vec<(u32, u64, u64)>, usize, usize);
 
-fn held(file: &Path) -> Held {
-    let (mut messages, mut n_attached, mut n_noted) = (Vec::new(), 0, 0);
+fn contents_of(file: &Path) -> FileContents {
+    let (mut messages, mut n_attached, mut n_metadata) = (Vec::new(), 0, 0);
     for item in Reader::open(file).unwrap() {
         match item {
             Item::Message(it) => {
@@ -401,31 +399,31 @@ fn held(file: &Path) -> Held {
                 assert_eq!(it.media_type, "application/octet-stream");
                 n_attached += 1;
             }
-            // What is saved says of itself that it was.
+            // A repaired file has an additional metadata record.
             Item::Metadata(it) if it.name == "myMetadata" => {
                 assert_eq!(it.metadata["foo"], "bar");
-                n_noted += 1;
+                n_metadata += 1;
             }
             Item::Damage(damage) => panic!("{}: {damage}", file.display()),
             _ => {}
         }
     }
-    (messages, n_attached, n_noted)
+    (messages, n_attached, n_metadata)
 }
 
-/// Oracle: the inputs of the format's public conformance tests. `write_conformance.py` writes its files,
-/// and checks itself against published checksums.
+/// Oracle: the inputs of the format's public conformance tests. `write_conformance.py` writes the
+/// files and checks itself against published checksums.
 #[test]
 fn the_public_conformance_data_is_read() {
     let folder = tempfile::tempdir().unwrap();
-    let said = peers::run("write_conformance.py", &[folder.path().to_str().unwrap()]);
-    assert_eq!(said.trim(), "416 7", "files, and how many of them have a published sum");
+    let output = peers::run("write_conformance.py", &[folder.path().to_str().unwrap()]);
+    assert_eq!(output.trim(), "416 7", "files, and how many have published checksums");
     let times = [0, 2, 1, 3, 3, 5, 4, 7, 8, 9];
     let ten = || (0..).zip(times).map(|(i, time)| (i, time, time)).collect();
     let files: Vec<_> = fs::read_dir(folder.path()).unwrap().map(|it| it.unwrap().path()).collect();
     for file in files {
         let name = file.file_stem().unwrap().to_str().unwrap().to_owned();
-        let expected: Held = match name.split('-').next().unwrap() {
+        let expected: FileContents = match name.split('-').next().unwrap() {
             "NoData" => (vec![], 0, 0),
             "OneMessage" | "OneSchemalessMessage" => (vec![(10, 2, 1)], 0, 0),
             "OneAttachment" => (vec![], 1, 0),
@@ -433,14 +431,14 @@ fn the_public_conformance_data_is_read() {
             "TenMessages" => (ten(), 0, 0),
             other => panic!("{other}"),
         };
-        assert_eq!(held(&file), expected, "{name}");
-        // What is saved of it holds the same; without messages it is told that there is nothing to save.
+        assert_eq!(contents_of(&file), expected, "{name}");
+        // The repaired file has the same contents; without messages, there is nothing to repair.
         if expected.0.is_empty() {
             continue;
         }
         let saved = folder.path().join("saved.mcap");
         recover::recover(&file, &saved).unwrap();
-        assert_eq!(held(&saved), expected, "{name}, saved");
+        assert_eq!(contents_of(&saved), expected, "{name}, saved");
         fs::remove_file(&saved).unwrap();
     }
 }

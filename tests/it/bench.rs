@@ -1,10 +1,10 @@
-//! Benchmarks: what they tell, and that it depends neither on threads nor on time.
+//! Benchmarks: their output, and that digests depend neither on threads nor on time.
 
 use std::{path::Path, process::Command};
 
 use serde_json::Value;
 
-/// Figures of the smallest case.
+/// Results of the smallest case.
 fn measured(cache: &Path, threads: &str, seconds: &str) -> Value {
     let output = Command::new(env!("CARGO_BIN_EXE_jamgrip"))
         .args(["bench", "--case", "grains_3k_rest", "--json", "--threads", threads])
@@ -12,17 +12,17 @@ fn measured(cache: &Path, threads: &str, seconds: &str) -> Value {
         .arg(cache)
         .output()
         .unwrap();
-    let fault = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(0), "{fault}");
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{errors}");
     let Value::Array(cases) = serde_json::from_slice(&output.stdout).unwrap() else { panic!() };
     assert_eq!(cases.len(), 1);
     cases[0].clone()
 }
 
-/// Oracles: the definitions of the figures, to rounding; the same bits for any number of threads, and for
-/// one lap more or less.
+/// Oracles: the definitions of the results, to rounding; the same bits for any number of threads and
+/// repetitions.
 #[test]
-fn a_case_is_told_in_full_and_its_digest_depends_on_neither_threads_nor_time() {
+fn results_are_complete_and_digests_depend_on_neither_threads_nor_time() {
     let cache = tempfile::tempdir().unwrap();
     let one = measured(cache.path(), "1", "0.1");
     let two = measured(cache.path(), "2", "0.5");
@@ -35,7 +35,7 @@ fn a_case_is_told_in_full_and_its_digest_depends_on_neither_threads_nor_time() {
     let number = |key: &str| one[key].as_f64().unwrap_or_else(|| panic!("{key}: {one}"));
     let speed = number("steps_per_s");
     let contacts = number("contact_steps_per_s_per_core") / speed;
-    assert!((contacts / number("n_contacts") - 1.0).abs() < 0.01, "loose grains come and go");
+    assert!((contacts / number("n_contacts") - 1.0).abs() < 0.01, "contacts of loose grains vary");
     assert!((number("real_time_factor") / (speed * number("substep_s")) - 1.0).abs() < 1e-12);
     // 5.75 partners of each grain under 50 kPa, as in the packings of other codes; 5 % of it.
     assert!((number("n_contacts") / 1500.0 / 5.75 - 1.0).abs() < 0.05, "{one}");
@@ -45,14 +45,14 @@ fn a_case_is_told_in_full_and_its_digest_depends_on_neither_threads_nor_time() {
     assert!(stages.iter().any(|it| it["name"] == "contact_grains"));
 }
 
-/// What there is not is said with what there is, as a fault of the command line.
+/// Oracle: the exit code of a command-line error; the message names the existing case.
 #[test]
-fn unknown_cases_are_refused() {
+fn unknown_cases_are_rejected() {
     let output = Command::new(env!("CARGO_BIN_EXE_jamgrip"))
         .args(["bench", "--case", "grains_3k_rset"])
         .output()
         .unwrap();
     assert_eq!(output.status.code(), Some(2));
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert!(said.contains("grains_3k_rset") && said.contains("grains_3k_rest"), "{said}");
+    let text = String::from_utf8_lossy(&output.stderr);
+    assert!(text.contains("grains_3k_rset") && text.contains("grains_3k_rest"), "{text}");
 }

@@ -1,4 +1,4 @@
-//! A made-up system whose every number follows from its tick, so that readers can check them.
+//! A synthetic system in which every number follows from the tick, so that readers can check it.
 
 use std::path::{Path, PathBuf};
 
@@ -20,7 +20,7 @@ pub(crate) const N_GRAINS: usize = 3000;
 /// Vertices of the default scene.
 pub(crate) const N_VERTICES: usize = 1321;
 
-/// The owner of what a session would own.
+/// Holds the data that a session would hold.
 pub(crate) struct Synthetic {
     pub(crate) snapshot: Snapshot,
     positions: Vec<Vec3>,
@@ -33,7 +33,7 @@ pub(crate) struct Synthetic {
 }
 
 impl Synthetic {
-    /// The system at tick 0, its object called `name`.
+    /// The system at tick 0, with an object called `name`.
     pub(crate) fn new(name: &str) -> Self {
         let at_rest = BodySnapshot { pose: Pose::identity(), twist: Twist::zero() };
         let object = ObjectSnapshot {
@@ -95,12 +95,12 @@ impl Synthetic {
         }
     }
 
-    /// Puts all grains and vertices at one height.
+    /// Moves all grains and vertices to one height (m).
     pub(crate) fn lift_lists_to(&mut self, height: f64) {
         self.positions.iter_mut().chain(&mut self.vertices).for_each(|it| it.z = height);
     }
 
-    /// The grains as a snapshot has them when they are due.
+    /// The grains, as in a snapshot.
     pub(crate) fn grains(&self) -> GrainsSnapshot {
         GrainsSnapshot {
             positions: self.positions.clone(),
@@ -110,7 +110,7 @@ impl Synthetic {
         }
     }
 
-    /// The membrane as a snapshot has it when it is due.
+    /// The membrane, as in a snapshot.
     pub(crate) fn membrane(&self) -> MembraneSnapshot {
         MembraneSnapshot {
             positions: self.vertices.clone(),
@@ -120,7 +120,7 @@ impl Synthetic {
         }
     }
 
-    /// The borrowed look that streams write from.
+    /// The view that streams write from.
     pub(crate) fn view(&self) -> View<'_> {
         View {
             snapshot: &self.snapshot,
@@ -136,26 +136,26 @@ impl Synthetic {
     }
 }
 
-/// The scene of the main job; its object is called `cylinder`.
+/// The main scene; its object is called `cylinder`.
 pub(crate) fn scene() -> Scene {
     load(&main_scene(), &["outputs.state_rate=250 Hz".to_owned()]).unwrap()
 }
 
-/// The file of the main job's scene.
+/// The file of the main scene.
 pub(crate) fn main_scene() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("launch_configs/pick_and_lift.yaml")
 }
 
-/// Whole numbers as reals, exact.
+/// An integer as a real number, exactly.
 pub(crate) fn number(count: u64) -> f64 {
     f64::from(u32::try_from(count).unwrap())
 }
 
-/// An example that `cargo test` has built beside this binary.
+/// An example that `cargo test` has built next to this binary.
 pub(crate) fn example(name: &str) -> PathBuf {
     let here = std::env::current_exe().unwrap();
     let profile = here.parent().and_then(|it| it.parent()).unwrap();
     let path = profile.join("examples").join(name);
-    assert!(path.exists(), "{} is missing: run the whole of `cargo test`", path.display());
+    assert!(path.exists(), "{} is missing: run `cargo test` without `--test`", path.display());
     path
 }

@@ -1,4 +1,4 @@
-//! Changes of the world between two ticks: back to the start, in, out and elsewhere.
+//! Changes of the world between ticks: reset, insert, remove, teleport.
 
 use jamgrip::{
     base::{Pose, Real, Vec3, real::Twist},
@@ -6,14 +6,14 @@ use jamgrip::{
         Command,
         change::{Change, Scope, SettledScene},
     },
-    cosim::{FLANGE, refused::ChangeError},
+    cosim::{FLANGE, change_error::ChangeError},
     scene::{Object, Shape},
     session::Session,
 };
 
 use crate::coarse;
 
-/// Runs `n` ticks under a vacuum and a flange on its way down.
+/// Runs `n` ticks with a vacuum while the flange moves down.
 fn run(session: &mut Session, n: u32) -> u64 {
     for i in 0..n {
         let down = coarse::flange_to(0.101 - 0.0002 * Real::from(i));
@@ -22,7 +22,7 @@ fn run(session: &mut Session, n: u32) -> u64 {
     session.digest()
 }
 
-/// A ball of the scene's own material at `position` (m).
+/// A ball of the object's material at `position` [m].
 fn ball(session: &Session, name: &str, position: Vec3) -> Change {
     let own = session.scene().objects[0].clone();
     Change::Insert(Box::new(Object {
@@ -37,9 +37,9 @@ fn height(session: &Session, i: usize) -> Real {
     session.coupled().world.motion(i).pose.translation.z
 }
 
-/// Oracle: the bits of the first time.
+/// Oracle: the bits of the first run.
 #[test]
-fn a_reset_goes_back_bit_by_bit() {
+fn a_reset_restores_every_bit() {
     let mut session = coarse::session(1, &[]);
     let start = session.digest();
     let first = run(&mut session, 40);
@@ -48,42 +48,42 @@ fn a_reset_goes_back_bit_by_bit() {
     session.tick(&[]).unwrap();
     session.change(&Change::Reset(Scope::ALL)).unwrap();
     assert_eq!(session.digest(), start, "the start");
-    assert_eq!(run(&mut session, 40), first, "what follows from it");
+    assert_eq!(run(&mut session, 40), first, "the run after it");
 }
 
-/// Oracle: the contract of each part of a reset.
+/// Oracle: the documented effect of each part of a reset.
 #[test]
-fn time_state_and_spawned_objects_go_back_one_by_one() {
+fn time_state_and_spawned_objects_are_reset_separately() {
     let mut session = coarse::session(1, &[]);
     session.change(&ball(&session, "ball", Vec3::new(0.3, 0.0, 0.2))).unwrap();
     run(&mut session, 20);
     let fallen = height(&session, 1);
     session.change(&Change::Reset(Scope { time: true, ..Scope::default() })).unwrap();
     assert_eq!((session.time_ns(), session.scene().objects.len()), (0, 2));
-    assert_eq!(height(&session, 1).to_bits(), fallen.to_bits(), "time alone moves nothing");
+    assert_eq!(height(&session, 1).to_bits(), fallen.to_bits(), "resetting time moves nothing");
     run(&mut session, 20);
     session.change(&Change::Reset(Scope { state: true, ..Scope::default() })).unwrap();
-    assert_eq!(session.time_ns(), 20_000_000, "the state alone leaves time alone");
-    assert_eq!(height(&session, 1).to_bits(), 0.2_f64.to_bits(), "where it was put in");
+    assert_eq!(session.time_ns(), 20_000_000, "resetting the state keeps time");
+    assert_eq!(height(&session, 1).to_bits(), 0.2_f64.to_bits(), "its initial height");
     session.change(&Change::Reset(Scope { spawned: true, ..Scope::default() })).unwrap();
     let names: Vec<&str> = session.scene().objects.iter().map(|it| it.name.as_str()).collect();
     assert_eq!(names, ["cylinder"]);
 }
 
-/// Oracle: Galileo, h = g t²/2. Tolerance: the rigid world's steps of 0.1 ms make an error of
+/// Oracle: Galileo, h = g t²/2. Tolerance: the rigid-body steps of 0.1 ms cause an error of
 /// g t dt/2 = 15 µm in 30 ms.
 #[test]
-fn what_is_put_in_falls() {
+fn an_inserted_object_falls() {
     let mut session = coarse::session(1, &[]);
     session.change(&ball(&session, "ball", Vec3::new(0.3, 0.0, 0.2))).unwrap();
     run(&mut session, 30);
-    let way = 0.2 - height(&session, 1);
-    assert!((way - 9.81 * 0.03 * 0.03 / 2.0).abs() < 2e-5, "{way} m");
+    let distance = 0.2 - height(&session, 1);
+    assert!((distance - 9.81 * 0.03 * 0.03 / 2.0).abs() < 2e-5, "{distance} m");
 }
 
-/// Oracle: the run without it. It never touched anything.
+/// Oracle: the run without the object, which never touches anything.
 #[test]
-fn what_came_and_went_leaves_no_trace() {
+fn an_object_that_was_inserted_and_removed_leaves_no_trace() {
     let mut session = coarse::session(1, &[]);
     let undisturbed = run(&mut session, 20);
     session.change(&Change::Reset(Scope::ALL)).unwrap();
@@ -92,18 +92,18 @@ fn what_came_and_went_leaves_no_trace() {
     assert_eq!(run(&mut session, 20), undisturbed);
 }
 
-/// Oracle: house rule. What cannot be is refused with a reason and changes nothing.
+/// Oracle: invalid changes are rejected with a reason and change nothing.
 #[test]
-fn there_must_be_room() {
+fn overlapping_and_unknown_objects_are_rejected() {
     let mut session = coarse::session(1, &[]);
     let before = session.digest();
     for (what, position, with) in [
         ("in the table", Vec3::new(0.3, 0.0, 0.0), "the table"),
         ("in the cylinder", Vec3::new(0.0, 0.0, 0.04), "`cylinder`"),
-        ("in the bag", Vec3::new(0.0, 0.0, 0.085), "the gripper"),
+        ("in the gripper", Vec3::new(0.0, 0.0, 0.085), "the gripper"),
     ] {
-        let refused = session.change(&ball(&session, "ball", position)).unwrap_err();
-        let ChangeError::Overlap { with: found, .. } = refused else { panic!("{refused}") };
+        let rejected = session.change(&ball(&session, "ball", position)).unwrap_err();
+        let ChangeError::Overlap { with: found, .. } = rejected else { panic!("{rejected}") };
         assert_eq!(found, with, "{what}");
     }
     let taken = session.change(&ball(&session, "cylinder", Vec3::new(0.3, 0.0, 0.2)));
@@ -115,10 +115,10 @@ fn there_must_be_room() {
     assert_eq!(session.digest(), before);
 }
 
-/// Oracle: a rigid motion. Every grain and vertex keeps its place in the flange's frame; the
-/// gripper stands, and its grains stay in it. Tolerance: round-off of one rotation.
+/// Oracle: a rigid motion. Every grain and vertex keeps its position in the flange's frame; the flange
+/// stops, and no grain leaks. Tolerance: round-off of one rotation.
 #[test]
-fn the_gripper_is_carried_as_one() {
+fn the_gripper_moves_as_one_body() {
     let mut session = coarse::session(1, &[]);
     run(&mut session, 20);
     let local = |session: &Session| -> Vec<Vec3> {
@@ -134,7 +134,7 @@ fn the_gripper_is_carried_as_one() {
     let moved = before.iter().zip(&after).map(|(a, b)| (a - b).norm()).fold(0.0, Real::max);
     assert!(moved < 1e-13, "{moved} m");
     assert_eq!(session.coupled().system.state.walls[FLANGE].twist, Twist::zero());
-    // It stays where it was put, and nothing leaks: a tick would fail.
+    // It stays at this pose, and nothing leaks: a tick would fail.
     for _ in 0..20 {
         session.tick(&[]).unwrap();
     }
@@ -142,9 +142,10 @@ fn the_gripper_is_carried_as_one() {
     assert!((now.translation.vector - pose.translation.vector).norm() < 1e-12);
 }
 
-/// Oracle: the same scene as the first of a run, bit by bit; after a reset too. Ticks of the run go on.
+/// Oracle: a run that starts with the same scene, bit for bit; also after a reset. The tick count of the
+/// run continues.
 #[test]
-fn a_loaded_scene_runs_as_if_it_had_been_the_first() {
+fn a_loaded_scene_runs_like_an_initial_scene() {
     let other = ["object.shape.sphere.radius=20 mm", "object.position=[0 mm, 0 mm, 20 mm]"];
     let mut first = coarse::session(1, &other);
     let start = first.digest();
@@ -155,25 +156,25 @@ fn a_loaded_scene_runs_as_if_it_had_been_the_first() {
     let (scene, start_state) = (coarse::scene(&other), coarse::start_state().to_vec());
     let settled = SettledScene { scene, start: start_state, keeps_time: false };
     let load = Change::LoadScene(Box::new(settled.clone()));
-    // As a recording keeps it.
+    // As stored in a recording.
     session.change(&Change::from_bytes(&load.to_bytes()).unwrap()).unwrap();
     assert_eq!((session.digest(), session.time_ns(), session.run_tick().0), (start, 0, 10));
     assert_eq!(run(&mut session, 30), expected);
     assert_eq!(session.processor().counts().n_applied + session.processor().counts().n_limited, 80);
-    assert!(session.save().is_none(), "a checkpoint would be taken for the first scene's");
+    assert!(session.save().is_none(), "a checkpoint would belong to the first scene");
     session.change(&Change::Reset(Scope::ALL)).unwrap();
     assert_eq!(run(&mut session, 30), expected);
 
     let keeps = SettledScene { keeps_time: true, ..settled.clone() };
     session.change(&Change::LoadScene(Box::new(keeps))).unwrap();
-    assert_eq!(session.time_ns(), 30_000_000, "time goes on");
+    assert_eq!(session.time_ns(), 30_000_000, "time continues");
     run(&mut session, 1);
     let now = session.digest();
-    let damaged = SettledScene { start: vec![1, 2, 3], ..settled.clone() };
+    let corrupt = SettledScene { start: vec![1, 2, 3], ..settled.clone() };
     let scene = coarse::scene(&["time.tick=2 ms", "outputs.state_rate=100 Hz"]);
-    for wrong in [damaged, SettledScene { scene, ..settled }] {
-        let refused = session.change(&Change::LoadScene(Box::new(wrong)));
-        assert!(matches!(refused, Err(ChangeError::Unusable(_))), "{refused:?}");
-        assert_eq!(session.digest(), now, "nothing is changed");
+    for wrong in [corrupt, SettledScene { scene, ..settled }] {
+        let rejected = session.change(&Change::LoadScene(Box::new(wrong)));
+        assert!(matches!(rejected, Err(ChangeError::Unusable(_))), "{rejected:?}");
+        assert_eq!(session.digest(), now, "nothing has changed");
     }
 }

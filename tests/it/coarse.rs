@@ -1,5 +1,5 @@
-//! A coarse gripper: the laws of the full one with an eighth of its grains, settled once for all
-//! tests of this binary.
+//! A coarse gripper: the same laws with an eighth of the grains, settled once for all tests of this
+//! binary.
 
 use std::{path::Path, sync::OnceLock};
 
@@ -12,8 +12,8 @@ use jamgrip::{
     session::Session,
 };
 
-/// Grains twice as large as the full gripper's on a mesh twice as coarse; a light plastic cylinder
-/// with vertical walls just below the bag.
+/// Grains twice as large and a mesh twice as coarse as in the default scene; a light plastic cylinder
+/// with vertical walls just below the membrane.
 pub(crate) const TEXT: &str = "
 name: coarse
 membrane: { frequency: 8 }
@@ -31,7 +31,7 @@ flange:
 chamber: { lag: 20 ms }
 ";
 
-/// Another gripper: fewer grains on another mesh, and a ball.
+/// Another gripper: fewer grains, another mesh, and a ball.
 pub(crate) const OTHER_TEXT: &str = "
 name: other
 seed: 2
@@ -55,25 +55,25 @@ pub(crate) fn compiled(n_threads: usize, overrides: &[&str]) -> Compiled {
     Compiled::new(&scene(overrides), &parallel::ThreadPool::new(n_threads).unwrap()).unwrap()
 }
 
-/// Bytes of the settled start state.
+/// The serialized settled start state.
 pub(crate) fn start_state() -> &'static [u8] {
     static BYTES: OnceLock<Vec<u8>> = OnceLock::new();
     BYTES.get_or_init(|| Session::settle(compiled(2, &[]), &mut |_| {}).unwrap().start_state())
 }
 
-/// A run that begins settled; overrides may not concern the bag.
+/// A session that starts settled; overrides must not affect grains or membrane.
 pub(crate) fn session(n_threads: usize, overrides: &[&str]) -> Session {
     Session::from_start_state(compiled(n_threads, overrides), start_state()).unwrap()
 }
 
-/// The coupled system without the session around it; `change` may do anything to the model.
+/// The coupled system without a session; `change` may modify the model.
 pub(crate) fn coupled(change: impl FnOnce(&mut Model)) -> Coupled {
     let mut compiled = compiled(1, &[]);
     change(&mut compiled.model);
     coupled_of(compiled)
 }
 
-/// The same of a compiled scene.
+/// The coupled system of a compiled scene.
 pub(crate) fn coupled_of(compiled: Compiled) -> Coupled {
     let mut state = compiled.read_start_state(start_state()).unwrap();
     state.grains.masses.iter_mut().for_each(|it| *it *= compiled.model.density_scaling);
@@ -85,12 +85,12 @@ pub(crate) fn coupled_of(compiled: Compiled) -> Coupled {
     Coupled::new(model, plan, state, world, limits)
 }
 
-/// The flange shall go to height `z` (m) over the origin.
+/// Commands the flange to height `z` (m) above the origin.
 pub(crate) fn flange_to(z: Real) -> Command {
     Command::FlangePose(pose(Vec3::new(0.0, 0.0, z)))
 }
 
-/// A pose in the world without rotation.
+/// A pose in the world frame without rotation.
 pub(crate) fn pose(position: Vec3) -> PoseCommand {
     PoseCommand {
         frame_id: "world".to_owned(),

@@ -3,9 +3,9 @@
 use jamgrip::{
     command::{Command, PoseCommand},
     wire::{
-        from_ros::{CommandCodec, NotACommand},
+        from_ros::{CommandCodec, CommandDecodeError},
         messages::{RosMessage, jamgrip_msgs::ObjectCommand, std_msgs::Float64},
-        topics::{Common, common},
+        topics::{CommonTopic, common},
     },
 };
 use proptest::prelude::*;
@@ -16,7 +16,7 @@ fn codec() -> CommandCodec {
     synthetic::encoder().commands().clone()
 }
 
-/// Stamps as ROS can say them (ns).
+/// Stamps as ROS can say them [ns].
 fn stamps() -> impl Strategy<Value = i64> + Clone {
     i64::from(i32::MIN) * 1_000_000_000..=i64::from(i32::MAX) * 1_000_000_000
 }
@@ -75,7 +75,7 @@ proptest! {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a length")]
         let length = (message.cdr.len() as f64 * share) as usize;
         let outcome = codec.decode(message.topic, &message.cdr[..length]);
-        let is_malformed = matches!(outcome, Err(NotACommand::Malformed { .. }));
+        let is_malformed = matches!(outcome, Err(CommandDecodeError::Malformed { .. }));
         prop_assert!(is_malformed, "{:?}", outcome);
     }
 }
@@ -83,18 +83,21 @@ proptest! {
 #[test]
 fn refusals_say_what_to_do() {
     let codec = codec();
-    let vacuum = common(Common::VacuumCommand);
+    let vacuum = common(CommonTopic::VacuumCommand);
     let text = codec.decode(vacuum, &[1, 2, 3]).unwrap_err().to_string();
     assert!(
-        text.starts_with("message on /jamgrip/vacuum_cmd: its 3 bytes are no std_msgs/msg/Float64"),
+        text.starts_with(
+            "message on /jamgrip/vacuum_cmd: its 3 bytes are not a std_msgs/msg/Float64"
+        ),
         "{text}"
     );
     let strange = ObjectCommand { mode: 9, ..ObjectCommand::default() };
-    let text = codec.decode(common(Common::ObjectCommand), &strange.to_cdr()).unwrap_err();
+    let text = codec.decode(common(CommonTopic::ObjectCommand), &strange.to_cdr()).unwrap_err();
     assert_eq!(
         text.to_string(),
         "message on /jamgrip/object_cmd: mode is 9, not MODE_DRIVE (0) or MODE_RELEASE (1)"
     );
-    let text = codec.decode(common(Common::Clock), &Float64 { data: 1.0 }.to_cdr()).unwrap_err();
+    let text =
+        codec.decode(common(CommonTopic::Clock), &Float64 { data: 1.0 }.to_cdr()).unwrap_err();
     assert_eq!(text.to_string(), "message on /clock: this topic carries no commands");
 }

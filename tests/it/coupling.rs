@@ -1,5 +1,5 @@
-//! Action equals reaction: between grains, sheet, flange and object, and over a whole lift.
-#![expect(clippy::print_stderr, reason = "what was measured is shown with the result")]
+//! Balance of forces and momentum between grains, membrane, flange and object, also during a lift.
+#![expect(clippy::print_stderr, reason = "prints measured values")]
 
 use std::sync::OnceLock;
 
@@ -23,12 +23,12 @@ fn inputs(z: Real, gauge: Real) -> Inputs {
     }
 }
 
-/// A gripper that has been pushed over the object under vacuum, while the flange still moves.
+/// A gripper pushed onto the object with a vacuum, while the flange still moves.
 fn pushing() -> Coupled {
     pushing_with(1.0)
 }
 
-/// The same, with grains and sheet so many times as inert.
+/// The same with density scaling.
 fn pushing_with(scaling: Real) -> Coupled {
     let scaling = format!("time.density_scaling={scaling}");
     let mut coupled = coarse::coupled_of(coarse::compiled(1, &[&scaling]));
@@ -40,7 +40,7 @@ fn pushing_with(scaling: Real) -> Coupled {
     coupled
 }
 
-/// Momentum, and angular momentum about the origin, of grains and sheet.
+/// Momentum, and angular momentum about the origin, of grains and membrane.
 fn momenta(coupled: &Coupled) -> (Vec3, Vec3) {
     let System { model, state, .. } = &coupled.system;
     let (mut linear, mut angular) = (Vec3::zeros(), Vec3::zeros());
@@ -53,8 +53,8 @@ fn momenta(coupled: &Coupled) -> (Vec3, Vec3) {
         add(grains.masses[i], &grains.positions[i], &grains.velocities[i]);
     }
     for v in 0..state.membrane.positions.len() {
-        let sheet = &state.membrane;
-        add(model.membrane.masses[v], &sheet.positions[v], &sheet.velocities[v]);
+        let membrane = &state.membrane;
+        add(model.membrane.masses[v], &membrane.positions[v], &membrane.velocities[v]);
     }
     for i in 0..grains.len() {
         angular +=
@@ -63,7 +63,7 @@ fn momenta(coupled: &Coupled) -> (Vec3, Vec3) {
     (linear, angular)
 }
 
-/// The controls of the last substep: everything goes on as it moves.
+/// The controls of the last substep: all motions continue.
 fn held_controls(coupled: &Coupled) -> Controls {
     let mut bodies = vec![coupled.world.motion(0)];
     bodies.push(jamgrip::physics::boundary::body::BodyMotion {
@@ -78,32 +78,32 @@ fn held_controls(coupled: &Coupled) -> Controls {
 }
 
 #[test]
-fn what_the_sheet_gets_the_object_gives() {
+fn forces_on_membrane_and_object_are_opposite() {
     let coupled = pushing();
     let Scratch { sample_forces, body_wrenches, vertex_forces, patch_forces, .. } =
         &coupled.system.scratch;
     let n_samples = coupled.system.model.n_samples();
     let controls = held_controls(&coupled);
-    let mut on_sheet = Vec3::zeros();
+    let mut on_membrane = Vec3::zeros();
     for (body, of_body) in sample_forces.chunks(n_samples).enumerate() {
-        let centre = controls.bodies[body].pose.translation.vector;
+        let center = controls.bodies[body].pose.translation.vector;
         let (mut force, mut torque, mut size) = (Vec3::zeros(), Vec3::zeros(), 0.0);
         for sample in of_body.iter().filter(|sample| sample.flags.touches()) {
             force += sample.force;
-            torque += (sample.point - centre).cross(&sample.force);
+            torque += (sample.point - center).cross(&sample.force);
             size += sample.force.norm();
         }
-        on_sheet += force;
+        on_membrane += force;
         if body == 0 {
             assert!(size > 1.0, "the object is pushed with {size} N");
         }
         // Oracle: Newton's third law. Tolerance: rounding, of the sum of magnitudes; the lever arms
-        // are below 0.1 m. The object has moved on by one rigid step since, at most 10 µm.
+        // are below 0.1 m. The object has moved by one rigid-body step since, at most 10 µm.
         assert!((force + body_wrenches[body].force).norm() <= 1e-12 * size);
         let off = (torque + body_wrenches[body].torque).norm();
         assert!(off <= 1e-9 * size + 1e-5 * size, "torques differ by {off} N m");
     }
-    // What all vertices get is what bodies and grains give.
+    // The forces on all vertices are those of bodies and grains.
     let (mut on_grains, mut size) = (Vec3::zeros(), 0.0);
     for patches in patch_forces {
         for contact in &patches.contacts[..patches.n] {
@@ -112,23 +112,23 @@ fn what_the_sheet_gets_the_object_gives() {
         }
     }
     let on_vertices: Vec3 = vertex_forces.iter().sum();
-    let off = (on_vertices + on_grains - on_sheet).norm() / size;
+    let off = (on_vertices + on_grains - on_membrane).norm() / size;
     eprintln!("vertices: {off:e}");
     assert!(off < 1e-12, "{off:e}");
 }
 
 #[test]
-fn momentum_changes_by_what_flange_objects_and_gravity_give() {
-    momentum_is_kept(1.0);
+fn momentum_changes_by_the_forces_of_flange_objects_and_gravity() {
+    check_momentum(1.0);
 }
 
-/// Grains and sheet have 16 times their inertia, but the flange feels their real one.
+/// Grains and membrane have 16 times their inertia, but the flange accelerates the real mass.
 #[test]
-fn a_flange_accelerates_the_real_mass_of_heavier_grains() {
-    momentum_is_kept(16.0);
+fn a_flange_accelerates_the_real_mass_with_density_scaling() {
+    check_momentum(16.0);
 }
 
-fn momentum_is_kept(scaling: Real) {
+fn check_momentum(scaling: Real) {
     let mut coupled = pushing_with(scaling);
     let mass = measure::mass(&coupled.system.model, &coupled.system.state);
     let tick = coupled.plan.tick;
@@ -142,25 +142,25 @@ fn momentum_is_kept(scaling: Real) {
             let accelerated = coupled.system.state.walls[FLANGE].twist.linear - carried_before;
             assert!(
                 coupled.system.scratch.body_wrenches[1].force == Vec3::zeros(),
-                "the table is far"
+                "no contact with the table"
             );
-            let given = means.objects_on_gripper.force - means.gripper_on_mount.force
+            let applied = means.objects_on_gripper.force - means.gripper_on_mount.force
                 + coupled.system.model.gravity * mass;
-            // What heavier ones gain with the flange is free: they are carried along.
+            // With density scaling, a part of the acceleration comes with the moving frame of the flange.
             let carried = accelerated * mass * (1.0 - 1.0 / scaling);
             let gained = (after - before - carried) / tick;
-            worst = worst.max((gained - given).norm());
+            worst = worst.max((gained - applied).norm());
             scale = scale.max(gained.norm());
         }
     });
     eprintln!("momentum: {worst:e} N of {scale} N");
     // Oracle: Newton's second law for the whole gripper. Tolerance 1e-9: rounding of sums of
-    // thousands of forces, some of which are a hundred times the whole.
+    // thousands of forces, some of which are a hundred times the total.
     assert!(worst < 1e-9 * scale, "{worst:e} N of {scale} N missing");
 }
 
 #[test]
-fn angular_momentum_changes_by_what_flange_objects_and_gravity_give() {
+fn angular_momentum_changes_by_the_forces_of_flange_objects_and_gravity() {
     let mut coupled = pushing();
     let mut controls = held_controls(&coupled);
     let dt = coupled.system.model.substep;
@@ -173,19 +173,19 @@ fn angular_momentum_changes_by_what_flange_objects_and_gravity_give() {
             let old_flange = coupled.system.state.walls[FLANGE].pose.translation.vector;
             let System { model, state, scratch, .. } = &mut coupled.system;
             substep(model, &controls, state, scratch);
-            let mut given = weight - about_origin(&scratch.wall_wrenches[FLANGE], &old_flange);
+            let mut applied = weight - about_origin(&scratch.wall_wrenches[FLANGE], &old_flange);
             for (wrench, body) in scratch.body_wrenches.iter().zip(&controls.bodies) {
-                given -= about_origin(wrench, &body.pose.translation.vector);
+                applied -= about_origin(wrench, &body.pose.translation.vector);
             }
             let (_, after) = momenta(&coupled);
-            worst = worst.max(((after - before) / dt - given).norm());
+            worst = worst.max(((after - before) / dt - applied).norm());
             scale = scale.max(spin_torque(&coupled.system.state, &coupled.system.scratch));
         }
     });
     eprintln!("angular momentum: {worst:e} N m, torques on grains {scale} N m");
-    // Oracle: no inner force twists the whole. Tolerance 1e-9 of the torques of membrane contacts
-    // on grains: rounding.
-    assert!(worst < 1e-9 * scale, "{worst:e} of {scale} N m come from nowhere");
+    // Oracle: internal forces exert no net torque. Tolerance 1e-9 of the torques of membrane contacts on
+    // grains: rounding.
+    assert!(worst < 1e-9 * scale, "{worst:e} of {scale} N m unexplained");
 }
 
 fn about_origin(wrench: &jamgrip::base::real::Wrench, point: &Vec3) -> Vec3 {
@@ -196,19 +196,19 @@ fn moment_of_weight(coupled: &Coupled) -> Vec3 {
     let System { model, state, .. } = &coupled.system;
     let of_grains: Vec3 =
         state.grains.positions.iter().zip(&state.grains.masses).map(|(r, m)| r * *m).sum();
-    let of_sheet: Vec3 =
+    let of_membrane: Vec3 =
         state.membrane.positions.iter().zip(&model.membrane.masses).map(|(r, m)| r * *m).sum();
-    (of_grains + of_sheet).cross(&model.gravity)
+    (of_grains + of_membrane).cross(&model.gravity)
 }
 
-/// Sum of the magnitudes of the membrane's torques on grains (N m).
+/// Sum of the magnitudes of the membrane's torques on grains [N m].
 fn spin_torque(state: &State, scratch: &Scratch) -> Real {
     assert_eq!(state.grains.len(), scratch.patch_forces.len());
     scratch.patch_forces.iter().filter(|p| p.n > 0).map(|p| p.torque.norm()).sum()
 }
 
 #[test]
-fn a_gripper_at_rest_hangs_on_its_mount_with_its_weight() {
+fn the_mount_carries_the_weight_of_a_gripper_at_rest() {
     let mut session = coarse::session(1, &[]);
     let n_ticks = 100;
     let mut sum = Vec3::zeros();
@@ -219,31 +219,31 @@ fn a_gripper_at_rest_hangs_on_its_mount_with_its_weight() {
     let mean = sum / f64::from(n_ticks);
     let weight = session.coupled().system.model.gravity
         * measure::mass(&session.coupled().system.model, &session.coupled().system.state);
-    let off = (mean - weight).norm() / weight.norm();
-    eprintln!("mount at rest: {:e} of the weight off", off);
-    // Oracle: statics. Tolerance 0.5 %: what is demanded of the wrench topics.
-    assert!(off < 5e-3, "mount {mean:?}, weight {weight:?}");
+    let error = (mean - weight).norm() / weight.norm();
+    eprintln!("mount at rest: error {:e} of the weight", error);
+    // Oracle: statics. Tolerance 0.5 %: the requirement for the wrench topics.
+    assert!(error < 5e-3, "mount {mean:?}, weight {weight:?}");
 }
 
-/// What was measured while the object hung at rest.
+/// Results while the object hangs at rest.
 struct Hanging {
-    /// Mean force of the object on the gripper, flange axes (N).
+    /// Mean force of the object on the gripper, flange axes [N].
     contact: Vec3,
-    /// Mean force of all contacts on the object, world axes (N).
+    /// Mean force of all contacts on the object, world axes [N].
     on_object: Vec3,
-    /// Mean force of the gripper on its mount, flange axes (N).
+    /// Mean force of the gripper on its mount, flange axes [N].
     mount: Vec3,
-    /// Weight of the object (N).
+    /// Weight of the object [N].
     weight: Real,
-    /// Force that the object's remaining swing took, from its velocities (N).
+    /// Mean force of the object's residual swing, from its velocities [N].
     swing: Vec3,
-    /// Weight of grains and sheet (N).
+    /// Weight of grains and membrane [N].
     own_weight: Real,
-    /// Kinetic energy of grains and sheet at the end (J).
+    /// Kinetic energy of grains and membrane at the end [J].
     energy: Real,
-    /// How far the object was lifted (m).
+    /// Height by which the object was lifted [m].
     lifted: Real,
-    /// Largest depth of the object in the table while it was pushed (m).
+    /// Largest penetration of the object into the table during the push [m].
     sunk: Real,
 }
 
@@ -260,7 +260,7 @@ fn lift(session: &mut Session) -> Hanging {
         let command = match tick {
             0 => Some(coarse::flange_to(0.066)),
             160 => Some(Command::Vacuum { gauge_pa: -80e3 }),
-            // Gently, at 50 mm/s, so that the object does not swing for long.
+            // At 50 mm/s, so that the object does not swing for long.
             321..=620 => Some(coarse::flange_to(0.066 + 5e-5 * f64::from(tick - 320))),
             _ => None,
         };
@@ -273,10 +273,10 @@ fn lift(session: &mut Session) -> Hanging {
     let (mut contact, mut on_object, mut mount) = (Vec3::zeros(), Vec3::zeros(), Vec3::zeros());
     for _ in 0..n_ticks {
         session.tick(&[]).unwrap();
-        let seen = session.snapshot(Parts::default());
-        contact += seen.contact_wrench.force / f64::from(n_ticks);
-        on_object += seen.objects[0].contact_wrench.force / f64::from(n_ticks);
-        mount += seen.mount_wrench.force / f64::from(n_ticks);
+        let snapshot = session.snapshot(Parts::default());
+        contact += snapshot.contact_wrench.force / f64::from(n_ticks);
+        on_object += snapshot.objects[0].contact_wrench.force / f64::from(n_ticks);
+        mount += snapshot.mount_wrench.force / f64::from(n_ticks);
     }
     let coupled = session.coupled();
     let g = -coupled.system.model.gravity.z;
@@ -295,7 +295,7 @@ fn lift(session: &mut Session) -> Hanging {
 }
 
 #[test]
-fn a_hanging_object_weighs_what_it_weighs() {
+fn wrenches_of_a_hanging_object_are_its_weight() {
     let Hanging { contact, on_object, mount, weight, swing, own_weight, lifted, .. } = hanging();
     eprintln!(
         "lifted {lifted}, contact {}, object {}, mount {}, weights {weight} {own_weight}",
@@ -305,22 +305,22 @@ fn a_hanging_object_weighs_what_it_weighs() {
     );
     assert!(*lifted > 0.01, "lifted by {lifted} m");
     // Oracle: Newton's second law. Sign: force of the object on the gripper, so −m g. The object swings
-    // like a pendulum, hardly damped, so that its mean acceleration is part of the balance. Tolerance
-    // 0.5 %: what is demanded of the wrench topics.
+    // like a pendulum with little damping, so its mean acceleration is part of the balance. Tolerance
+    // 0.5 %: the requirement for the wrench topics.
     let up = Vec3::z() * *weight;
-    for (what, off) in [
+    for (what, error) in [
         ("contact", contact + up + swing),
         ("object", on_object - up - swing),
         ("mount", mount + up + swing + Vec3::z() * *own_weight),
     ] {
-        eprintln!("{what}: {:e} of the weight off", off.norm() / weight);
-        assert!(off.norm() < 5e-3 * weight, "{what} is off by {off:?} N");
+        eprintln!("{what}: error {:e} of the weight", error.norm() / weight);
+        assert!(error.norm() < 5e-3 * weight, "{what}: error {error:?} N");
     }
 }
 
 #[test]
-fn the_table_bears_the_push() {
-    // Oracle: a rigid table. Tolerance 0.2 mm: twice the slop of 0.1 mm that the rigid world allows.
+fn the_object_does_not_sink_into_the_table() {
+    // Oracle: a rigid table. Tolerance 0.2 mm: twice the slop of 0.1 mm that rapier allows.
     let sunk = hanging().sunk;
     eprintln!("sunk {sunk:e} m");
     assert!(sunk < 2e-4, "the object sank into the table by {sunk} m");
@@ -328,9 +328,9 @@ fn the_table_bears_the_push() {
 
 #[test]
 fn a_jammed_gripper_comes_to_rest() {
-    // Oracle: nothing drives it any more. Bound: a single vertex of 19 mg that rings at 0.5 m/s
-    // has 2e-6 J; grains at rest have far less.
+    // Oracle: no energy is supplied. Bound: a single vertex of 19 mg that oscillates at 0.5 m/s has
+    // 2e-6 J; grains at rest have far less.
     let energy = hanging().energy;
     eprintln!("energy at rest {energy:e} J");
-    assert!(energy < 2e-6, "the sheet still rings with {energy:e} J");
+    assert!(energy < 2e-6, "kinetic energy {energy:e} J");
 }

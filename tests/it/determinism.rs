@@ -42,7 +42,7 @@ fn one_two_and_seven_threads_give_the_same_bits_and_so_does_a_second_run() {
     let push = session.means().membrane_on_objects[0].force.norm();
     assert!(push > 1.0, "pushed with {push} N");
     assert!(session.coupled().system.state.gauge < -50e3);
-    assert!(session.coupled().system.scratch.neighbours.n_builds > 1, "lists were built again");
+    assert!(session.coupled().system.scratch.neighbors.n_builds > 1, "lists were built again");
     for n_threads in [1, 2, 7] {
         // Oracle: the first run, to the last bit.
         assert_eq!(script(&mut coarse::session(n_threads, &[])), expected, "{n_threads} threads");
@@ -173,7 +173,7 @@ fn coupled_script(mut coupled: Coupled) -> (Vec<u64>, u64) {
             digests.push(digest.finish());
         }
     });
-    (digests, coupled.system.scratch.neighbours.n_builds)
+    (digests, coupled.system.scratch.neighbors.n_builds)
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Sinks behind their queues: order, dropping, waiting, failure, panic, hanging, closing.
+//! Sinks behind their queues: order, drops, waiting, failures, panics, hanging, closing.
 
 use std::{
     error::Error,
@@ -16,57 +16,57 @@ use jamgrip::io::{
 
 use crate::synthetic;
 
-/// Longer than anything here takes; only a fault makes a test wait so long.
+/// Longer than anything here takes; it only expires if a test fails.
 const TIMEOUT: Duration = Duration::from_secs(60);
 
-type Outcome = Result<(), Box<dyn Error + Send + Sync>>;
+type WriteResult = Result<(), Box<dyn Error + Send + Sync>>;
 
-/// What a memory sink has seen.
+/// The ticks that a memory sink has received.
 #[derive(Clone, Default)]
-struct Seen(Arc<Mutex<Vec<u64>>>);
+struct Received(Arc<Mutex<Vec<u64>>>);
 
-impl Seen {
+impl Received {
     fn ticks(&self) -> Vec<u64> {
         self.0.lock().unwrap().clone()
     }
 }
 
-/// Keeps the ticks it is given; `at_write` and `at_close` decide how it behaves.
+/// Stores the ticks it receives; `at_write` and `at_close` determine its behavior.
 struct Memory<W, C> {
-    seen: Seen,
+    received: Received,
     at_write: W,
     at_close: C,
 }
 
 impl<W, C> Sink for Memory<W, C>
 where
-    W: FnMut(u64) -> Outcome + Send,
-    C: FnMut() -> Outcome + Send,
+    W: FnMut(u64) -> WriteResult + Send,
+    C: FnMut() -> WriteResult + Send,
 {
     fn name(&self) -> &'static str {
         "memory"
     }
 
-    fn write(&mut self, packet: &Packet) -> Outcome {
+    fn write(&mut self, packet: &Packet) -> WriteResult {
         let tick = packet.snapshot.tick.0;
         (self.at_write)(tick)?;
-        self.seen.0.lock().unwrap().push(tick);
+        self.received.0.lock().unwrap().push(tick);
         Ok(())
     }
 
-    fn close(&mut self) -> Outcome {
+    fn close(&mut self) -> WriteResult {
         (self.at_close)()
     }
 }
 
-fn start<W>(delivery: Delivery, at_write: W) -> (Fanout, Seen)
+fn start<W>(delivery: Delivery, at_write: W) -> (Fanout, Received)
 where
-    W: FnMut(u64) -> Outcome + Send + 'static,
+    W: FnMut(u64) -> WriteResult + Send + 'static,
 {
-    let (mut fanout, seen) = (Fanout::new(), Seen::default());
-    let sink = Memory { seen: seen.clone(), at_write, at_close: || Ok(()) };
+    let (mut fanout, received) = (Fanout::new(), Received::default());
+    let sink = Memory { received: received.clone(), at_write, at_close: || Ok(()) };
     fanout.add(Box::new(sink), delivery).unwrap();
-    (fanout, seen)
+    (fanout, received)
 }
 
 fn publish(fanout: &Fanout, ticks: std::ops::RangeInclusive<u64>) {
@@ -75,136 +75,136 @@ fn publish(fanout: &Fanout, ticks: std::ops::RangeInclusive<u64>) {
     }
 }
 
-/// A sink that waits at each packet until it is allowed to go on, and says that it waits.
-fn gate() -> (impl FnMut(u64) -> Outcome + Send, Receiver<u64>, Sender<()>) {
-    let (arrived, at_gate) = channel();
+/// A sink that waits at each packet until it may continue, and reports that it waits.
+fn gate() -> (impl FnMut(u64) -> WriteResult + Send, Receiver<u64>, Sender<()>) {
+    let (arrived, arrivals) = channel();
     let (open, opened) = channel::<()>();
     let at_write = move |tick| {
         arrived.send(tick).unwrap();
         opened.recv()?;
         Ok(())
     };
-    (at_write, at_gate, open)
+    (at_write, arrivals, open)
 }
 
 #[test]
 fn every_packet_arrives_in_order() {
-    let (fanout, seen) = start(Delivery::Every { depth: 4 }, |_| Ok(()));
+    let (fanout, received) = start(Delivery::Every { depth: 4 }, |_| Ok(()));
     publish(&fanout, 1..=500);
-    let (ends, faults) = fanout.close(TIMEOUT);
+    let (ends, errors) = fanout.close(TIMEOUT);
     // Oracle: what was published; `Every` may drop nothing.
-    assert_eq!(seen.ticks(), (1..=500).collect::<Vec<u64>>());
-    assert!(ends[0].is_closed && faults.is_empty());
+    assert_eq!(received.ticks(), (1..=500).collect::<Vec<u64>>());
+    assert!(ends[0].is_closed && errors.is_empty());
     let counters = &ends[0].counters;
     assert_eq!((counters.n_written, counters.n_dropped, counters.n_failed), (500, 0, 0));
 }
 
 #[test]
-fn a_slow_sink_gets_the_latest_and_drops_are_counted() {
-    let (at_write, at_gate, open) = gate();
-    let (fanout, seen) = start(Delivery::Latest { depth: 3 }, at_write);
+fn a_slow_sink_receives_the_latest_and_drops_are_counted() {
+    let (at_write, arrivals, open) = gate();
+    let (fanout, received) = start(Delivery::Latest { depth: 3 }, at_write);
     publish(&fanout, 1..=1);
-    assert_eq!(at_gate.recv_timeout(TIMEOUT), Ok(1), "the sink works on tick 1");
-    // This returns although the sink stands still: physics is never slowed.
+    assert_eq!(arrivals.recv_timeout(TIMEOUT), Ok(1), "the sink is writing tick 1");
+    // This returns although the sink is blocked: the physics is never slowed.
     publish(&fanout, 2..=10);
     assert_eq!(fanout.counters()[0].n_dropped, 6);
     (0..4).for_each(|_| open.send(()).unwrap());
     let (ends, _) = fanout.close(TIMEOUT);
-    // Oracle: the packet in hand, then the three latest of those that came meanwhile.
-    assert_eq!(seen.ticks(), [1, 8, 9, 10]);
+    // Oracle: the packet being written, then the three latest of those that followed.
+    assert_eq!(received.ticks(), [1, 8, 9, 10]);
     let counters = &ends[0].counters;
     assert_eq!((counters.n_written, counters.n_dropped, counters.n_failed), (4, 6, 0));
 }
 
 #[test]
-fn a_full_queue_of_every_makes_the_run_wait() {
-    let (at_write, at_gate, open) = gate();
-    let (fanout, seen) = start(Delivery::Every { depth: 2 }, at_write);
-    let (said, published) = channel();
+fn a_full_queue_with_every_delivery_makes_the_run_wait() {
+    let (at_write, arrivals, open) = gate();
+    let (fanout, received) = start(Delivery::Every { depth: 2 }, at_write);
+    let (sent, published) = channel();
     let run = std::thread::spawn(move || {
         for tick in 1..=6 {
             fanout.publish(&synthetic::packet(tick));
-            said.send(tick).unwrap();
+            sent.send(tick).unwrap();
         }
         fanout.close(TIMEOUT)
     });
-    assert_eq!(at_gate.recv_timeout(TIMEOUT), Ok(1));
-    // One packet is in hand and two are queued; the fourth waits until the gate opens.
+    assert_eq!(arrivals.recv_timeout(TIMEOUT), Ok(1));
+    // One packet is being written and two are queued; the fourth waits until the gate opens.
     for tick in 1..=3 {
         assert_eq!(published.recv_timeout(TIMEOUT), Ok(tick));
     }
     assert!(published.try_recv().is_err(), "the fourth packet must wait");
     (0..6).for_each(|_| open.send(()).unwrap());
     let (ends, _) = run.join().unwrap();
-    assert_eq!(seen.ticks(), [1, 2, 3, 4, 5, 6]);
+    assert_eq!(received.ticks(), [1, 2, 3, 4, 5, 6]);
     assert_eq!(ends[0].counters.n_dropped, 0);
 }
 
 #[test]
-fn a_failing_sink_is_counted_and_goes_on() {
+fn a_failing_sink_is_counted_and_stays_in_use() {
     let at_write = |tick| if tick % 2 == 0 { Err("disk on fire".into()) } else { Ok(()) };
-    let (fanout, seen) = start(Delivery::Every { depth: 8 }, at_write);
+    let (fanout, received) = start(Delivery::Every { depth: 8 }, at_write);
     publish(&fanout, 1..=10);
-    let (ends, faults) = fanout.close(TIMEOUT);
-    assert_eq!(seen.ticks(), [1, 3, 5, 7, 9]);
+    let (ends, errors) = fanout.close(TIMEOUT);
+    assert_eq!(received.ticks(), [1, 3, 5, 7, 9]);
     let counters = &ends[0].counters;
     assert_eq!((counters.n_written, counters.n_failed), (5, 5));
-    // The same complaint five times is one.
-    assert_eq!(faults.len(), 1);
-    assert_eq!((faults[0].sink, faults[0].text.as_str()), ("memory", "disk on fire"));
+    // The same error five times is reported once.
+    assert_eq!(errors.len(), 1);
+    assert_eq!((errors[0].sink, errors[0].text.as_str()), ("memory", "disk on fire"));
 }
 
 #[test]
-fn a_sink_that_panics_is_out_and_the_others_go_on() {
+fn a_sink_that_panics_is_removed_and_the_others_continue() {
     let at_write = |tick| {
         assert!(tick < 3, "bug at tick {tick}");
         Ok(())
     };
     let (mut fanout, broken) = start(Delivery::Every { depth: 2 }, at_write);
-    let healthy = Seen::default();
-    let sink = Memory { seen: healthy.clone(), at_write: |_| Ok(()), at_close: || Ok(()) };
+    let healthy = Received::default();
+    let sink = Memory { received: healthy.clone(), at_write: |_| Ok(()), at_close: || Ok(()) };
     fanout.add(Box::new(sink), Delivery::Every { depth: 2 }).unwrap();
-    // `Every` must not wait for a sink that is gone: this returns.
+    // `Every` must not wait for a sink that has panicked: this returns.
     publish(&fanout, 1..=20);
-    let (ends, faults) = fanout.close(TIMEOUT);
+    let (ends, errors) = fanout.close(TIMEOUT);
     assert_eq!(broken.ticks(), [1, 2]);
     assert_eq!(healthy.ticks().len(), 20);
     assert_eq!((ends[0].counters.n_written, ends[0].counters.n_failed), (2, 18));
-    assert_eq!(faults.len(), 1);
-    assert!(faults[0].text.contains("bug at tick 3"), "{}", faults[0].text);
+    assert_eq!(errors.len(), 1);
+    assert!(errors[0].text.contains("bug at tick 3"), "{}", errors[0].text);
 }
 
 #[test]
-fn a_sink_that_hangs_is_left_behind() {
-    let (at_write, at_gate, open) = gate();
+fn a_sink_that_hangs_is_abandoned() {
+    let (at_write, arrivals, open) = gate();
     let (fanout, _) = start(Delivery::Latest { depth: 4 }, at_write);
     publish(&fanout, 1..=3);
-    at_gate.recv_timeout(TIMEOUT).unwrap();
-    let (ends, faults) = fanout.close(Duration::from_millis(50));
+    arrivals.recv_timeout(TIMEOUT).unwrap();
+    let (ends, errors) = fanout.close(Duration::from_millis(50));
     assert!(!ends[0].is_closed);
-    assert!(faults[0].text.contains("left behind with 2 results unwritten"), "{}", faults[0].text);
+    assert!(errors[0].text.contains("abandoned with 2 results unwritten"), "{}", errors[0].text);
     drop(open); // lets its thread end
 }
 
 #[test]
-fn a_fault_while_closing_is_told() {
+fn an_error_while_closing_is_reported() {
     let mut fanout = Fanout::new();
     let at_close = || Err("no room for the index".into());
-    let sink = Memory { seen: Seen::default(), at_write: |_| Ok(()), at_close };
+    let sink = Memory { received: Received::default(), at_write: |_| Ok(()), at_close };
     fanout.add(Box::new(sink), Delivery::Latest { depth: 4 }).unwrap();
     publish(&fanout, 1..=1);
-    let (ends, faults) = fanout.close(TIMEOUT);
+    let (ends, errors) = fanout.close(TIMEOUT);
     assert!(ends[0].is_closed);
-    assert_eq!(faults[0].text, "no room for the index");
+    assert_eq!(errors[0].text, "no room for the index");
 }
 
 #[test]
 fn queued_packets_are_written_before_closing() {
-    let (at_write, at_gate, open) = gate();
-    let (fanout, seen) = start(Delivery::Latest { depth: 8 }, at_write);
+    let (at_write, arrivals, open) = gate();
+    let (fanout, received) = start(Delivery::Latest { depth: 8 }, at_write);
     publish(&fanout, 1..=5);
-    at_gate.recv_timeout(TIMEOUT).unwrap();
+    arrivals.recv_timeout(TIMEOUT).unwrap();
     (0..5).for_each(|_| open.send(()).unwrap());
     fanout.close(TIMEOUT);
-    assert_eq!(seen.ticks(), [1, 2, 3, 4, 5]);
+    assert_eq!(received.ticks(), [1, 2, 3, 4, 5]);
 }

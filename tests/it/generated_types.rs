@@ -1,4 +1,4 @@
-//! The checked-in message types are what `roslibrust_codegen` reads in `msgs/`.
+//! The checked-in message types match the message files in `msgs/`, as parsed by `roslibrust_codegen`.
 //!
 //! After a change of a .msg file: `JAMGRIP_UPDATE=1 cargo test --release generated_types`.
 
@@ -15,8 +15,8 @@ const GENERATED: &str = "src/wire/messages/generated.rs";
 const SEPARATOR: &str =
     "================================================================================";
 
-/// Hashes that the library computes wrongly, because it takes `byte` for a nested type. These are
-/// the ones of the type store of PyPI's `rosbags`; `peers.rs` compares all hashes with it.
+/// Hashes that the library computes incorrectly, because it treats `byte` as a nested type. These values
+/// are from the type store of PyPI's `rosbags`; `peers.rs` compares all hashes with it.
 const HASHES_OF_TYPES_WITH_BYTE: [(&str, &str); 5] = [
     (
         "diagnostic_msgs/DiagnosticArray",
@@ -43,23 +43,23 @@ const HASHES_OF_TYPES_WITH_BYTE: [(&str, &str); 5] = [
 type Messages = BTreeMap<String, MessageFile>;
 
 #[test]
-fn checked_in_types_are_those_of_the_message_files() {
+fn checked_in_types_match_the_message_files() {
     let expected = source(&messages());
     if std::env::var_os("JAMGRIP_UPDATE").is_some() {
         fs::write(GENERATED, &expected).unwrap();
     }
     let found = fs::read_to_string(GENERATED).unwrap();
-    // Oracle: the types generated anew.
+    // Oracle: the newly generated types.
     assert!(
         found == expected,
-        "{GENERATED} is not what msgs/ says; \
-         run `JAMGRIP_UPDATE=1 cargo test --release generated_types` and look at the difference"
+        "{GENERATED} does not match msgs/; \
+         run `JAMGRIP_UPDATE=1 cargo test --release generated_types` and review the difference"
     );
 }
 
 /// All messages of `msgs/`, by `package/Type`.
 ///
-/// The library wants one folder with a package.xml per package, so the files are copied to such.
+/// The library expects one folder with a package.xml per package, so the files are copied into such folders.
 fn messages() -> Messages {
     let staging = tempfile::tempdir().unwrap();
     stage(Path::new("msgs/msg"), "jamgrip_msgs", staging.path());
@@ -81,12 +81,12 @@ fn messages() -> Messages {
     all.filter(|(name, _)| ours.contains(name)).collect()
 }
 
-/// The folders in `folder`, in order.
+/// The folders in `folder`, sorted.
 fn packages(folder: &str) -> Vec<PathBuf> {
     files(Path::new(folder)).into_iter().filter(|it| it.is_dir()).collect()
 }
 
-/// What is in `folder`, in order; nothing if it is not there.
+/// The entries of `folder`, sorted; none if it does not exist.
 fn files(folder: &Path) -> Vec<PathBuf> {
     let entries = fs::read_dir(folder).into_iter().flatten();
     let mut files: Vec<PathBuf> = entries.map(|entry| entry.unwrap().path()).collect();
@@ -103,8 +103,8 @@ fn parts(file: &Path) -> &'static [&'static str] {
     }
 }
 
-/// Each part of a service or an action is staged as a message of its own. ROS 2 puts one byte
-/// into parts that have no fields.
+/// Stages each part of a service or an action as a separate message. ROS 2 adds one byte to parts
+/// without fields.
 fn stage_parts(file: &Path, messages: &Path) {
     let text = fs::read_to_string(file).unwrap();
     let stem = file.file_stem().unwrap().to_str().unwrap();
@@ -139,7 +139,7 @@ fn stage(messages: &Path, package: &str, staging: &Path) {
     }
 }
 
-/// The whole generated file.
+/// The generated file.
 fn source(messages: &Messages) -> String {
     let mut out = String::from(
         "//! ROS 2 message types: generated from `msgs/`, never edited by hand.\n\
@@ -175,7 +175,7 @@ fn source(messages: &Messages) -> String {
     out
 }
 
-/// Module `srv`: one empty type per service, which names its halves.
+/// Module `srv`: one empty type per service, which names its request and response.
 fn services_module(package: &str, services: &[PathBuf]) -> String {
     let mut out = String::new();
     if services.is_empty() {
@@ -308,7 +308,7 @@ fn description(message: &MessageFile, messages: &Messages) -> String {
     )
 }
 
-/// Text of a message and of all it contains, each once, in the order they are met.
+/// Text of a message and of all messages it contains, each once, in order of first use.
 fn definition(message: &MessageFile, messages: &Messages) -> String {
     let mut contained: Vec<String> = Vec::new();
     let mut open = vec![message];
@@ -361,7 +361,7 @@ fn rust_primitive(ros: &str) -> &'static str {
     }
 }
 
-/// True for lists of bytes, which are written as one block.
+/// True for lists of bytes, which are serialized as one block.
 fn is_bytes(field: &FieldInfo) -> bool {
     rust_type(field) == "Vec<u8>"
 }
@@ -384,7 +384,7 @@ fn doc(out: &mut String, depth: usize, line: &str) {
     writeln!(out, "{}", format!("{indent}/// {text}").trim_end()).unwrap();
 }
 
-/// What a .msg file says in words: on top about itself, then above each line about that line.
+/// The comments of a .msg file: those at the top, and those above each field or constant.
 struct Comments {
     head: Vec<String>,
     of: BTreeMap<String, Vec<String>>,
@@ -411,7 +411,7 @@ impl Comments {
         Self { head, of }
     }
 
-    /// The comment of a line; its declaration if it has none.
+    /// Writes the comment of a field or constant, or its declaration if there is none.
     fn write(&self, out: &mut String, name: &str, declaration: &str) {
         match self.of.get(name).filter(|lines| !lines.is_empty()) {
             Some(lines) => lines.iter().for_each(|line| doc(out, 2, line)),

@@ -1,5 +1,5 @@
-//! Grains by themselves: what rigid-body mechanics and Hertz say about one, two and three of them.
-#![expect(clippy::print_stderr, reason = "what was measured is shown with the result")]
+//! One, two and three grains against rigid-body mechanics and Hertz.
+#![expect(clippy::print_stderr, reason = "prints measured values")]
 
 use std::f64::consts::PI;
 
@@ -13,18 +13,18 @@ use crate::rig::{G, GRAIN, Rig, elastic, hertz_constant};
 
 const RADIUS: Real = 2e-3;
 
-/// Runs on one thread, where forking costs next to nothing.
-fn alone(test: impl FnOnce() + Send) {
+/// Runs `test` on one thread, which is fastest for so few grains.
+fn on_one_thread(test: impl FnOnce() + Send) {
     parallel::lead(&parallel::ThreadPool::new(1).unwrap(), test);
 }
 
-/// Overlap at which the plate carries a grain's weight: Hertz, ξ = (m g / k)^(2/3).
+/// Overlap (m) at which the plate carries a grain's weight: Hertz, ξ = (m g / k)^(2/3).
 fn resting_overlap(rig: &Rig) -> Real {
     let weight = rig.state.grains.masses[0] * G;
     (weight / hertz_constant(&rig.model.walls[0].law, RADIUS)).powf(2.0 / 3.0)
 }
 
-/// One grain that lies on the plate in equilibrium, `tilt` (rad) about y.
+/// One grain in equilibrium on the plate, `tilt` (rad) about y.
 fn resting(surface: Surface, tilt: Real) -> Rig {
     let mut rig = Rig::on_plate(&GRAIN, surface, 1e-5);
     rig.model.gravity = Vec3::new(tilt.sin(), 0.0, -tilt.cos()) * G;
@@ -35,7 +35,7 @@ fn resting(surface: Surface, tilt: Real) -> Rig {
 
 #[test]
 fn a_sliding_grain_starts_to_roll() {
-    alone(|| {
+    on_one_thread(|| {
         let surface = Surface { friction: 0.25, dissipation_time: 5e-5, tangential_damping: 0.3 };
         let mut rig = resting(surface, 0.0);
         let v0 = 0.1;
@@ -49,7 +49,7 @@ fn a_sliding_grain_starts_to_roll() {
                 (rig.state.grains.velocities[0].x, rig.state.grains.angular_velocities[0].y);
             if (0.1..0.95).contains(&(time / rolling_at)) {
                 // Oracle: v = v0 − μ g t, ω = 5/2 μ g t / R. Tolerance 0.2 %: the lever arm is
-                // R − ξ/2 with ξ/R = 0.1 %, and the spring takes the first 0.1 ms to stretch.
+                // R − ξ/2 with ξ/R = 0.1 %, and the spring needs the first 0.1 ms to stretch.
                 assert!((v / (v0 - 0.25 * G * time) - 1.0).abs() < 2e-3, "v {v} at {time}");
                 let expected = 2.5 * 0.25 * G * time / RADIUS;
                 assert!(spin > 0.0, "rolls forward");
@@ -70,7 +70,7 @@ fn a_sliding_grain_starts_to_roll() {
 
 #[test]
 fn a_grain_rolls_or_slips_down_an_incline() {
-    alone(|| {
+    on_one_thread(|| {
         let surface = Surface { friction: 0.25, dissipation_time: 5e-5, tangential_damping: 0.3 };
         // Oracle: a = 5/7 g sin θ while tan θ < 7/2 μ = 0.875, else g (sin θ − μ cos θ).
         for (tan, slips) in [(0.4, false), (1.5, true)] {
@@ -88,15 +88,15 @@ fn a_grain_rolls_or_slips_down_an_incline() {
                 5.0 / 7.0 * G * tilt.sin()
             };
             eprintln!("incline tan {tan}: a/expected {}", a / expected);
-            // Tolerance 0.3 %: lever arm R − ξ/2, and the spring's first stretch out of 40 ms.
+            // Tolerance 0.3 %: lever arm R − ξ/2, and the initial stretch of the spring in 40 ms.
             assert!((a / expected - 1.0).abs() < 3e-3, "{a} instead of {expected}");
         }
     });
 }
 
 #[test]
-fn weight_sinks_into_the_plate_as_hertz_says() {
-    alone(|| {
+fn the_resting_overlap_is_that_of_hertz() {
+    on_one_thread(|| {
         let surface = Surface { friction: 0.25, dissipation_time: 1e-4, tangential_damping: 0.3 };
         let mut rig = resting(surface, 0.0);
         let expected = resting_overlap(&rig);
@@ -106,36 +106,36 @@ fn weight_sinks_into_the_plate_as_hertz_says() {
         }
         let overlap = RADIUS - rig.state.grains.positions[0].z;
         eprintln!("resting overlap / Hertz − 1 = {:e}", overlap / expected - 1.0);
-        // Tolerance: R − z loses 1e-13 of the overlap; the bounce has died out to e^−40.
+        // Tolerance: R − z loses 1e-13 of the overlap; the bounce has decayed to e^−40.
         assert!((overlap / expected - 1.0).abs() < 1e-9, "{overlap:e} instead of {expected:e}");
     });
 }
 
 #[test]
-fn a_grain_that_may_not_roll_sticks_below_the_angle_of_friction_and_does_not_creep() {
-    alone(|| {
+fn a_grain_that_cannot_roll_sticks_below_the_friction_angle_and_does_not_creep() {
+    on_one_thread(|| {
         let surface = Surface { friction: 0.25, dissipation_time: 1e-4, tangential_damping: 0.3 };
-        // Place and speed at half time and at the end.
+        // Position and velocity at half time and at the end.
         let slide = |share: Real, n_steps: usize| {
             let mut rig = resting(surface, Real::atan(share * 0.25));
-            let mut seen = Vec::new();
+            let mut samples = Vec::new();
             for _ in 0..2 {
                 for _ in 0..n_steps / 2 {
                     rig.step();
                     rig.state.grains.angular_velocities[0] = Vec3::zeros();
                 }
                 let grains = &rig.state.grains;
-                seen.push((grains.positions[0].x, grains.velocities[0].x));
+                samples.push((grains.positions[0].x, grains.velocities[0].x));
             }
-            (seen[0], seen[1])
+            (samples[0], samples[1])
         };
-        // Oracle: Coulomb. Below the angle of friction the place after 10^5 more steps is the same
-        // to rounding of positions of a millimetre, 2e-19 m per step at worst.
+        // Oracle: Coulomb. Below the friction angle, the position after 10^5 more steps is the same to
+        // rounding of positions of a millimeter, 2e-19 m per step at worst.
         let ((halfway, _), (end, _)) = slide(0.9, 200_000);
         eprintln!("creep {:e} m in 1e5 steps", end - halfway);
         assert!((end - halfway).abs() < 1e-15, "crept {:e} m", end - halfway);
-        // Above it, it slides with a = g (sin θ − μ cos θ). Tolerance 0.1 %: the plate's reaction
-        // still swings by that much after the start.
+        // Above it, the grain slides with a = g (sin θ − μ cos θ). Tolerance 0.1 %: the plate's reaction
+        // still oscillates by this amount after the start.
         let ((_, first), (_, last)) = slide(1.2, 20_000);
         let tilt = Real::atan(0.3);
         let expected = G * (tilt.sin() - 0.25 * tilt.cos()) * 10_000.0 * 1e-5;
@@ -146,7 +146,7 @@ fn a_grain_that_may_not_roll_sticks_below_the_angle_of_friction_and_does_not_cre
 }
 
 #[test]
-fn oblique_impact_follows_the_table() {
+fn oblique_impacts_match_the_table() {
     // Oracle: independent integration of the law for ν = 0.245, μ = 0.25, A = 0, γ_t = 0 on a rigid
     // plane; (angle from the normal, e_t, −R ω'/v). Tolerance 1 % of e_t, and 1 % of the largest
     // spin, since the smallest ones are differences.
@@ -161,7 +161,7 @@ fn oblique_impact_follows_the_table() {
         (70.0, 0.8180, 0.4275),
         (80.0, 0.9118, 0.2171),
     ];
-    alone(|| {
+    on_one_thread(|| {
         // Hard and slow, so that overlap and lever arm do not matter: the table is for ξ ≪ R.
         let hard = Material { youngs_modulus: 1e10, ..GRAIN };
         let speed = 0.1;
@@ -184,7 +184,7 @@ fn oblique_impact_follows_the_table() {
             );
             assert!((found / e_t - 1.0).abs() < 0.01, "{angle}°: e_t {found} instead of {e_t}");
             assert!((rolled - spin).abs() < 0.01 * 0.7564, "{angle}°: {rolled} instead of {spin}");
-            // Oracle: friction only takes energy. Tolerance: error of 3000 steps.
+            // Oracle: friction only dissipates energy. Tolerance: error of 3000 steps.
             assert!(after < before * (1.0 + 1e-4), "energy grew by {:e}", after / before - 1.0);
         }
     });
@@ -192,7 +192,7 @@ fn oblique_impact_follows_the_table() {
 
 #[test]
 fn two_unequal_grains_conserve_momentum_and_angular_momentum() {
-    alone(|| {
+    on_one_thread(|| {
         let surface = Surface { friction: 0.25, dissipation_time: 7e-6, tangential_damping: 0.3 };
         let mut rig = Rig::on_plate(&GRAIN, surface, 1e-6);
         let high = Vec3::new(0.0, 0.0, 0.01);
@@ -201,34 +201,34 @@ fn two_unequal_grains_conserve_momentum_and_angular_momentum() {
         rig.state.grains.angular_velocities[0] = Vec3::new(30.0, -60.0, 100.0);
         let (momentum, _) = rig.momenta();
         let mass: Real = rig.state.grains.masses.iter().sum();
-        let about_centre = |rig: &Rig| {
+        let about_center = |rig: &Rig| {
             let (linear, angular) = rig.momenta();
             let grains = &rig.state.grains;
             let moment =
                 grains.positions[0] * grains.masses[0] + grains.positions[1] * grains.masses[1];
             angular - (moment / mass).cross(&linear)
         };
-        let turning = about_centre(&rig);
+        let spin_before = about_center(&rig);
         let mut touched = 0;
         for _ in 0..3000 {
             rig.step();
             touched += usize::from(rig.scratch.pair_flags.iter().any(|it| it.touches()));
         }
-        assert!(touched > 100, "the grains meet");
-        assert!((rig.state.grains.velocities[1] - Vec3::zeros()).norm() > 0.1, "and part");
+        assert!(touched > 100, "the grains collide");
+        assert!((rig.state.grains.velocities[1] - Vec3::zeros()).norm() > 0.1, "and separate");
         // Oracle: Newton's third law. Tolerance: rounding over the collision's steps.
         let (now, _) = rig.momenta();
         let lost = (now - momentum).norm() / momentum.norm();
-        let twisted = (about_centre(&rig) - turning).norm() / turning.norm();
-        eprintln!("momentum {lost:e}, angular momentum {twisted:e}");
+        let gained = (about_center(&rig) - spin_before).norm() / spin_before.norm();
+        eprintln!("momentum {lost:e}, angular momentum {gained:e}");
         assert!(lost < 1e-13, "momentum changed by {lost:e}");
-        assert!(twisted < 1e-12, "angular momentum changed by {twisted:e}");
+        assert!(gained < 1e-12, "angular momentum changed by {gained:e}");
     });
 }
 
 #[test]
-fn an_elastic_stack_keeps_its_energy_over_a_hundred_contacts() {
-    alone(|| {
+fn an_elastic_stack_conserves_energy_over_a_hundred_contacts() {
+    on_one_thread(|| {
         let mut rig = Rig::on_plate(&GRAIN, elastic(0.0), 1e-6);
         rig.model.gravity = Vec3::z() * -G;
         rig.add_grain(Vec3::z() * 2.5e-3, Vec3::zeros(), RADIUS, GRAIN.density);
@@ -251,15 +251,15 @@ fn an_elastic_stack_keeps_its_energy_over_a_hundred_contacts() {
             touches = touching;
         }
         eprintln!("energy drift {worst:e}");
-        // Oracle: conservation of energy. Tolerance 1e-4: the bound set for this scheme at 1000
-        // steps per contact.
+        // Oracle: conservation of energy. Tolerance 1e-4: the bound for this scheme at 1000 steps
+        // per contact.
         assert!(worst < 1e-4, "energy changed by {worst:e}");
     });
 }
 
 #[test]
-fn impact_on_the_plate_has_the_restitution_of_the_theory() {
-    alone(|| {
+fn impact_on_the_plate_has_the_theoretical_restitution() {
+    on_one_thread(|| {
         // Oracle: series of Müller & Pöschel (2011) for the law with F ≥ 0, as a rational function of
         // v* = √β v^(1/10), β = 3/2 A (k/m)^(2/5). Here for a grain on a plane: m* = m, R* = R.
         // Tolerance 0.2 %: semi-implicit Euler at about 1000 steps per contact.

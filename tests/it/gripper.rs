@@ -1,5 +1,5 @@
-//! The gripper experiment at an eighth of its grains: phases, holding force with and without vacuum,
-//! and runs that are broken off and resumed.
+//! The gripper experiment with an eighth of the grains: phases, holding force with and without vacuum,
+//! and runs that are interrupted and resumed.
 
 use std::sync::OnceLock;
 
@@ -7,7 +7,7 @@ use jamgrip::experiments::{
     Experiment, Plan, Run, SceneText, Size, findings::Findings, gripper::Gripper, record::Record,
 };
 
-/// Grains twice as large on a mesh twice as coarse, an object half as large again, fast strokes.
+/// Grains twice as large, a mesh twice as coarse, an object larger by half, and fast motions.
 const COARSE: [&str; 14] = [
     "membrane.frequency=8",
     "grains.count=525",
@@ -33,7 +33,7 @@ fn plan() -> Box<dyn Plan> {
     Gripper.read(&scene).unwrap()
 }
 
-/// Runs a case to its end; each time `is_break` says so after a slice, it goes on in a fresh run.
+/// Runs a case to its end. Whenever `is_break` is true after a slice, a new run resumes the case.
 fn run(plan: &dyn Plan, mut is_break: impl FnMut(usize, &str) -> bool) -> Record {
     let mut run: Box<dyn Run> = plan.start(CASE).unwrap();
     for slice in 0.. {
@@ -41,7 +41,7 @@ fn run(plan: &dyn Plan, mut is_break: impl FnMut(usize, &str) -> bool) -> Record
         if progress.is_done {
             break;
         }
-        if is_break(slice, progress.stage) {
+        if is_break(slice, progress.phase) {
             let bytes = run.save();
             run = plan.start(CASE).unwrap();
             run.resume(&bytes).unwrap();
@@ -50,23 +50,23 @@ fn run(plan: &dyn Plan, mut is_break: impl FnMut(usize, &str) -> bool) -> Record
     run.record()
 }
 
-/// The case without any break, computed once.
-fn whole() -> &'static Record {
+/// The uninterrupted case, computed once.
+fn uninterrupted() -> &'static Record {
     static RECORD: OnceLock<Record> = OnceLock::new();
     RECORD.get_or_init(|| run(&*plan(), |_, _| false))
 }
 
 fn column(name: &str) -> &'static [f64] {
-    whole().column(name).unwrap()
+    uninterrupted().column(name).unwrap()
 }
 
 #[test]
-fn the_phases_follow_each_other_and_the_object_moves_as_prescribed() {
+fn the_phases_are_in_order_and_the_object_moves_as_prescribed() {
     let (grip, phase) = (column("grip"), column("phase"));
     let of_first = grip.iter().filter(|it| **it < 0.5).count();
     assert!(phase[..of_first].is_sorted() && phase[of_first..].is_sorted());
     assert!(phase[0] < 0.5 && (phase[of_first - 1] - 4.0).abs() < 0.5, "insert to withdraw");
-    assert!((phase[of_first] - 2.0).abs() < 0.5, "the second grip begins with the evacuation");
+    assert!((phase[of_first] - 2.0).abs() < 0.5, "the second grip starts with the evacuation");
     // Oracle: the protocol's penetration; the pump's lag of 5 ms leaves e^(-42/5) of a step.
     let depth = column("penetration").iter().copied().fold(f64::MIN, f64::max);
     assert!((depth - 28e-3).abs() < 1e-9, "{depth}");
@@ -75,20 +75,20 @@ fn the_phases_follow_each_other_and_the_object_moves_as_prescribed() {
 }
 
 #[test]
-fn it_holds_with_vacuum_and_not_without() {
-    let of = |grip: &str| whole().scalar(&format!("{grip}.holding_force")).unwrap();
+fn the_gripper_holds_only_with_vacuum() {
+    let of = |grip: &str| uninterrupted().scalar(&format!("{grip}.holding_force")).unwrap();
     let (with, without) = (of("protocol"), of("pressure_0kPa"));
-    // Oracle: the pull of a jammed bag against one that is not. A tenth, because the pre-tension
-    // presses the grains with about a tenth of the vacuum.
+    // Oracle: the holding force of a jammed gripper against one that is not. A tenth, because the
+    // pre-tension of the membrane is equivalent to about a tenth of the vacuum.
     assert!(with > 0.2, "{with}");
     assert!(without < 0.1 * with, "{without} of {with}");
-    let push = whole().scalar("protocol.force_relaxed").unwrap();
-    assert!(push < -5.0, "pushed down by the bag: {push}");
+    let push = uninterrupted().scalar("protocol.force_relaxed").unwrap();
+    assert!(push < -5.0, "pushed down by the gripper: {push}");
 }
 
 #[test]
-fn a_case_that_is_broken_off_and_resumed_ends_with_the_same_bits() {
-    // Oracle: the uninterrupted case. Breaks early in the filling, in it, and in every phase.
+fn an_interrupted_and_resumed_case_gives_the_same_bits() {
+    // Oracle: the uninterrupted case. Interrupted early in the filling, during it, and in every phase.
     let mut last = String::new();
     let mut n_breaks = 0;
     let resumed = run(&*plan(), |slice, stage| {
@@ -99,12 +99,12 @@ fn a_case_that_is_broken_off_and_resumed_ends_with_the_same_bits() {
         is_break
     });
     assert!(n_breaks >= 9, "{n_breaks}");
-    assert_eq!(resumed.digest, whole().digest);
-    assert!(resumed == *whole(), "the same record, not only the same end");
+    assert_eq!(resumed.digest, uninterrupted().digest);
+    assert!(resumed == *uninterrupted(), "the same record, not only the same final state");
 }
 
 #[test]
-fn a_saved_case_is_refused_by_another_one() {
+fn a_saved_case_is_rejected_by_another_one() {
     let plan = plan();
     let mut run = plan.start(CASE).unwrap();
     run.advance().unwrap();
@@ -119,8 +119,8 @@ fn a_saved_case_is_refused_by_another_one() {
 }
 
 #[test]
-fn findings_name_what_was_not_run_and_judge_what_was() {
-    let findings: Findings = plan().evaluate(std::slice::from_ref(whole()));
+fn findings_list_missing_cases_and_evaluate_the_others() {
+    let findings: Findings = plan().evaluate(std::slice::from_ref(uninterrupted()));
     let row = |id: &str| findings.rows.iter().find(|row| row.id == id);
     assert!(row("C9.fig11_zero").unwrap().pass, "{:?}", row("C9.fig11_zero"));
     assert!(row("C9.no_vacuum").unwrap().pass, "{:?}", row("C9.no_vacuum"));

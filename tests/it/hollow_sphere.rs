@@ -1,4 +1,4 @@
-//! The hollow sphere, coarse: what presses on the object, and a run that is broken off and resumed.
+//! The hollow sphere, coarse: pressure on the object, and a run that is interrupted and resumed.
 
 use jamgrip::{
     base::parallel,
@@ -41,12 +41,12 @@ fn end(mut run: Box<dyn Run>) -> Record {
 }
 
 #[test]
-fn a_vacuum_presses_on_the_object_and_a_break_changes_no_bit() {
+fn a_vacuum_presses_on_the_object_and_an_interruption_changes_no_bit() {
     let plan = plan();
     assert_eq!(plan.cases(), ["5MPa_packing_1"]);
-    let whole = end(plan.start("5MPa_packing_1").unwrap());
+    let uninterrupted = end(plan.start("5MPa_packing_1").unwrap());
 
-    // Broken off three times: while growing, while closing, while the vacuum rises.
+    // Interrupted three times: during growth, during closing, and while the vacuum increases.
     let mut run = plan.start("5MPa_packing_1").unwrap();
     for n_slices in [3, 40, 60] {
         assert!(!advance(&mut run, n_slices), "the run is longer than its parts");
@@ -55,27 +55,27 @@ fn a_vacuum_presses_on_the_object_and_a_break_changes_no_bit() {
         run.resume(&bytes).unwrap();
     }
     let resumed = end(run);
-    assert_eq!(resumed.digest, whole.digest, "oracle: the run without breaks, bit for bit");
-    assert_eq!(resumed, whole);
+    assert_eq!(resumed.digest, uninterrupted.digest, "oracle: the uninterrupted run, bit for bit");
+    assert_eq!(resumed, uninterrupted);
 
-    // Oracle: balance of forces. The vacuum presses more on the outer sphere than on the inner one,
-    // so something is left for the object, but not more than all of it spread over the object.
-    let pressure = whole.column("object_pressure").unwrap();
+    // Oracle: balance of forces. The force of the vacuum on the outer sphere exceeds that on the inner one.
+    // The object carries at most the difference.
+    let pressure = uninterrupted.column("object_pressure").unwrap();
     let (first, last) = (pressure[0], pressure[2]);
     let spread = 90e3 * (4.0_f64.powi(2) - 1.0);
     assert!(first < 0.2 * last && 2e3 < last && last < spread, "{pressure:?}");
-    let solid = whole.column("solid_fraction").unwrap();
-    // Oracle: random packings of spheres, at most 0.64 and loose at 0.55; the layers at the membranes
-    // of so small a shell are looser by a few hundredths.
+    let solid = uninterrupted.column("solid_fraction").unwrap();
+    // Oracle: random packings of spheres: 0.55 (loose) to 0.64 (dense). In such a small shell, the layers
+    // at the membranes reduce the average by a few hundredths.
     assert!(0.5 < solid[0] && solid[0] < 0.64 && solid[0] < solid[2], "{solid:?}");
-    assert_eq!(whole.validity.n_leaked, 0);
+    assert_eq!(uninterrupted.validity.n_leaked, 0);
 }
 
 #[test]
-fn a_saved_run_of_another_case_is_refused() {
+fn a_saved_run_of_another_case_is_rejected() {
     let plan = plan();
     let mut run = plan.start("5MPa_packing_1").unwrap();
     assert!(run.resume(b"nonsense").is_err());
-    let fault = plan.start("9MPa").err().map(|it| it.to_string()).unwrap_or_default();
-    assert!(fault.contains("5MPa_packing_1"), "{fault}");
+    let error = plan.start("9MPa").err().map(|it| it.to_string()).unwrap_or_default();
+    assert!(error.contains("5MPa_packing_1"), "{error}");
 }

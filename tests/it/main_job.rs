@@ -16,7 +16,7 @@ use serde_json::Value;
 use crate::{
     by_tick::{N_GRAINS, N_VERTICES, example, main_scene},
     mock_run, peers,
-    private_network::{cyclone_config, inside, inside_with_peers, reach},
+    private_network::{cyclone_config, discovery_range, inside, inside_with_peers},
 };
 
 /// Oracle: the toy's own formulas; the peer has an independent controller on an independent DDS.
@@ -25,7 +25,7 @@ fn an_independent_peer_picks_up_a_toy() {
     inside_with_peers("main_job::an_independent_peer_picks_up_a_toy", || {
         let folder = tempfile::tempdir().unwrap();
         let mut peer = start_peer(folder.path(), &["cylinder"]);
-        let node = RosNode::join(&reach()).unwrap();
+        let node = RosNode::join(&discovery_range()).unwrap();
         mock_run::run(&node, || peer.is_over());
         let seen = peer.report();
         check_lift(&seen);
@@ -45,9 +45,9 @@ fn the_example_controller_picks_up_a_toy() {
         let mut controller = Running::start(
             Command::new(example("pick_and_lift_controller"))
                 .arg(main_scene())
-                .env("ROS_DOMAIN_ID", reach().domain_id.to_string()),
+                .env("ROS_DOMAIN_ID", discovery_range().domain_id.to_string()),
         );
-        let node = RosNode::join(&reach()).unwrap();
+        let node = RosNode::join(&discovery_range()).unwrap();
         mock_run::run(&node, || controller.is_over());
         let said = controller.ended_well();
         let told = said.lines().last().unwrap().strip_prefix("lifted ").expect("a result");
@@ -76,7 +76,7 @@ fn an_independent_peer_commands_the_whole_job() {
                 .args(["--set", "topics.steps_per_command=10", "--cache"])
                 .arg(concat!(env!("CARGO_TARGET_TMPDIR"), "/starts"))
                 .current_dir(env!("CARGO_MANIFEST_DIR"))
-                .env("ROS_DOMAIN_ID", reach().domain_id.to_string())
+                .env("ROS_DOMAIN_ID", discovery_range().domain_id.to_string())
                 .env("JAMGRIP_STREAM_PREFIX", format!("jamgrip_test_{}", std::process::id())),
         );
         let mut peer = start_peer(folder.path(), &["cylinder", "--lockstep"]);
@@ -128,7 +128,7 @@ fn check_recording(bag: &Path, told: &Value) {
     assert_eq!(read["mcap"]["metadata"]["jamgrip_end"]["state_digest"], told["state_digest"]);
 }
 
-/// Weight of the scene's cylinder (N), from its dimensions.
+/// Weight of the scene's cylinder [N], from its dimensions.
 fn weight(scene: &Scene) -> f64 {
     let object = &scene.objects[0];
     let Shape::Cylinder { radius, height } = object.shape else { panic!("not a cylinder") };
@@ -140,7 +140,7 @@ fn start_peer(folder: &Path, arguments: &[&str]) -> Running {
     Running::start(
         peers::script("pick_and_lift.py")
             .args(arguments)
-            .env("ROS_DOMAIN_ID", reach().domain_id.to_string())
+            .env("ROS_DOMAIN_ID", discovery_range().domain_id.to_string())
             .env("CYCLONEDDS_URI", format!("file://{}", cyclone_config(folder).display())),
     )
 }
@@ -200,5 +200,5 @@ fn check_lift(seen: &Value) {
     // The grains go up with the flange, by another path of data than the object's pose.
     assert!((number("cloud_lifted_m") - 0.1).abs() < 0.005, "{} m", number("cloud_lifted_m"));
     assert!(number("let_go_n") < 0.1, "still touched with {} N", number("let_go_n"));
-    assert!(10.0 <= number("n_clouds") && 10.0 <= number("n_sheets"), "clouds while it ran");
+    assert!(10.0 <= number("n_clouds") && 10.0 <= number("n_membranes"), "clouds while it ran");
 }

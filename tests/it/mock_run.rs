@@ -1,6 +1,7 @@
-//! A whole run with a toy for physics: real topics, real commands, a bag that is a spring.
+//! A complete run with a mock plant instead of the physics: real topics, real commands, and a spring as
+//! the gripper.
 //!
-//! Controllers in other processes are tried on it in seconds; the real run takes minutes.
+//! It tests controllers in other processes within seconds; the real run takes minutes.
 
 use std::{sync::Arc, time::Duration};
 
@@ -20,11 +21,11 @@ use jamgrip::{
 
 use crate::by_tick::{Synthetic, scene};
 
-const BAG_LENGTH: f64 = 0.04;
+const GRIPPER_LENGTH: f64 = 0.04;
 const OBJECT_REST: f64 = 0.035;
 const OBJECT_TOP: f64 = 0.07;
 const STIFFNESS: f64 = 500.0;
-/// Weight of the toy's object (N).
+/// Weight of the mock plant's object [N].
 pub(crate) const WEIGHT: f64 = 2.4;
 const LAG: f64 = 0.05;
 const GAUGE_HOLDING: f64 = -50e3;
@@ -34,7 +35,7 @@ struct MockPlant {
     object_z: f64,
     gauge: f64,
     setpoint: f64,
-    /// Height of the flange over the object while it is gripped (m).
+    /// Height of the flange above the object while it is gripped [m].
     grip: Option<f64>,
 }
 
@@ -50,47 +51,47 @@ impl MockPlant {
         self.gauge += (self.setpoint - self.gauge) * 0.001 / LAG;
         let height = self.flange.z - self.object_z;
         self.grip = match self.grip {
-            Some(kept) if self.gauge < GAUGE_HOLDING => Some(kept),
-            None if self.gauge < GAUGE_HOLDING && height < BAG_LENGTH + 0.025 => Some(height),
+            Some(height) if self.gauge < GAUGE_HOLDING => Some(height),
+            None if self.gauge < GAUGE_HOLDING && height < GRIPPER_LENGTH + 0.025 => Some(height),
             _ => None,
         };
         self.object_z = self.grip.map_or(OBJECT_REST, |it| OBJECT_REST.max(self.flange.z - it));
     }
 
-    /// Force of the object on the gripper (N).
+    /// Force of the object on the gripper [N].
     fn force(&self) -> f64 {
         if OBJECT_REST < self.object_z {
             return -WEIGHT;
         }
-        STIFFNESS * (OBJECT_TOP - (self.flange.z - BAG_LENGTH)).max(0.0)
+        STIFFNESS * (OBJECT_TOP - (self.flange.z - GRIPPER_LENGTH)).max(0.0)
     }
 }
 
-/// Runs until `is_over`; waits for a first command as a real run does.
+/// Runs until `is_over`. Waits for the first command, as a real run does.
 pub(crate) fn run(node: &Arc<RosNode>, mut is_over: impl FnMut() -> bool) {
     let encoder = Arc::new(Encoder::new(&Arc::new(scene()), &[], &[]));
     let mut sink = RosSink::new(node, &encoder).unwrap();
     let mut source = RosSource::new(node, &encoder).unwrap();
     let mut system = Synthetic::new("cylinder");
     let flange = Vec3::new(0.0, 0.0, 0.15);
-    let mut toy =
+    let mut plant =
         MockPlant { flange, object_z: OBJECT_REST, gauge: 0.0, setpoint: 0.0, grip: None };
     let mut tick = 0;
     while !is_over() {
         std::thread::sleep(Duration::from_micros(300));
-        if !source.has_heard() {
+        if !source.has_received() {
             continue;
         }
-        toy.tick(&source.drain(&system.snapshot));
+        plant.tick(&source.drain(&system.snapshot));
         tick += 1;
         system.advance_to(tick);
-        system.lift_lists_to(toy.flange.z);
+        system.lift_lists_to(plant.flange.z);
         let snapshot = &mut system.snapshot;
-        snapshot.flange.pose = Pose::from(toy.flange);
-        snapshot.objects[0].body.pose = Pose::from(Vec3::new(0.0, 0.0, toy.object_z));
-        snapshot.contact_wrench.force = Vec3::new(0.0, 0.0, toy.force());
-        snapshot.chamber.gauge = toy.gauge;
-        snapshot.chamber.gauge_setpoint = toy.setpoint;
+        snapshot.flange.pose = Pose::from(plant.flange);
+        snapshot.objects[0].body.pose = Pose::from(Vec3::new(0.0, 0.0, plant.object_z));
+        snapshot.contact_wrench.force = Vec3::new(0.0, 0.0, plant.force());
+        snapshot.chamber.gauge = plant.gauge;
+        snapshot.chamber.gauge_setpoint = plant.setpoint;
         let is_due = tick % 33 == 0;
         let (grains, membrane) = (system.grains(), system.membrane());
         system.snapshot.grains = is_due.then_some(grains);

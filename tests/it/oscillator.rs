@@ -1,18 +1,18 @@
-//! A small experiment whose results are known in closed form: a damped oscillator.
+//! A small experiment with closed-form results: a damped oscillator.
 //!
 //! ```text
 //! x'' = −2 ζ ω x' − ω² x,   x(0) = 1 m, x'(0) = 0
 //! x(t) = e^(−ζωt) (cos ω't + ζω/ω' sin ω't),   ω' = ω √(1 − ζ²)
 //! ```
 //! It is integrated with symplectic Euler; one case has negative damping and grows until it
-//! diverges, one panics. A case can ask everything to stop after some slices.
+//! diverges, one panics. A case can request a shutdown after some slices.
 
 use std::collections::BTreeMap;
 
 use jamgrip::{
     experiments::{
         Experiment, Plan, Progress, ResumeError, Run, SceneText, StartError,
-        findings::{Curve, Expected, Findings, Kind, Plot, Quantity, Report, Row, Series},
+        findings::{Curve, Expected, Findings, Kind, Plot, Quantity, Row, RowText, Series},
         record::{Column, Record, Validity},
     },
     host::shutdown::Shutdown,
@@ -30,9 +30,9 @@ const SCENE: &str = "# ω = 3 /s\ndampings: [0.05, 0.1, 0.2]\n";
 /// The experiment.
 #[derive(Clone, Default)]
 pub(crate) struct Oscillator {
-    /// Further cases: `growing`, `panicking`.
+    /// Additional cases: `growing`, `panicking`.
     pub(crate) also: Vec<String>,
-    /// Asks for an end after so many slices of the second case.
+    /// Requests a shutdown after this number of slices of the second case.
     pub(crate) stop: Option<(Shutdown, u64)>,
 }
 
@@ -89,14 +89,14 @@ impl Plan for Oscillator {
             let analytic: Vec<f64> = times.iter().map(|t| exact(zeta, *t)).collect();
             let worst = |worst: f64, (a, b): (&f64, &f64)| worst.max((a - b).abs());
             let distance = heights.iter().zip(&analytic).fold(0.0, worst);
-            let told = Report {
+            let text = RowText {
                 id: &format!("T1.{}", record.case),
                 quantity: "largest distance from the exact solution",
                 unit: "m",
                 oracle: "closed form of the damped oscillator, <eq. 1>",
                 reason: "symplectic Euler errs by ω dt/2 = 0.15 % of the amplitude, twice that at most",
             };
-            findings.rows.push(Row::new(&told, Expected::at_most(0.003), distance));
+            findings.rows.push(Row::new(&text, Expected::at_most(0.003), distance));
             findings.quantities.push(Quantity {
                 name: format!("last_height_{zeta}"),
                 meaning: "height at the end | of the run".to_owned(),
@@ -134,8 +134,8 @@ impl Plan for Oscillator {
 
 fn exact(zeta: f64, t: f64) -> f64 {
     let omega = OMEGA * (1.0 - zeta * zeta).sqrt();
-    let fading = (-zeta * OMEGA * t).exp();
-    fading * ((omega * t).cos() + zeta * OMEGA / omega * (omega * t).sin())
+    let decay = (-zeta * OMEGA * t).exp();
+    decay * ((omega * t).cos() + zeta * OMEGA / omega * (omega * t).sin())
 }
 
 #[derive(Clone, Serialize, Deserialize)]
@@ -183,7 +183,7 @@ impl Run for Swing {
             });
         }
         let share = state.step as f64 / N_STEPS as f64;
-        Ok(Progress { stage: "swinging", share, is_done: state.step == N_STEPS })
+        Ok(Progress { phase: "swinging", share, is_done: state.step == N_STEPS })
     }
 
     fn save(&self) -> Vec<u8> {
@@ -191,8 +191,8 @@ impl Run for Swing {
     }
 
     fn resume(&mut self, bytes: &[u8]) -> Result<(), ResumeError> {
-        let fault = |error: postcard::Error| ResumeError { reason: error.to_string() };
-        self.state = postcard::from_bytes(bytes).map_err(fault)?;
+        let invalid = |error: postcard::Error| ResumeError { reason: error.to_string() };
+        self.state = postcard::from_bytes(bytes).map_err(invalid)?;
         Ok(())
     }
 

@@ -1,4 +1,4 @@
-//! Periodic boxes, and packings that go on after a break.
+//! Periodic boxes, and packings that are resumed after an interruption.
 
 use jamgrip::{
     base::{
@@ -27,7 +27,7 @@ const RADIUS: Real = 2e-3;
 const EDGE: Real = 22e-3;
 const N_GRAINS: usize = 200;
 
-/// Grains in a periodic box, at 0.63 of it when they have their final radii.
+/// Grains in a periodic box; their final solid fraction is 0.63.
 fn box_of_grains(friction: Real) -> (System, Growth) {
     let surface = Surface { friction, dissipation_time: 5e-5, tangential_damping: 0.3 };
     let law = PairLaw::between(&GRAIN, &GRAIN, surface);
@@ -52,7 +52,7 @@ fn digest(system: &System) -> u64 {
 }
 
 #[test]
-fn a_periodic_box_has_no_walls_and_misses_no_pair() {
+fn a_periodic_box_has_no_walls_and_lists_every_pair() {
     let (mut system, mut growth) = box_of_grains(0.3);
     for k in 0..6000 {
         if growth.step(&mut system) != Grown::Growing {
@@ -62,7 +62,7 @@ fn a_periodic_box_has_no_walls_and_misses_no_pair() {
             continue;
         }
         let grains = &system.state.grains;
-        // Oracle: Newton's third law; tolerance 1e-12 of all momenta: rounding.
+        // Oracle: Newton's third law; tolerance 1e-12 of the sum of magnitudes: rounding.
         let momentum: Vec3 =
             grains.velocities.iter().zip(&grains.masses).map(|(v, m)| v * *m).sum();
         let all: Real = grains.velocities.iter().map(|v| v.norm() * grains.masses[0]).sum();
@@ -71,8 +71,8 @@ fn a_periodic_box_has_no_walls_and_misses_no_pair() {
         let period = Vec3::repeat(EDGE);
         for i in 0..N_GRAINS {
             for j in i + 1..N_GRAINS {
-                let apart = closest_image(grains.positions[i] - grains.positions[j], &period);
-                if apart.norm() < grains.radii[i] + grains.radii[j] {
+                let delta = closest_image(grains.positions[i] - grains.positions[j], &period);
+                if delta.norm() < grains.radii[i] + grains.radii[j] {
                     let ids = [i, j].map(|id| u32::try_from(id).unwrap());
                     assert!(system.state.pair_ids.binary_search(&ids).is_ok(), "{i} {j} at {k}");
                 }
@@ -80,10 +80,13 @@ fn a_periodic_box_has_no_walls_and_misses_no_pair() {
         }
     }
     let pressure = normal_pressure(&system.state, &system.scratch, EDGE.powi(3));
-    assert!(pressure > 0.0, "they touch");
+    assert!(pressure > 0.0, "the grains touch");
     let furthest =
         system.state.grains.positions.iter().map(|p| (p - Vec3::repeat(EDGE / 2.0)).amax());
-    assert!(furthest.fold(0.0, Real::max) > EDGE / 2.0, "some left the box, and nothing happened");
+    assert!(
+        furthest.fold(0.0, Real::max) > EDGE / 2.0,
+        "some grains left the box without consequences"
+    );
 }
 
 #[test]
@@ -95,7 +98,7 @@ fn a_periodic_box_has_the_same_bits_for_any_number_of_threads_and_any_origin_of_
             for _ in 0..4000 {
                 growth.step(&mut system);
             }
-            (digest(&system), system.scratch.neighbours.n_builds)
+            (digest(&system), system.scratch.neighbors.n_builds)
         })
     };
     let (expected, n_builds) = run(1, 1.0);
@@ -108,11 +111,11 @@ fn a_periodic_box_has_the_same_bits_for_any_number_of_threads_and_any_origin_of_
     assert_eq!(other, expected, "contacts were missed between two builds");
 }
 
-/// Oracle: a simple cubic lattice of smooth grains, squeezed by ξ: each of its three contacts per grain
-/// carries F = 4/3 E* √R* ξ^(3/2) over the area a² of a cell and stores 8/15 E* √R* ξ^(5/2). To rounding,
-/// but for the first substep's motion, in which balanced grains do not move.
+/// Oracle: a simple cubic lattice of smooth grains, compressed by ξ: each of its three contacts per grain
+/// carries F = 4/3 E* √R* ξ^(3/2) over the area a² of a cell and stores 8/15 E* √R* ξ^(5/2). To rounding:
+/// balanced grains do not move in the first substep.
 #[test]
-fn a_squeezed_lattice_has_the_stress_and_the_energy_of_its_contacts() {
+fn a_compressed_lattice_has_the_stress_and_the_energy_of_its_contacts() {
     let surface = Surface { friction: 0.0, dissipation_time: 0.0, tangential_damping: 0.0 };
     let law = PairLaw::between(&GRAIN, &GRAIN, surface);
     let overlap = 1e-5;
@@ -147,7 +150,7 @@ fn plan(overrides: &[&str]) -> Box<dyn Plan> {
     Packing.read(&scene).unwrap()
 }
 
-/// A small version of the experiment, to its end.
+/// Overrides for a small version of the experiment.
 const SMALL: [&str; 6] = [
     "grains.count=150",
     "grains.count_smooth=150",
@@ -157,9 +160,9 @@ const SMALL: [&str; 6] = [
     "compression.pressure_low=5kPa",
 ];
 
-/// Oracle: the record of the same case without a break, to the last bit.
+/// Oracle: the record of the uninterrupted case, to the last bit.
 #[test]
-fn every_kind_of_case_goes_on_after_a_break_with_the_same_bits() {
+fn every_kind_of_case_can_be_resumed_with_the_same_bits() {
     let plan = plan(&SMALL);
     let mut records = Vec::new();
     let cases = ["mono_friction_0", "mono_friction_1", "poly_smooth", "confined", "moduli"];
@@ -169,7 +172,7 @@ fn every_kind_of_case_goes_on_after_a_break_with_the_same_bits() {
         let mut n_slices = 0;
         while !run.advance().unwrap().is_done {
             n_slices += 1;
-            // In growth, and later on in the rest.
+            // During growth, and later in other phases.
             if n_slices % 16 == 2 {
                 saved.push(run.save());
             }

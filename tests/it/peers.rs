@@ -1,7 +1,7 @@
-//! Independent programs in Python that read what we write and speak what we hear.
+//! Independent Python programs that read what we write and publish what we receive.
 //!
-//! Their packages live in a virtual environment of their own, `target/peers`, which is made on
-//! first use and when `tests/peers/requirements.txt` changes.
+//! Their packages are in a virtual environment, `target/peers`, which is created on first use and
+//! when `tests/peers/requirements.txt` changes.
 
 use std::{
     fs::{self, File},
@@ -19,19 +19,19 @@ pub(crate) fn python() -> &'static Path {
     PYTHON.get_or_init(|| {
         let folder = Path::new(FOLDER);
         fs::create_dir_all(folder).unwrap();
-        // Another test process may be at it too.
+        // Another test process may be doing the same.
         let lock = File::create(folder.join("lock")).unwrap();
         lock.lock().unwrap();
         let python = folder.join("bin/python");
-        let wanted = fs::read_to_string(REQUIREMENTS).unwrap();
+        let required = fs::read_to_string(REQUIREMENTS).unwrap();
         let installed = folder.join("installed.txt");
-        if fs::read_to_string(&installed).ok().as_ref() != Some(&wanted) {
+        if fs::read_to_string(&installed).ok().as_ref() != Some(&required) {
             let bare = "Debian and Ubuntu need `apt-get install -y python3 python3-venv`";
             must_run(Command::new("python3").args(["-m", "venv"]).arg(folder), bare);
             let network = "the first run of the tests needs the network, later ones do not";
             let pip = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "-r"];
             must_run(Command::new(&python).args(pip).arg(REQUIREMENTS), network);
-            fs::write(installed, wanted).unwrap();
+            fs::write(installed, required).unwrap();
         }
         python
     })
@@ -46,17 +46,17 @@ pub(crate) fn script(name: &str) -> Command {
     command
 }
 
-/// Runs a script of `tests/peers` and returns what it wrote; panics with its complaints if it fails.
+/// Runs a script of `tests/peers` and returns its output; panics with its errors if it fails.
 pub(crate) fn run(name: &str, arguments: &[&str]) -> String {
-    let output = must_run(script(name).args(arguments), "see what it says");
+    let output = must_run(script(name).args(arguments), "see its output");
     String::from_utf8(output.stdout).unwrap()
 }
 
 fn must_run(command: &mut Command, remedy: &str) -> Output {
     let output = command.output().unwrap_or_else(|e| panic!("{command:?}: {e}; {remedy}"));
-    let (said, complained) =
+    let (output_text, errors) =
         (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
-    assert!(output.status.success(), "{command:?} failed: {said}{complained}; {remedy}");
+    assert!(output.status.success(), "{command:?} failed: {output_text}{errors}; {remedy}");
     output
 }
 
@@ -66,8 +66,8 @@ fn standard_messages_are_those_of_rosbags() {
     run("standard_messages.py", &["msgs/standard", "--check"]);
 }
 
-/// All message types that are in the program, recorded, published or parts of services and actions:
-/// the generated file is the list.
+/// The list of types is the generated file: all types that are recorded, published, or part of
+/// services and actions.
 #[test]
 fn type_hashes_are_those_of_rosbags() {
     let generated = std::fs::read_to_string("src/wire/messages/generated.rs").unwrap();
@@ -79,8 +79,8 @@ fn type_hashes_are_those_of_rosbags() {
     let hashes = generated.lines().filter_map(|it| after(it, "type_hash: \""));
     let hashes: Vec<String> = messages.zip(hashes).map(|(a, b)| format!("{a}={b}")).collect();
     for topic in jamgrip::wire::topics::topics(&crate::synthetic::scene()) {
-        let kind = topic.message_type;
-        let listed = format!("{}={}", kind.name, kind.type_hash);
+        let message_type = topic.message_type;
+        let listed = format!("{}={}", message_type.name, message_type.type_hash);
         assert!(hashes.contains(&listed), "{listed} is in the list");
     }
     let arguments: Vec<&str> = hashes.iter().map(String::as_str).collect();

@@ -1,8 +1,8 @@
-//! A network of its own for every test that speaks DDS: nothing leaves the host, nothing comes in.
+//! A private network for every test that uses DDS: no traffic leaves or enters.
 //!
-//! A test runs its body by starting this very binary again, for this one test, in a network
-//! namespace that has nothing but a loopback interface. Where the system does not allow such a
-//! namespace the test fails and says what to change: it never passes without having run.
+//! A test runs its body by starting this binary again, for this one test, in a network namespace
+//! with only a loopback interface. If the system does not allow such a namespace, the test fails
+//! with instructions: it never passes without having run.
 
 use std::{
     io::Write,
@@ -12,12 +12,12 @@ use std::{
 
 use jamgrip::ros::discovery::{DiscoveryExtent, DiscoveryRange};
 
-/// Set inside the namespace.
+/// Set inside the network namespace.
 const INSIDE: &str = "JAMGRIP_TEST_PRIVATE_NETWORK";
-/// Printed once the namespace is made and its loopback interface is up.
+/// Printed once the namespace exists and its loopback interface is up.
 const READY: &str = "private network is ready";
 
-/// Brings loopback up and becomes the test.
+/// Brings up the loopback interface and becomes the test.
 const ENTER: &str = concat!(
     include_str!("../../src/benchmarks/latency/loopback_up.sh"),
     "echo \"private network is ready\"\nexec \"$0\" \"$@\"\n"
@@ -39,17 +39,23 @@ pub(crate) fn inside(test: &str, body: impl FnOnce()) {
             .env(INSIDE, "1")
             .stdin(Stdio::null())
             .output()
-            .unwrap_or_else(|it| panic!("`unshare` (util-linux) is not there: {it}; install it"));
-        let said = String::from_utf8_lossy(&output.stdout).into_owned();
-        let fault = String::from_utf8_lossy(&output.stderr).into_owned();
-        if said.contains(READY) {
-            assert!(said.contains("1 passed") || !output.status.success(), "no test `{test}`");
-            assert!(output.status.success(), "in its own network `{test}` said:\n{said}\n{fault}");
-            // What was measured, for people who ask with `--nocapture`.
-            write!(std::io::stderr().lock(), "{fault}").unwrap();
+            .unwrap_or_else(|it| panic!("`unshare` (util-linux) cannot be run: {it}; install it"));
+        let output_text = String::from_utf8_lossy(&output.stdout).into_owned();
+        let errors = String::from_utf8_lossy(&output.stderr).into_owned();
+        if output_text.contains(READY) {
+            assert!(
+                output_text.contains("1 passed") || !output.status.success(),
+                "no test `{test}`"
+            );
+            assert!(
+                output.status.success(),
+                "`{test}` failed in its private network:\n{output_text}\n{errors}"
+            );
+            // Measurements, shown with `--nocapture`.
+            write!(std::io::stderr().lock(), "{errors}").unwrap();
             return;
         }
-        tried += &format!("unshare {option}: {}\n", fault.trim());
+        tried += &format!("unshare {option}: {}\n", errors.trim());
     }
     panic!(
         "`{test}` DID NOT RUN: this system allows no private network, and DDS tests never use \
@@ -59,14 +65,14 @@ pub(crate) fn inside(test: &str, body: impl FnOnce()) {
     );
 }
 
-/// As `inside`, with the Python peers set up while there is still a network to get them from.
+/// As `inside`, with the Python peers installed while there is still a network.
 pub(crate) fn inside_with_peers(test: &str, body: impl FnOnce()) {
     crate::peers::python();
     inside(test, body);
 }
 
-/// A domain of this process alone, on this host alone.
-pub(crate) fn reach() -> DiscoveryRange {
+/// A domain for this process, on this host only.
+pub(crate) fn discovery_range() -> DiscoveryRange {
     let id = u16::try_from(std::process::id() % 200).unwrap();
     DiscoveryRange { domain_id: 1 + id, extent: DiscoveryExtent::Host }
 }

@@ -1,4 +1,4 @@
-//! Recordings simulated again: proved, branched off, taken as commands.
+//! Recorded runs simulated again: verified, branched, and used as commands.
 
 use std::{
     fs,
@@ -10,7 +10,7 @@ use std::{
 use jamgrip::{
     bag::{
         recording::Recording,
-        sink::{Bag, Format, Subject},
+        sink::{Bag, Format, RunDescription},
     },
     base::{Pose, real::Twist},
     command::{
@@ -28,10 +28,10 @@ use serde_json::Value;
 
 use crate::coarse;
 
-/// How long the recorded run is.
+/// Length of the recorded run (ticks).
 const N_TICKS: u64 = 300;
 
-/// The program, with start states shared between the tests.
+/// Runs the program, with start states shared between the tests.
 fn jamgrip(arguments: &[&str]) -> Output {
     Process::new(env!("CARGO_BIN_EXE_jamgrip"))
         .args(arguments)
@@ -41,13 +41,13 @@ fn jamgrip(arguments: &[&str]) -> Output {
         .unwrap()
 }
 
-/// The line of JSON that a program ended with, and its exit code.
-fn told(arguments: &[&str]) -> (Value, i32) {
+/// The last line of JSON that the program printed, and its exit code.
+fn json_of(arguments: &[&str]) -> (Value, i32) {
     let output = jamgrip(arguments);
-    let said = String::from_utf8_lossy(&output.stdout);
-    let line = said.lines().last();
-    let complaint = String::from_utf8_lossy(&output.stderr).into_owned();
-    let line = line.unwrap_or_else(|| panic!("{arguments:?}: {complaint}"));
+    let output_text = String::from_utf8_lossy(&output.stdout);
+    let line = output_text.lines().last();
+    let errors = String::from_utf8_lossy(&output.stderr).into_owned();
+    let line = line.unwrap_or_else(|| panic!("{arguments:?}: {errors}"));
     (serde_json::from_str(line).unwrap(), output.status.code().unwrap())
 }
 
@@ -63,20 +63,20 @@ impl Recorded {
     }
 }
 
-/// A coarse gripper that the built-in controller has pushed on its object for 0.3 s.
+/// A coarse gripper that the built-in controller has pushed onto its object for 0.3 s.
 fn recorded() -> &'static Recorded {
     static RECORDED: OnceLock<Recorded> = OnceLock::new();
     RECORDED.get_or_init(|| {
-        let place = Path::new(env!("CARGO_TARGET_TMPDIR")).join("replays");
-        // Left behind by an earlier run of the tests.
-        drop(fs::remove_dir_all(&place));
-        fs::create_dir_all(&place).unwrap();
-        let scene = place.join("coarse.yaml");
+        let folder_path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("replays");
+        // Left by an earlier run of the tests.
+        drop(fs::remove_dir_all(&folder_path));
+        fs::create_dir_all(&folder_path).unwrap();
+        let scene = folder_path.join("coarse.yaml");
         fs::write(&scene, coarse::TEXT).unwrap();
-        let (scene, folder) = (scene.to_str().unwrap().to_owned(), place.join("bag"));
+        let (scene, folder) = (scene.to_str().unwrap().to_owned(), folder_path.join("bag"));
         let bag = folder.to_str().unwrap();
         let set = "outputs.bag.checkpoint_rate=10 Hz";
-        let (summary, code) = told(&[
+        let (summary, code) = json_of(&[
             "run",
             &scene,
             "--no-ros",
@@ -99,52 +99,53 @@ fn recorded() -> &'static Recorded {
 }
 
 #[test]
-fn every_tick_comes_out_as_recorded_for_any_number_of_threads_and_lanes() {
+fn every_tick_is_verified_for_any_number_of_threads_and_lanes() {
     let bag = recorded();
     for threads in ["1", "2", "7"] {
-        let (verdict, code) =
-            told(&["replay", bag.bag(), "--verify", "--json", "--threads", threads]);
-        // Oracle: the recording; the start counts as one more.
-        assert_eq!((code, &verdict["first_difference"]), (0, &Value::Null), "{verdict}");
+        let (report, code) =
+            json_of(&["replay", bag.bag(), "--verify", "--json", "--threads", threads]);
+        // Oracle: the recording; the start counts as one comparison more.
+        assert_eq!((code, &report["first_difference"]), (0, &Value::Null), "{report}");
         assert_eq!(
-            (&verdict["ticks"], &verdict["compared"]),
+            (&report["ticks"], &report["compared"]),
             (&N_TICKS.into(), &(N_TICKS + 1).into())
         );
-        assert_eq!(verdict["remarks"], serde_json::json!([]));
+        assert_eq!(report["remarks"], serde_json::json!([]));
     }
     for (jobs, threads) in [("1", "1"), ("2", "1"), ("7", "2")] {
         let arguments = ["--jobs", jobs, "--threads", threads];
-        let (verdict, code) =
-            told(&[&["replay", bag.bag(), "--verify", "--json"][..], &arguments].concat());
-        // Oracle: the recording, whose checkpoints are after 0, 100, 200 and 300 ticks. The first is
-        // where it begins; every other is compared as a whole.
-        assert_eq!((code, &verdict["first_difference"]), (0, &Value::Null), "{verdict}");
+        let (report, code) =
+            json_of(&[&["replay", bag.bag(), "--verify", "--json"][..], &arguments].concat());
+        // Oracle: the recording, with checkpoints after 0, 100, 200 and 300 ticks. It starts at the
+        // first; the others are compared with the whole state.
+        assert_eq!((code, &report["first_difference"]), (0, &Value::Null), "{report}");
         assert_eq!(
-            (&verdict["ticks"], &verdict["compared"], &verdict["checkpoints"]),
+            (&report["ticks"], &report["compared"], &report["checkpoints"]),
             (&N_TICKS.into(), &(N_TICKS + 1).into(), &3.into()),
             "{jobs} segments in parallel, {threads} threads each"
         );
     }
     for lanes in ["1", "4", "8"] {
-        let (verdict, code) = told(&["replay", bag.bag(), "--verify", "--json", "--lanes", lanes]);
-        assert_eq!((code, &verdict["first_difference"]), (0, &Value::Null), "{lanes}: {verdict}");
+        let (report, code) =
+            json_of(&["replay", bag.bag(), "--verify", "--json", "--lanes", lanes]);
+        assert_eq!((code, &report["first_difference"]), (0, &Value::Null), "{lanes}: {report}");
     }
-    let (verdict, code) = told(&["replay", bag.bag(), "--verify", "--json", "--start", "0.25s"]);
-    // From the checkpoint at 0.2 s on.
-    assert_eq!((code, &verdict["ticks"]), (0, &100.into()), "{verdict}");
-    let (verdict, code) =
-        told(&["replay", bag.bag(), "--verify", "--json", "--settle", "--end", "0.01s"]);
-    assert_eq!((code, &verdict["compared"]), (0, &11.into()), "{verdict}");
+    let (report, code) = json_of(&["replay", bag.bag(), "--verify", "--json", "--start", "0.25s"]);
+    // From the checkpoint at 0.2 s.
+    assert_eq!((code, &report["ticks"]), (0, &100.into()), "{report}");
+    let (report, code) =
+        json_of(&["replay", bag.bag(), "--verify", "--json", "--settle", "--end", "0.01s"]);
+    assert_eq!((code, &report["compared"]), (0, &11.into()), "{report}");
 }
 
-/// Copies a recording and changes one command; says in which tick it takes effect.
-fn tampered(from: &Path, to: &Path) -> u64 {
+/// Copies a recording with one command changed. Returns the tick in which it takes effect.
+fn copy_tampered(from: &Path, to: &Path) -> u64 {
     let mut altered_in = None;
-    copied(from, to, &mut |_| {}, &mut |message| {
+    copy_with(from, to, &mut |_| {}, &mut |message| {
         let is_command = message.channel.topic == "/jamgrip/flange/pose_cmd";
         if is_command && 100_000_000 < message.log_time && altered_in.is_none() {
-            // The flange shall go a micrometre to the side. A pose ends with three numbers of
-            // position and four of orientation.
+            // Move the flange pose by a micrometer. A pose ends with three numbers of position and
+            // four of orientation.
             let mut data = message.data.to_vec();
             let x = data.len() - 7 * 8;
             data[x..x + 8].copy_from_slice(&1e-6_f64.to_le_bytes());
@@ -155,8 +156,8 @@ fn tampered(from: &Path, to: &Path) -> u64 {
     altered_in.unwrap()
 }
 
-/// Copies a recording into one file, with its attachments and messages altered.
-fn copied(
+/// Copies a recording to one file, with changed attachments and messages.
+fn copy_with(
     from: &Path,
     to: &Path,
     alter_attachments: &mut dyn FnMut(&mut Vec<mcap::Attachment<'_>>),
@@ -184,37 +185,37 @@ fn copied(
 }
 
 #[test]
-fn one_altered_command_is_found_in_its_tick() {
-    let place = tempfile::tempdir().unwrap();
-    let copy = place.path().join("copy.mcap");
-    let tick = tampered(&recorded().folder, &copy);
+fn an_altered_command_is_found_in_its_tick() {
+    let folder_path = tempfile::tempdir().unwrap();
+    let copy = folder_path.path().join("copy.mcap");
+    let tick = copy_tampered(&recorded().folder, &copy);
     for jobs in ["1", "3"] {
         let copy = copy.to_str().unwrap();
-        let (verdict, code) = told(&["replay", copy, "--verify", "--json", "--jobs", jobs]);
-        // Oracle: the tick whose command was altered. Parts behind it are as they were recorded.
-        assert_eq!((code, &verdict["first_difference"]), (1, &tick.into()), "{verdict}");
-        assert_eq!(verdict["ticks"], tick, "parts behind do not count: {verdict}");
+        let (report, code) = json_of(&["replay", copy, "--verify", "--json", "--jobs", jobs]);
+        // Oracle: the tick whose command was altered. Later segments are as recorded.
+        assert_eq!((code, &report["first_difference"]), (1, &tick.into()), "{report}");
+        assert_eq!(report["ticks"], tick, "later segments do not count: {report}");
     }
-    let (verdict, _) = told(&["replay", copy.to_str().unwrap(), "--verify", "--json"]);
-    let remarks = verdict["remarks"].to_string();
+    let (report, _) = json_of(&["replay", copy.to_str().unwrap(), "--verify", "--json"]);
+    let remarks = report["remarks"].to_string();
     assert!(remarks.contains(&format!("broken at tick {tick}")), "{remarks}");
     let output = Process::new(env!("CARGO_BIN_EXE_jamgrip"))
         .args(["bag", "check", copy.to_str().unwrap()])
         .output()
         .unwrap();
-    let said = String::from_utf8_lossy(&output.stdout);
-    assert_eq!(output.status.code(), Some(1), "{said}");
-    assert!(said.contains(&format!("broken at tick {tick}")), "{said}");
+    let output_text = String::from_utf8_lossy(&output.stdout);
+    assert_eq!(output.status.code(), Some(1), "{output_text}");
+    assert!(output_text.contains(&format!("broken at tick {tick}")), "{output_text}");
 }
 
-/// Oracle: which checkpoint was put in the place of which. No digest tells that: parts that begin at
-/// forged checkpoints would all be proved on their own.
+/// Oracle: which checkpoint was replaced by which. The digests do not show it: segments that start
+/// at forged checkpoints would all be verified on their own.
 #[test]
-fn a_checkpoint_that_is_not_the_state_before_it_is_found() {
-    let place = tempfile::tempdir().unwrap();
-    let copy = place.path().join("copy.mcap");
+fn a_forged_checkpoint_is_found() {
+    let folder_path = tempfile::tempdir().unwrap();
+    let copy = folder_path.path().join("copy.mcap");
     let bag = recorded();
-    copied(
+    copy_with(
         &bag.folder,
         &copy,
         &mut |attachments| {
@@ -226,21 +227,21 @@ fn a_checkpoint_that_is_not_the_state_before_it_is_found() {
     );
     for jobs in ["1", "3"] {
         let output = jamgrip(&["replay", copy.to_str().unwrap(), "--verify", "--jobs", jobs]);
-        let said = String::from_utf8_lossy(&output.stdout);
-        assert_eq!(output.status.code(), Some(1), "{said}");
+        let output_text = String::from_utf8_lossy(&output.stdout);
+        assert_eq!(output.status.code(), Some(1), "{output_text}");
         let expected = "checkpoint at tick 200 differs, although the digests do not: time";
-        assert!(said.contains(expected), "{jobs}: {said}");
+        assert!(output_text.contains(expected), "{jobs}: {output_text}");
     }
 }
 
 #[test]
-fn a_branch_without_changes_is_the_same_run_and_one_with_changes_is_not() {
+fn only_a_branch_with_changes_differs_from_the_recorded_run() {
     let bag = recorded();
-    let place = tempfile::tempdir().unwrap();
+    let folder_path = tempfile::tempdir().unwrap();
     let branch = |name: &str, set: &str| {
-        let folder = place.path().join(name);
+        let folder = folder_path.path().join(name);
         let folder = folder.to_str().unwrap();
-        let (summary, code) = told(&[
+        let (summary, code) = json_of(&[
             "replay",
             bag.bag(),
             "--from",
@@ -253,11 +254,11 @@ fn a_branch_without_changes_is_the_same_run_and_one_with_changes_is_not() {
         ]);
         assert_eq!(code, 0, "{summary}");
         assert_eq!(summary["start_state"], "branched");
-        let (verdict, code) = told(&["replay", folder, "--verify", "--json"]);
-        assert_eq!((code, &verdict["ticks"]), (0, &(N_TICKS - 170).into()), "{verdict}");
+        let (report, code) = json_of(&["replay", folder, "--verify", "--json"]);
+        assert_eq!((code, &report["ticks"]), (0, &(N_TICKS - 170).into()), "{report}");
         summary
     };
-    // Oracle: the recorded run. Its friction is 0.6 by default, and outputs change nothing.
+    // Oracle: the recorded run. Its friction is 0.6 by default, and outputs do not affect it.
     let same = branch("same", "outputs.state_rate=10 Hz");
     assert_eq!(same["state_digest"], bag.summary["state_digest"]);
     assert_eq!(same["sim_time_s"], bag.summary["sim_time_s"]);
@@ -273,29 +274,29 @@ fn a_branch_without_changes_is_the_same_run_and_one_with_changes_is_not() {
 }
 
 #[test]
-fn what_cannot_change_after_the_start_is_refused() {
+fn overrides_of_the_start_are_rejected() {
     let bag = recorded();
     for (set, expected) in [
-        ("grains.count=281", "the grains and the membrane that were recorded"),
+        ("grains.count=281", "the recorded grains and membrane"),
         ("object.shape.cylinder.radius=13 mm", "the recorded object has this shape"),
         ("seed=2", "seed"),
         ("time.tick=2 ms", "counted in ticks"),
         ("object.fricton=1", "did you mean `friction`"),
     ] {
         let output = jamgrip(&["replay", bag.bag(), "--from", "0.1s", "--no-bag", "--set", set]);
-        let complaint = String::from_utf8_lossy(&output.stderr);
-        assert_eq!(output.status.code(), Some(2), "{set}: {complaint}");
-        assert!(complaint.contains(expected), "{set}: {complaint}");
+        let errors = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{set}: {errors}");
+        assert!(errors.contains(expected), "{set}: {errors}");
     }
     let output = jamgrip(&["replay", bag.bag(), "--from", "7s", "--no-bag"]);
-    let complaint = String::from_utf8_lossy(&output.stderr);
-    assert!(complaint.contains("from 0 s to 0.3 s"), "{complaint}");
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(errors.contains("from 0 s to 0.3 s"), "{errors}");
 }
 
 #[test]
-fn a_recording_commands_a_run_of_its_scene() {
+fn the_commands_of_a_recording_reproduce_its_run() {
     let bag = recorded();
-    let (summary, code) = told(&[
+    let (summary, code) = json_of(&[
         "run",
         &bag.scene,
         "--no-ros",
@@ -307,18 +308,18 @@ fn a_recording_commands_a_run_of_its_scene() {
         "--commands",
         bag.bag(),
     ]);
-    // Oracle: the recorded run, whose controller gave the commands.
+    // Oracle: the recorded run, whose controller sent the commands.
     assert_eq!((code, &summary["state_digest"]), (0, &bag.summary["state_digest"]), "{summary}");
 }
 
 #[test]
-fn recordings_of_others_command_a_run() {
+fn recordings_of_other_programs_can_command_a_run() {
     let bag = recorded();
-    let place = tempfile::tempdir().unwrap();
-    let theirs = place.path().join("theirs");
-    crate::peers::run("write_bag.py", &[theirs.to_str().unwrap()]);
-    let folder = place.path().join("bag");
-    let (summary, code) = told(&[
+    let folder_path = tempfile::tempdir().unwrap();
+    let foreign = folder_path.path().join("theirs");
+    crate::peers::run("write_bag.py", &[foreign.to_str().unwrap()]);
+    let folder = folder_path.path().join("bag");
+    let (summary, code) = json_of(&[
         "run",
         &bag.scene,
         "--no-ros",
@@ -327,20 +328,20 @@ fn recordings_of_others_command_a_run() {
         "--for",
         "0.12s",
         "--commands",
-        theirs.to_str().unwrap(),
+        foreign.to_str().unwrap(),
         "--bag",
         folder.to_str().unwrap(),
     ]);
-    // Oracle: `write_bag.py`: a command every 50 ms from the first message on, the third at 100 ms.
+    // Oracle: `write_bag.py`: a command every 50 ms, the third at 100 ms after the first message.
     assert_eq!((code, &summary["commands"]["applied"]), (0, &3.into()), "{summary}");
     let recording = jamgrip::bag::recording::Recording::open(&folder).unwrap();
-    let course = recording.course_of_all(1_000_000).unwrap();
-    let ticks: Vec<u64> = course.commands.iter().map(|it| it.tick).collect();
+    let history = recording.history_without_scene(1_000_000).unwrap();
+    let ticks: Vec<u64> = history.commands.iter().map(|it| it.tick).collect();
     assert_eq!(ticks, [1, 51, 101]);
-    assert_eq!(course.commands[2].cdr, (-2000.0_f64).to_le_bytes());
+    assert_eq!(history.commands[2].cdr, (-2000.0_f64).to_le_bytes());
 }
 
-/// What was done to the world after a tick of the run.
+/// The changes of the world after a tick of the run.
 fn changes_after(tick: u64, session: &Session) -> Vec<Change> {
     let object = || "cylinder".to_owned();
     let ball = || {
@@ -368,8 +369,8 @@ fn changes_after(tick: u64, session: &Session) -> Vec<Change> {
     }
 }
 
-/// A recording of 130 ticks of a world that is changed now and then; `forgets` leaves the changes
-/// after this tick out of it.
+/// Records 130 ticks of a world that changes several times. Changes after the tick `forgets` are
+/// left out of the recording.
 fn record_changes(folder: &Path, forgets: Option<u64>) {
     let scene = coarse::scene(&[]);
     let mut session = coarse::session(1, &[]);
@@ -378,18 +379,19 @@ fn record_changes(folder: &Path, forgets: Option<u64>) {
         Arc::new(Encoder::new(&Arc::new(scene.clone()), &mesh.triangles, &mesh.positions));
     let facts = vec![("tick_ns", "1000000".to_owned())];
     let scene_text = jamgrip::scene::to_yaml(&scene);
-    let subject = Subject { scene_text, scene_files: vec![], facts, format: Format::default() };
-    let mut bag = Bag::create(folder, encoder, subject).unwrap();
+    let description =
+        RunDescription { scene_text, scene_files: vec![], facts, format: Format::default() };
+    let mut bag = Bag::create(folder, encoder, description).unwrap();
     let packet = |session: &Session| Packet::new(session.snapshot(Parts::default()), None);
     for tick in 0..=130 {
         let is_due = tick % 20 == 0;
-        let kept = is_due.then(|| session.checkpoint()).flatten().into_iter().collect();
-        bag.write(&packet(&session).with_checkpoints(kept)).unwrap();
+        let checkpoints = is_due.then(|| session.checkpoint()).flatten().into_iter().collect();
+        bag.write(&packet(&session).with_checkpoints(checkpoints)).unwrap();
         let changes = changes_after(tick, &session);
         if !changes.is_empty() {
             changes.iter().for_each(|it| session.change(it).unwrap());
-            let told = if forgets == Some(tick) { Vec::new() } else { changes };
-            bag.write(&packet(&session).with_changes(told)).unwrap();
+            let recorded = if forgets == Some(tick) { Vec::new() } else { changes };
+            bag.write(&packet(&session).with_changes(recorded)).unwrap();
         }
         let commands = match session.now().0 {
             0 => vec![coarse::flange_to(0.09)],
@@ -398,91 +400,95 @@ fn record_changes(folder: &Path, forgets: Option<u64>) {
         };
         session.tick(&commands).unwrap();
     }
-    assert_eq!((session.now().0, session.run_tick().0), (31, 131), "time was reset last after 100");
+    assert_eq!(
+        (session.now().0, session.run_tick().0),
+        (31, 131),
+        "the last reset of time was after tick 100"
+    );
     bag.close().unwrap();
 }
 
-/// Oracle: the session that was recorded, and the list of what was done to it.
+/// Oracle: the recorded session, and the list of its changes.
 #[test]
-fn what_is_done_to_the_world_between_ticks_is_recorded_and_done_again() {
-    let place = tempfile::tempdir().unwrap();
-    let folder = place.path().join("bag");
+fn changes_between_ticks_are_recorded_and_verified() {
+    let folder_path = tempfile::tempdir().unwrap();
+    let folder = folder_path.path().join("bag");
     record_changes(&folder, None);
     let bag = folder.to_str().unwrap();
-    let (verdict, code) = told(&["replay", bag, "--verify", "--json"]);
-    assert_eq!((code, &verdict["ticks"]), (0, &130.into()), "{verdict}");
-    // 130 ticks, the start, and seven times something was changed.
-    assert_eq!(verdict["compared"], 138, "{verdict}");
-    assert_eq!(verdict["remarks"], serde_json::json!([]));
-    // From checkpoints behind changes, to where a reset needs the start.
+    let (report, code) = json_of(&["replay", bag, "--verify", "--json"]);
+    assert_eq!((code, &report["ticks"]), (0, &130.into()), "{report}");
+    // 130 ticks, the start, and seven ticks with changes.
+    assert_eq!(report["compared"], 138, "{report}");
+    assert_eq!(report["remarks"], serde_json::json!([]));
+    // From checkpoints after changes, to where a reset needs the start.
     for (start, n_ticks) in [("30ms", 110), ("60ms", 70), ("99ms", 50), ("125ms", 10)] {
-        let (verdict, code) = told(&["replay", bag, "--verify", "--json", "--start", start]);
-        assert_eq!((code, &verdict["ticks"]), (0, &n_ticks.into()), "{start}: {verdict}");
+        let (report, code) = json_of(&["replay", bag, "--verify", "--json", "--start", start]);
+        assert_eq!((code, &report["ticks"]), (0, &n_ticks.into()), "{start}: {report}");
     }
     let checked = jamgrip::bag::check::check(&folder).unwrap();
     assert!(!checked.iter().any(|it| it.is_error), "{checked:?}");
-    let course = Recording::open(&folder).unwrap().course_of_all(1_000_000).unwrap();
-    let what: Vec<_> = course.changes.iter().map(|it| (it.tick, it.what.as_str())).collect();
+    let history = Recording::open(&folder).unwrap().history_without_scene(1_000_000).unwrap();
+    let what: Vec<_> = history.changes.iter().map(|it| (it.tick, it.what.as_str())).collect();
     assert_eq!(what[1], (30, "object `ball` added"));
     assert_eq!(what[10], (100, "reset of time, state, added objects"));
-    // No checkpoints while there are other objects than the scene's: after 100 it was not yet reset.
-    let ticks: Vec<u64> = course.checkpoints.iter().map(|it| it.tick).collect();
+    // No checkpoints while the objects are not those of the scene: after 100 it was not yet reset.
+    let ticks: Vec<u64> = history.checkpoints.iter().map(|it| it.tick).collect();
     assert_eq!(ticks, [0, 20, 60, 80, 120]);
-    let commands: Vec<u64> = course.commands.iter().map(|it| it.tick).collect();
-    assert_eq!(commands, [1, 11, 71, 81, 101, 111], "ticks of the run, whatever became of time");
+    let commands: Vec<u64> = history.commands.iter().map(|it| it.tick).collect();
+    assert_eq!(commands, [1, 11, 71, 81, 101, 111], "ticks of the run, also after resets of time");
 }
 
-/// Oracle: the tick of the change that is not in the recording.
+/// Oracle: the tick of the change that is missing in the recording.
 #[test]
-fn a_change_that_is_not_recorded_shows_as_a_difference() {
-    let place = tempfile::tempdir().unwrap();
-    let folder = place.path().join("bag");
+fn a_change_that_is_not_recorded_is_a_difference() {
+    let folder_path = tempfile::tempdir().unwrap();
+    let folder = folder_path.path().join("bag");
     record_changes(&folder, Some(50));
-    let (verdict, code) = told(&["replay", folder.to_str().unwrap(), "--verify", "--json"]);
-    assert_eq!((code, &verdict["first_difference"]), (1, &51.into()), "{verdict}");
+    let (report, code) = json_of(&["replay", folder.to_str().unwrap(), "--verify", "--json"]);
+    assert_eq!((code, &report["first_difference"]), (1, &51.into()), "{report}");
 }
 
-/// Oracle: the list of changes: the reset after 100 ms is the last.
+/// Oracle: the list of changes: the last one is the reset after 100 ms.
 #[test]
-fn a_branch_says_which_changes_it_cannot_repeat() {
-    let place = tempfile::tempdir().unwrap();
-    let folder = place.path().join("bag");
+fn a_branch_names_the_changes_that_it_cannot_repeat() {
+    let folder_path = tempfile::tempdir().unwrap();
+    let folder = folder_path.path().join("bag");
     record_changes(&folder, None);
     let bag = folder.to_str().unwrap();
     let branch = |arguments: &[&str]| {
         let all = [&["replay", bag, "--json", "--no-bag"], arguments];
         let output = jamgrip(&all.concat());
-        let complaint = String::from_utf8_lossy(&output.stderr).into_owned();
-        (output.status.code(), complaint)
+        let errors = String::from_utf8_lossy(&output.stderr).into_owned();
+        (output.status.code(), errors)
     };
     for (arguments, expected) in [
-        (&["--from", "40ms"][..], "changed from outside at 0.05 s (reset of state, added objects)"),
-        (&["--from", "40ms", "--end", "45ms"], "at tick 40 there are other objects"),
-        (&["--from", "100ms"], "changed from outside at 0.1 s (reset of time, state, added"),
+        (&["--from", "40ms"][..], "world was changed at 0.05 s (reset of state, added objects)"),
+        (&["--from", "40ms", "--end", "45ms"], "at tick 40 the objects are not those of the scene"),
+        (&["--from", "100ms"], "world was changed at 0.1 s (reset of time, state, added"),
     ] {
-        let (code, complaint) = branch(arguments);
-        assert_eq!(code, Some(2), "{arguments:?}: {complaint}");
-        assert!(complaint.contains(expected), "{arguments:?}: {complaint}");
+        let (code, errors) = branch(arguments);
+        assert_eq!(code, Some(2), "{arguments:?}: {errors}");
+        assert!(errors.contains(expected), "{arguments:?}: {errors}");
     }
     for arguments in [&["--from", "60ms", "--end", "70ms"][..], &["--from", "110ms"]] {
-        let (code, complaint) = branch(arguments);
-        assert_eq!(code, Some(0), "{arguments:?}: {complaint}");
+        let (code, errors) = branch(arguments);
+        assert_eq!(code, Some(0), "{arguments:?}: {errors}");
     }
 }
 
-/// Oracle: what is known of the recording: made by 0.1.0, whose results the changelog says changed.
+/// Oracle: the recording: made by 0.1.0, since which results have changed, as the changelog says.
 #[test]
-fn a_recording_of_the_first_release_says_why_it_cannot_be_proved() {
-    let (verdict, code) =
-        told(&["replay", "bags/pick_and_lift", "--verify", "--json", "--end", "3ms"]);
-    assert_eq!((code, &verdict["first_difference"]), (1, &1.into()), "{verdict}");
-    let remarks = verdict["remarks"].to_string();
-    for told in [
-        "recorded by jamgrip 0.1.0, before recordings held the digest of every tick: only 10 digests",
-        "no checkpoint is recorded: the start was",
-        "what changed results since then: ",
+fn verifying_a_recording_of_the_first_release_names_the_causes() {
+    let (report, code) =
+        json_of(&["replay", "bags/pick_and_lift", "--verify", "--json", "--end", "3ms"]);
+    assert_eq!((code, &report["first_difference"]), (1, &1.into()), "{report}");
+    let remarks = report["remarks"].to_string();
+    for expected in [
+        "recorded by jamgrip 0.1.0, which did not record the digest of every tick: only the 10 digests",
+        "the recording has no checkpoint: the start was",
+        "results have changed since: ",
         "shares out its force by the mountain passes",
     ] {
-        assert!(remarks.contains(told), "{told}: {remarks}");
+        assert!(remarks.contains(expected), "{expected}: {remarks}");
     }
 }

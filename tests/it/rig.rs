@@ -1,4 +1,4 @@
-//! A bare system: grains, a plate, and a membrane, without scene, fill or rigid world.
+//! A bare system of grains, a plate and a membrane, without scene, filling or rigid-body world.
 
 use std::ops::{Deref, DerefMut};
 
@@ -14,7 +14,7 @@ use jamgrip::{
     scene::Material,
 };
 
-/// The grain of the gripper's table: 5 MPa.
+/// The grain of table 5 of the source: 5 MPa.
 pub(crate) const GRAIN: Material =
     Material { youngs_modulus: 5e6, poisson_ratio: 0.245, density: 2000.0 };
 /// Latex.
@@ -41,18 +41,18 @@ impl DerefMut for Rig {
 }
 
 impl Rig {
-    /// Grains of `material` between a plate, which faces up at z = 0, and a membrane far away.
+    /// Grains of `material` above a plate that faces up at z = 0; the membrane is far away.
     pub(crate) fn on_plate(material: &Material, surface: Surface, dt: Real) -> Self {
         let far = Vec3::new(0.0, 0.0, -1.0);
         let corners = vec![far, far + Vec3::x() * 0.01, far + Vec3::y() * 0.01];
         let mesh = Mesh::new(corners, vec![[0, 1, 2]]).unwrap();
-        // Turned over, the flange's plate faces up.
+        // Upside down, so that the plate of the flange faces up.
         let flange = Pose::rotation(Vec3::x() * std::f64::consts::PI);
         Self::new(material, surface, (mesh, Vertices::Rims), flange, dt)
     }
 
-    /// Grains of `material` on `mesh`, all of whose vertices are held; the plate is far above.
-    pub(crate) fn on_sheet(material: &Material, surface: Surface, mesh: Mesh, dt: Real) -> Self {
+    /// Grains of `material` on a membrane with `mesh`, whose vertices are fixed; the plate is far above.
+    pub(crate) fn on_membrane(material: &Material, surface: Surface, mesh: Mesh, dt: Real) -> Self {
         let flange = Pose::translation(0.0, 0.0, 1.0);
         Self::new(material, surface, (mesh, Vertices::All), flange, dt)
     }
@@ -118,12 +118,12 @@ impl Rig {
     }
 }
 
-/// Two surfaces with Coulomb friction alone.
+/// A surface with Coulomb friction but without dissipation.
 pub(crate) fn elastic(friction: Real) -> Surface {
     Surface { friction, dissipation_time: 0.0, tangential_damping: 0.0 }
 }
 
-/// k of F = k ξ^(3/2) (N/m^(3/2)).
+/// k of F = k ξ^(3/2) [N/m^(3/2)].
 pub(crate) fn hertz_constant(law: &PairLaw, radius: Real) -> Real {
     4.0 / 3.0 * law.modulus * radius.sqrt()
 }

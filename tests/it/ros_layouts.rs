@@ -1,4 +1,4 @@
-//! Layouts and launch files name topics and fields that there are.
+//! Layouts and launch files refer to existing topics and fields.
 
 use std::{fs, path::Path};
 
@@ -6,16 +6,16 @@ use jamgrip::wire::topics::topics;
 
 use crate::by_tick::scene;
 
-/// The words of a text that begin with the node's name, up to where no name goes on.
+/// The parts of a text that begin with the node's name, up to the end of the name.
 fn names(text: &str) -> Vec<String> {
     let end = |c: char| !(c.is_ascii_alphanumeric() || "/_.".contains(c));
     let starts = text.match_indices("/jamgrip/").map(|(at, _)| &text[at..]);
     starts.map(|rest| rest.split(end).next().unwrap().to_owned()).collect()
 }
 
-/// Oracle: the closed list of topics, and the text of each type's definition.
+/// Oracle: the list of topics, and the definition of each type.
 #[test]
-fn layouts_name_what_there_is() {
+fn layouts_refer_to_existing_fields() {
     let topics = topics(&scene());
     for (file, separator) in
         [("jamgrip.rviz", '.'), ("foxglove.json", '.'), ("plotjuggler.xml", '/')]
@@ -24,7 +24,7 @@ fn layouts_name_what_there_is() {
         let names = names(&fs::read_to_string(&path).unwrap());
         assert!(4 <= names.len(), "{file} names nothing");
         for name in names {
-            // The longest name of a topic that this one begins with.
+            // The longest topic name that is a prefix of this one.
             let found = topics.iter().filter(|it| {
                 let rest = name.strip_prefix(&it.name);
                 rest.is_some_and(|rest| rest.is_empty() || rest.starts_with(separator))
@@ -33,12 +33,12 @@ fn layouts_name_what_there_is() {
             let topic = topic.unwrap_or_else(|| panic!("{file}: no topic `{name}`"));
             let fields = name[topic.name.len()..].split(separator).filter(|it| !it.is_empty());
             for field in fields {
-                let is_there = topic
+                let exists = topic
                     .message_type
                     .definition
                     .lines()
                     .any(|line| line.split_whitespace().nth(1).is_some_and(|it| it == field));
-                assert!(is_there, "{file}: `{}` has no `{field}`", topic.message_type.name);
+                assert!(exists, "{file}: `{}` has no `{field}`", topic.message_type.name);
             }
         }
     }

@@ -1,4 +1,4 @@
-//! The ROS 2 side: what goes out reaches others, what others say comes in.
+//! The ROS 2 transport: published messages reach subscribers, and received commands arrive.
 
 use std::{
     io::{BufRead, BufReader, Write},
@@ -38,18 +38,18 @@ use jamgrip::{
 use crate::{
     by_tick::{Synthetic, scene},
     peers,
-    private_network::{cyclone_config, inside, inside_with_peers, reach},
+    private_network::{cyclone_config, discovery_range, inside, inside_with_peers},
 };
 
-#[expect(clippy::disallowed_methods, reason = "a limit on how long a test waits")]
+#[expect(clippy::disallowed_methods, reason = "a timeout of the test")]
 fn now() -> Instant {
     Instant::now()
 }
 
-/// Waits until `is_so`, at most a minute.
-fn wait_until(what: &str, mut is_so: impl FnMut() -> bool) {
+/// Waits until the condition is true, at most a minute.
+fn wait_until(what: &str, mut condition: impl FnMut() -> bool) {
     let start = now();
-    while !is_so() {
+    while !condition() {
         assert!(now() - start < Duration::from_secs(60), "waited a minute for {what}");
         std::thread::sleep(Duration::from_millis(2));
     }
@@ -65,13 +65,13 @@ fn encoder() -> Arc<Encoder> {
     Arc::new(Encoder::new(&Arc::new(scene()), &[], &[]))
 }
 
-/// Oracle: the synthetic system's formula, message by message; and who comes late gets what is
-/// latched, once.
+/// Oracle: the formula of the synthetic system, message by message; a late joiner receives the
+/// latched messages, once.
 #[test]
-fn what_is_published_reaches_our_own_subscribers() {
-    inside("ros_loop::what_is_published_reaches_our_own_subscribers", || {
-        let here = RosNode::join(&reach()).unwrap();
-        let there = RosNode::join_as("listener", &reach()).unwrap();
+fn published_messages_reach_subscribers() {
+    inside("ros_loop::published_messages_reach_subscribers", || {
+        let here = RosNode::join(&discovery_range()).unwrap();
+        let there = RosNode::join_as("listener", &discovery_range()).unwrap();
         let mut sink = RosSink::new(&here, &encoder()).unwrap();
         let clock = there.subscription::<Clock>(&topic("/clock")).unwrap();
         let wrench = there.subscription::<WrenchStamped>(&topic("/jamgrip/wrench")).unwrap();
@@ -96,7 +96,8 @@ fn what_is_published_reaches_our_own_subscribers() {
         for tick in 1..=400_u32 {
             system.advance_to(u64::from(tick));
             sink.write(&Packet::new(system.snapshot.clone(), None)).unwrap();
-            // The clock's writer keeps one message: the next tick comes when this one was heard.
+            // The clock's writer keeps one message, so the next tick is sent when this one was
+            // received.
             wait_until("the clock of this tick", || listen(tick));
         }
         assert_eq!(ticks, (1..=400).collect::<Vec<_>>(), "every tick once, in order");
@@ -110,12 +111,12 @@ fn what_is_published_reaches_our_own_subscribers() {
     });
 }
 
-/// Oracle: the commands as they were said; what is none is counted and holds up nothing.
+/// Oracle: the commands as sent; invalid messages are counted and do not delay others.
 #[test]
 fn commands_wait_in_order_for_the_next_tick() {
     inside("ros_loop::commands_wait_in_order_for_the_next_tick", || {
-        let here = RosNode::join(&reach()).unwrap();
-        let there = RosNode::join_as("operator", &reach()).unwrap();
+        let here = RosNode::join(&discovery_range()).unwrap();
+        let there = RosNode::join_as("operator", &discovery_range()).unwrap();
         let mut source = RosSource::new(&here, &encoder()).unwrap();
         let seen = Synthetic::new("cylinder").snapshot;
         let flange = there.publisher(&topic("/jamgrip/flange/pose_cmd")).unwrap();
@@ -126,32 +127,32 @@ fn commands_wait_in_order_for_the_next_tick() {
                 .iter()
                 .all(|it| there.n_readers(&format!("/jamgrip/{it}")) == 1)
         });
-        assert!(!source.has_heard());
+        assert!(!source.has_received());
 
         let mut pose = PoseStamped::default();
         pose.header.frame_id = "world".to_owned();
         pose.header.stamp.sec = 3;
-        pose.pose.position.z = f64::NAN; // senseless values arrive too: they are refused later
+        pose.pose.position.z = f64::NAN; // invalid values arrive, too: they are rejected later
         pose.pose.orientation.w = 1.0;
         flange.publish(Body::new(pose.to_cdr())).unwrap();
-        wait_until("a first command", || source.has_heard());
-        let Some(Command::FlangePose(heard)) = source.drain(&seen).pop() else {
+        wait_until("a first command", || source.has_received());
+        let Some(Command::FlangePose(received)) = source.drain(&seen).pop() else {
             panic!("no flange pose")
         };
-        assert_eq!((heard.frame_id.as_str(), heard.stamp_ns), ("world", 3_000_000_000));
-        assert!(heard.position[2].is_nan());
+        assert_eq!((received.frame_id.as_str(), received.stamp_ns), ("world", 3_000_000_000));
+        assert!(received.position[2].is_nan());
 
         flange.publish(Body::new(vec![1, 2, 3])).unwrap();
         let unknown = ObjectCommand { mode: 9, ..Default::default() };
         release.publish(Body::new(unknown.to_cdr())).unwrap();
-        wait_until("two refusals", || source.counters().n_malformed == 2);
+        wait_until("two malformed messages", || source.counters().n_malformed == 2);
 
         pose.pose.position.z = 0.5;
         object.publish(Body::new(pose.to_cdr())).unwrap();
         wait_until("the pose", || source.counters().n_received == 2);
         let mode = ObjectCommand::MODE_RELEASE;
-        let ask = ObjectCommand { mode, object: "cylinder".to_owned(), ..Default::default() };
-        release.publish(Body::new(ask.to_cdr())).unwrap();
+        let command = ObjectCommand { mode, object: "cylinder".to_owned(), ..Default::default() };
+        release.publish(Body::new(command.to_cdr())).unwrap();
         wait_until("the release", || source.counters().n_received == 3);
         let pose = PoseCommand {
             frame_id: "world".to_owned(),
@@ -169,13 +170,13 @@ fn commands_wait_in_order_for_the_next_tick() {
     });
 }
 
-/// Oracle: the contract. Under a flood the newest set-point arrives, a lone command on another
-/// topic survives, no drain returns more than the queues hold, and every message is counted.
+/// Oracle: under a flood the newest setpoint arrives, a single command on another topic is kept, no
+/// drain returns more than the capacity of the queues, and every message is counted.
 #[test]
-fn a_flood_of_commands_holds_up_nothing() {
-    inside("ros_loop::a_flood_of_commands_holds_up_nothing", || {
-        let here = RosNode::join(&reach()).unwrap();
-        let there = RosNode::join_as("flooder", &reach()).unwrap();
+fn a_flood_of_commands_delays_no_others() {
+    inside("ros_loop::a_flood_of_commands_delays_no_others", || {
+        let here = RosNode::join(&discovery_range()).unwrap();
+        let there = RosNode::join_as("flooder", &discovery_range()).unwrap();
         let mut source = RosSource::new(&here, &encoder()).unwrap();
         let seen = Synthetic::new("cylinder").snapshot;
         let vacuum = there.publisher(&topic("/jamgrip/vacuum_cmd")).unwrap();
@@ -185,18 +186,18 @@ fn a_flood_of_commands_holds_up_nothing() {
                 && there.n_readers("/jamgrip/flange/pose_cmd") == 1
         });
         flange.publish(Body::new(PoseStamped::default().to_cdr())).unwrap();
-        wait_until("the lone command", || source.has_heard());
+        wait_until("the single command", || source.has_received());
         let is_enough = Arc::new(AtomicBool::new(false));
         let stop = Arc::clone(&is_enough);
         let flood = std::thread::spawn(move || {
             for i in 0.. {
-                // A full window is the flooder's own trouble.
+                // A full window only affects the sender of the flood.
                 let _said = vacuum.publish(Body::new(Float64 { data: f64::from(i) }.to_cdr()));
                 if stop.load(Ordering::Relaxed) {
                     break;
                 }
             }
-            wait_until("room for the last command", || {
+            wait_until("space for the last command", || {
                 vacuum.publish(Body::new(Float64 { data: -70e3 }.to_cdr())).is_ok()
             });
             vacuum
@@ -204,7 +205,11 @@ fn a_flood_of_commands_holds_up_nothing() {
         wait_until("some of the flood", || 2_000 < source.counters().n_received);
         is_enough.store(true, Ordering::Relaxed);
         let mut drained = source.drain(&seen);
-        assert!(matches!(drained[0], Command::FlangePose(_)), "the lone command: {:?}", drained[0]);
+        assert!(
+            matches!(drained[0], Command::FlangePose(_)),
+            "the single command: {:?}",
+            drained[0]
+        );
         let mut n_drained = 0;
         wait_until("the end of the flood", || {
             assert!(drained.len() <= 2 * inbox::DEPTH, "{} at once", drained.len());
@@ -217,25 +222,25 @@ fn a_flood_of_commands_holds_up_nothing() {
         let counters = source.counters();
         n_drained += drained.len() as u64;
         assert_eq!(counters.n_received, n_drained + counters.n_dropped);
-        assert!(0 < counters.n_dropped, "a flood that fits the queue proves nothing");
+        assert!(0 < counters.n_dropped, "the flood must exceed the capacity of the queue");
     });
 }
 
-/// Oracle: another implementation of DDS, told ROS 2's names and types only. It hears every tick
-/// and the right forces, and what it says arrives as it was said. The clock's writer keeps one message,
-/// so a tick comes no sooner than the peer has heard the one before.
+/// Oracle: another DDS implementation that only knows the ROS 2 names and types. It receives every
+/// tick and the right forces, and its commands arrive as sent. The clock's writer keeps one
+/// message, so a tick is sent only after the peer has received the one before.
 #[test]
-fn an_independent_dds_hears_and_is_heard() {
-    inside_with_peers("ros_loop::an_independent_dds_hears_and_is_heard", || {
-        let node = RosNode::join(&reach()).unwrap();
+fn an_independent_dds_subscribes_and_publishes() {
+    inside_with_peers("ros_loop::an_independent_dds_subscribes_and_publishes", || {
+        let node = RosNode::join(&discovery_range()).unwrap();
         let encoder = encoder();
         let mut sink = RosSink::new(&node, &encoder).unwrap();
         let mut source = RosSource::new(&node, &encoder).unwrap();
         let folder = tempfile::tempdir().unwrap();
         let seconds = std::env::var("JAMGRIP_LOOP_SECONDS").unwrap_or_else(|_| "2".to_owned());
-        let mut peer = peers::script("hear_and_say.py")
+        let mut peer = peers::script("subscribe_and_publish.py")
             .arg(&seconds)
-            .env("ROS_DOMAIN_ID", reach().domain_id.to_string())
+            .env("ROS_DOMAIN_ID", discovery_range().domain_id.to_string())
             .env("CYCLONEDDS_URI", format!("file://{}", cyclone_config(folder.path()).display()))
             .stdout(Stdio::piped())
             .spawn()
@@ -243,7 +248,7 @@ fn an_independent_dds_hears_and_is_heard() {
         let mut said = BufReader::new(peer.stdout.take().unwrap());
         let mut line = String::new();
         said.read_line(&mut line).unwrap();
-        assert_eq!(line, "ready\n", "the peer found its partners");
+        assert_eq!(line, "ready\n", "the peer is matched");
 
         let (send, lines) = mpsc::channel();
         let listener = std::thread::spawn(move || {
@@ -251,7 +256,7 @@ fn an_independent_dds_hears_and_is_heard() {
         });
         let n_ticks = 1000 * seconds.parse::<u64>().unwrap();
         let mut system = Synthetic::new("cylinder");
-        let (mut heard, mut small, mut large) = (Vec::new(), Cost::default(), Cost::default());
+        let (mut received, mut small, mut large) = (Vec::new(), Cost::default(), Cost::default());
         let start = now();
         for tick in 1..=n_ticks {
             system.advance_to(tick);
@@ -263,28 +268,28 @@ fn an_independent_dds_hears_and_is_heard() {
             sink.write(&packet).unwrap();
             let cost = if packet.snapshot.grains.is_some() { &mut large } else { &mut small };
             cost.add(n_messages, now() - before);
-            heard.extend(source.drain(&system.snapshot));
+            received.extend(source.drain(&system.snapshot));
             let due = start + Duration::from_millis(tick);
             std::thread::sleep(due.saturating_duration_since(now()));
-            // A tick that was lost shows in the end; it is not waited for for ever.
-            let wanted = format!("heard {tick}");
+            // A lost tick shows in the end; the test does not wait for it forever.
+            let expected = format!("received {tick}");
             while tick < n_ticks
-                && lines.recv_timeout(Duration::from_secs(10)).is_ok_and(|it| it != wanted)
+                && lines.recv_timeout(Duration::from_secs(10)).is_ok_and(|it| it != expected)
             {
             }
         }
         writeln!(std::io::stderr(), "without clouds {small:?}, with clouds {large:?}").unwrap();
         listener.join().unwrap().unwrap();
         let line = lines.try_iter().last().unwrap_or_default();
-        assert!(peer.wait().unwrap().success(), "the peer said: {line}");
-        heard.extend(source.drain(&system.snapshot));
-        check_what_the_peer_heard(&serde_json::from_str(&line).unwrap(), n_ticks);
-        check_what_was_heard_of_the_peer(&heard);
+        assert!(peer.wait().unwrap().success(), "the peer printed: {line}");
+        received.extend(source.drain(&system.snapshot));
+        check_received_by_peer(&serde_json::from_str(&line).unwrap(), n_ticks);
+        check_received_from_peer(&received);
         assert_eq!(source.counters().n_malformed, 0);
     });
 }
 
-/// What publishing cost the sink's thread.
+/// Time that publishing took on the sink's thread.
 #[derive(Debug, Default)]
 struct Cost {
     n_ticks: u32,
@@ -302,13 +307,13 @@ impl Cost {
     }
 }
 
-fn check_what_the_peer_heard(peer: &serde_json::Value, n_ticks: u64) {
+fn check_received_by_peer(peer: &serde_json::Value, n_ticks: u64) {
     let n_inputs = topics(&scene()).iter().filter(|it| it.is_input).count();
     let n_outputs = topics(&scene()).len() - n_inputs;
-    // Besides its topics the node writes /rosout, /parameter_events and ros_discovery_info.
+    // Besides its topics, the node writes /rosout, /parameter_events and ros_discovery_info.
     let listed = serde_json::json!([n_inputs, n_outputs + 3]);
     assert_eq!(peer["nodes"]["/jamgrip"], listed, "the node and its topics in the graph");
-    assert_eq!(peer["faults"], serde_json::json!([]));
+    assert_eq!(peer["errors"], serde_json::json!([]));
     assert_eq!((&peer["n_ticks"], &peer["n_ticks_missed"]), (&n_ticks.into(), &0.into()));
     assert_eq!(peer["is_clock_steady"], true);
     assert_eq!(peer["status"], 3, "NO_OBJECT_DETECTED");
@@ -316,17 +321,17 @@ fn check_what_the_peer_heard(peer: &serde_json::Value, n_ticks: u64) {
         (&peer["are_forces_right"], &peer["wrench_frame"]),
         (&true.into(), &"gripper_flange".into())
     );
-    // The peer stops at the last clock; what belongs to the same tick may come behind it.
+    // The peer stops at the last clock message; other messages of the same tick may follow it.
     let n_forces = peer["n_forces"].as_u64().unwrap();
     assert!((n_ticks / 4 - 1..=n_ticks / 4).contains(&n_forces), "{n_forces} wrenches");
-    for list in ["n_clouds", "n_sheets"] {
+    for list in ["n_clouds", "n_membranes"] {
         let count = peer[list].as_u64().unwrap();
         assert!((n_ticks / 33 - 1..=n_ticks / 33).contains(&count), "{list}: {count}");
     }
 }
 
-fn check_what_was_heard_of_the_peer(heard: &[Command]) {
-    let vacuum: Vec<f64> = heard
+fn check_received_from_peer(received: &[Command]) {
+    let vacuum: Vec<f64> = received
         .iter()
         .filter_map(|it| match it {
             Command::Vacuum { gauge_pa } => Some(*gauge_pa),
@@ -335,7 +340,7 @@ fn check_what_was_heard_of_the_peer(heard: &[Command]) {
         .collect();
     let expected: Vec<f64> = (0..100).map(|it| -100.0 * f64::from(it)).collect();
     assert_eq!(vacuum, expected, "the vacuum commands in order");
-    let poses: Vec<&PoseCommand> = heard
+    let poses: Vec<&PoseCommand> = received
         .iter()
         .filter_map(|it| match it {
             Command::FlangePose(pose) => Some(pose),

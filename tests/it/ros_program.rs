@@ -1,4 +1,4 @@
-//! The whole program in a process of its own, and clients of its services.
+//! The whole program in its own process, and clients of its services.
 
 use std::{
     path::Path,
@@ -10,7 +10,7 @@ use jamgrip::{
     io::server::ServiceSpec,
     ros::{
         node::RosNode,
-        service::{RosClient, Way},
+        service::{RosClient, ServiceMapping},
     },
     wire::{
         cdr::Cdr,
@@ -19,18 +19,18 @@ use jamgrip::{
 };
 use serde::{Serialize, de::DeserializeOwned};
 
-use crate::{coarse, private_network::reach};
+use crate::{coarse, private_network::discovery_range};
 
-/// The program with the coarse gripper, which waits for someone to begin.
-pub(crate) struct Running(Child);
+/// The program with the coarse gripper, waiting for a first command.
+pub(crate) struct Program(Child);
 
-impl Running {
-    /// Starts it; `changes` are keys of the scene.
+impl Program {
+    /// Starts it; `changes` are overrides of the scene.
     pub(crate) fn start(folder: &Path, changes: &[&str]) -> Self {
         Self::start_with(folder, changes, &[])
     }
 
-    /// The same with more on the command line.
+    /// Starts it with more command-line arguments.
     pub(crate) fn start_with(folder: &Path, changes: &[&str], more: &[&str]) -> Self {
         let scene = folder.join("coarse.yaml");
         std::fs::write(&scene, coarse::TEXT).unwrap();
@@ -43,7 +43,7 @@ impl Running {
             .args(changes.iter().flat_map(|it| ["--set", it]))
             .args(if more.contains(&"--cache") { &[][..] } else { &cache[..] })
             .args(more)
-            .env("ROS_DOMAIN_ID", reach().domain_id.to_string())
+            .env("ROS_DOMAIN_ID", discovery_range().domain_id.to_string())
             .stdout(Stdio::null())
             .spawn()
             .unwrap();
@@ -51,8 +51,8 @@ impl Running {
     }
 }
 
-impl Running {
-    /// Asks it to end, and waits until it has.
+impl Program {
+    /// Sends SIGINT and waits until the process has ended.
     pub(crate) fn end(mut self) {
         let kill = Command::new("kill").args(["-INT", &self.0.id().to_string()]).status();
         assert!(kill.unwrap().success());
@@ -60,9 +60,9 @@ impl Running {
     }
 }
 
-impl Drop for Running {
+impl Drop for Program {
     fn drop(&mut self) {
-        // It may be gone already.
+        // It may have ended already.
         drop(self.0.kill());
         drop(self.0.wait());
     }
@@ -72,50 +72,50 @@ impl Drop for Running {
 pub(crate) struct Client(RosClient);
 
 impl Client {
-    /// Waits until it is served.
+    /// Opens a client and waits until it is matched.
     pub(crate) fn of<S: RosService>(node: &RosNode, name: &str) -> Self {
         Self::typed(node, name, S::TYPE)
     }
 
-    /// The same for a service known by its type's description.
+    /// Opens a client of a service with this type.
     pub(crate) fn typed(node: &RosNode, name: &str, service_type: ServiceType) -> Self {
         Self::at(node, &format!("/jamgrip/{name}"), service_type)
     }
 
-    /// The same by its full name.
+    /// Opens a client of a service with this full name.
     pub(crate) fn at(node: &RosNode, name: &str, service_type: ServiceType) -> Self {
-        let offer = ServiceSpec { name: name.to_owned(), service_type };
-        let mut client = RosClient::open(node, &offer, Way::Enhanced).unwrap();
+        let spec = ServiceSpec { name: name.to_owned(), service_type };
+        let mut client = RosClient::open(node, &spec, ServiceMapping::Enhanced).unwrap();
         wait_until(name, || client.is_matched());
         Self(client)
     }
 
-    /// Asks and waits for the answer.
-    pub(crate) fn ask<Q: Serialize, A: DeserializeOwned>(&mut self, question: &Q) -> A {
-        self.say(question);
-        self.hear()
+    /// Sends a request and waits for the response.
+    pub(crate) fn call<Q: Serialize, A: DeserializeOwned>(&mut self, request: &Q) -> A {
+        self.send(request);
+        self.receive()
     }
 
-    /// Asks.
-    pub(crate) fn say<Q: Serialize>(&mut self, question: &Q) {
-        self.0.ask(&Cdr::of(question));
+    /// Sends a request.
+    pub(crate) fn send<Q: Serialize>(&mut self, request: &Q) {
+        self.0.send(&Cdr::of(request));
     }
 
-    /// Waits for the answer.
-    pub(crate) fn hear<A: DeserializeOwned>(&mut self) -> A {
-        let mut answer = None;
-        wait_until("an answer", || {
-            answer = self.0.answer();
-            answer.is_some()
+    /// Waits for the response.
+    pub(crate) fn receive<A: DeserializeOwned>(&mut self) -> A {
+        let mut response = None;
+        wait_until("a response", || {
+            response = self.0.take_response();
+            response.is_some()
         });
-        answer.unwrap().read().unwrap()
+        response.unwrap().read().unwrap()
     }
 }
 
-/// Waits until `is_so`, about a minute.
-pub(crate) fn wait_until(what: &str, mut is_so: impl FnMut() -> bool) {
+/// Waits until `condition`, for about a minute.
+pub(crate) fn wait_until(what: &str, mut condition: impl FnMut() -> bool) {
     for _ in 0..60_000 {
-        if is_so() {
+        if condition() {
             return;
         }
         std::thread::sleep(Duration::from_millis(1));

@@ -1,5 +1,5 @@
-//! Every scene that we ship can be run, and every bad one is refused with exactly the message that
-//! stands beside it.
+//! Every shipped scene is valid, and every bad scene is rejected with exactly the message in its .txt
+//! file.
 //!
 //! After a change of a message: `JAMGRIP_UPDATE=1 cargo test --release scenes`, then read the diff.
 
@@ -18,7 +18,7 @@ fn yaml_files(folder: &str) -> Vec<PathBuf> {
     files
 }
 
-/// Oracle: the scene itself, before it was printed with units and read again.
+/// Oracle: the scene itself, before it was printed and read again.
 #[test]
 fn shipped_scenes_parse_and_their_printed_form_is_the_same_scene() {
     let scenes: Vec<_> = yaml_files("launch_configs")
@@ -36,14 +36,14 @@ fn shipped_scenes_parse_and_their_printed_form_is_the_same_scene() {
 
 /// Oracle: the message in the .txt file, as reviewed.
 #[test]
-fn bad_scenes_are_refused_with_place_value_limit_and_remedy() {
+fn bad_scenes_are_rejected_with_location_value_limit_and_remedy() {
     let scenes = yaml_files("tests/golden/bad_scenes");
-    assert!(20 <= scenes.len(), "the bad scenes are there");
+    assert!(20 <= scenes.len(), "bad scenes are missing");
     let is_update = std::env::var_os("JAMGRIP_UPDATE").is_some();
     for path in scenes {
         let golden = path.with_extension("txt");
         let found = match scene::load(&path, &[]) {
-            Ok(_) => panic!("{} was not refused", path.display()),
+            Ok(_) => panic!("{} was accepted", path.display()),
             Err(error) => format!("{error}\n"),
         };
         if is_update {

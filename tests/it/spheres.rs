@@ -1,4 +1,4 @@
-//! Grains on the classic membrane: spheres around its vertices in place of triangles.
+//! Grains on a membrane with vertex spheres instead of triangles.
 
 use jamgrip::{
     base::{Real, Vec3, digest::Digest, parallel},
@@ -12,22 +12,22 @@ use jamgrip::{
 };
 
 use crate::{
+    membrane::{hexagon, on_one_thread},
     rig::{GRAIN, Rig, elastic, hertz_constant},
-    sheet::{alone, hexagon},
 };
 
 const EDGE: Real = 1.33e-3;
 const SPHERE: Real = 0.67e-3;
 const RADIUS: Real = 2e-3;
 
-/// A held hexagon of spheres, `n` edges along each side; its outside is below.
+/// A fixed hexagon of spheres, `n` edges along each side; its outside is below.
 fn rig(n: i32, surface: Surface, dt: Real) -> Rig {
-    let mut rig = Rig::on_sheet(&GRAIN, surface, hexagon(n, EDGE), dt);
+    let mut rig = Rig::on_membrane(&GRAIN, surface, hexagon(n, EDGE), dt);
     rig.model.membrane.contact = MembraneContact::Spheres { radius: SPHERE };
     rig
 }
 
-/// The contacts that carry load.
+/// The contacts with a force.
 fn loaded(rig: &Rig) -> Vec<SphereForce> {
     rig.scratch.sphere_forces.iter().filter(|it| it.flags.touches()).copied().collect()
 }
@@ -38,30 +38,30 @@ fn shared_radius() -> Real {
 
 #[test]
 fn the_force_is_that_of_two_spheres() {
-    alone(|| {
-        // A grain above a vertex, a bridge and a hollow, so high that it overlaps one, two or three
-        // spheres by the same ξ, and no others.
+    on_one_thread(|| {
+        // A grain above a vertex, an edge and a triangle, at a height at which it overlaps one, two or
+        // three spheres by the same ξ.
         let overlap = 1e-5;
-        let apart = RADIUS + SPHERE - overlap;
-        let places = [
+        let distance = RADIUS + SPHERE - overlap;
+        let positions = [
             (1, Vec3::zeros()),
             (2, Vec3::new(0.5, 0.0, 0.0) * EDGE),
             (3, Vec3::new(0.5, 0.75_f64.sqrt() / 3.0, 0.0) * EDGE),
         ];
-        for (n, place) in places {
+        for (n, position) in positions {
             let mut rig = rig(3, elastic(0.0), 1e-6);
-            let height = (apart * apart - place.norm_squared()).sqrt();
-            rig.add_grain(place + Vec3::z() * height, Vec3::zeros(), RADIUS, GRAIN.density);
+            let height = (distance * distance - position.norm_squared()).sqrt();
+            rig.add_grain(position + Vec3::z() * height, Vec3::zeros(), RADIUS, GRAIN.density);
             rig.step();
             let contacts = loaded(&rig);
-            assert_eq!(contacts.len(), n, "spheres below {place:?}");
+            assert_eq!(contacts.len(), n, "spheres below {position:?}");
             // Oracle: Hertz, F = 4/3 E* √R* ξ^(3/2) with R* = R r/(R + r), along the line of
-            // centres. Tolerance: rounding of positions (1e-16 of 3 mm over an overlap of 10 µm).
+            // centers. Tolerance: rounding of positions (1e-16 of 3 mm over an overlap of 10 µm).
             let expected =
                 hertz_constant(&rig.model.membrane_law, shared_radius()) * overlap.powf(1.5);
             for contact in &contacts {
                 let vertex = rig.model.membrane.mesh.positions[contact.vertex as usize];
-                let direction = (place + Vec3::z() * height - vertex).normalize();
+                let direction = (position + Vec3::z() * height - vertex).normalize();
                 assert!((contact.force - direction * expected).norm() < 1e-9 * expected);
                 assert!((contact.overlap / overlap - 1.0).abs() < 1e-9);
             }
@@ -70,8 +70,8 @@ fn the_force_is_that_of_two_spheres() {
 }
 
 #[test]
-fn what_the_grain_gets_the_vertices_give() {
-    alone(|| {
+fn forces_on_grain_and_vertices_are_opposite() {
+    on_one_thread(|| {
         let surface = Surface { friction: 1.2, dissipation_time: 1e-5, tangential_damping: 0.3 };
         let mut rig = rig(4, surface, 1e-6);
         let position = Vec3::new(0.62e-3, 0.35e-3, RADIUS + 0.52e-3);
@@ -98,9 +98,9 @@ fn what_the_grain_gets_the_vertices_give() {
                 scale += contact.force.norm();
             }
             n_touched = n_touched.max(loaded(&rig).len());
-            // Oracle: Newton's third law, and that force and reaction act in one point: what is
-            // missing about the vertices is the couple that keeps their spheres from turning.
-            // Tolerance: rounding, of velocities of 0.2 m/s gained by forces over one substep.
+            // Oracle: Newton's third law, with force and reaction at the same point. The difference of
+            // the moments about the vertices is the couple that keeps their spheres from rotating.
+            // Tolerance: rounding of velocities of 0.2 m/s.
             let sum: Vec3 = rig.scratch.vertex_forces.iter().sum();
             let rounding = 1e-15 * mass / rig.model.substep;
             assert!((sum + gained).norm() <= 1e-12 * scale + rounding, "{sum:?} {gained:?}");
@@ -114,8 +114,8 @@ fn what_the_grain_gets_the_vertices_give() {
 }
 
 #[test]
-fn a_free_sheet_and_a_smooth_grain_keep_momentum_and_angular_momentum() {
-    alone(|| {
+fn a_free_membrane_and_a_smooth_grain_conserve_momentum() {
+    on_one_thread(|| {
         let mut rig = rig(4, elastic(0.0), 1e-6);
         rig.model.membrane.holders.fill(FREE);
         rig.add_grain(
@@ -126,9 +126,9 @@ fn a_free_sheet_and_a_smooth_grain_keep_momentum_and_angular_momentum() {
         );
         let total = |rig: &Rig| {
             let (mut linear, mut angular) = rig.momenta();
-            let sheet = &rig.state.membrane;
+            let membrane = &rig.state.membrane;
             for ((r, v), m) in
-                sheet.positions.iter().zip(&sheet.velocities).zip(&rig.model.membrane.masses)
+                membrane.positions.iter().zip(&membrane.velocities).zip(&rig.model.membrane.masses)
             {
                 linear += v * *m;
                 angular += r.cross(v) * *m;
@@ -140,14 +140,14 @@ fn a_free_sheet_and_a_smooth_grain_keep_momentum_and_angular_momentum() {
             rig.step();
         }
         let (linear_now, angular_now) = total(&rig);
-        assert!(rig.state.grains.velocities[0].z > -0.4, "the sheet has slowed the grain");
+        assert!(rig.state.grains.velocities[0].z > -0.4, "the membrane has slowed the grain");
         // Oracle: conservation. Tolerance: rounding of 3000 substeps.
         assert!((linear_now - linear).norm() < 1e-12 * linear.norm());
         assert!((angular_now - angular).norm() < 1e-12 * linear.norm() * RADIUS);
     });
 }
 
-/// A heap of grains thrown onto a taut sheet of spheres.
+/// A heap of grains that falls onto a taut membrane of spheres.
 fn heap() -> Rig {
     let surface = Surface { friction: 0.5, dissipation_time: 1e-5, tangential_damping: 0.3 };
     let mut rig = rig(9, surface, 4e-6);
@@ -161,13 +161,13 @@ fn heap() -> Rig {
         for column in 0..9 {
             let (x, y) = (Real::from(column % 3 - 1), Real::from(column / 3 - 1));
             let shift = 0.3 * Real::from(layer);
-            let place = Vec3::new(
+            let position = Vec3::new(
                 (x * 2.1 + shift) * RADIUS,
                 (y * 2.1 - shift) * RADIUS,
                 (1.4 + 2.1 * Real::from(layer)) * RADIUS,
             );
             let velocity = Vec3::new(0.1 * y, -0.1 * x, -0.3);
-            rig.add_grain(place, velocity, RADIUS, GRAIN.density);
+            rig.add_grain(position, velocity, RADIUS, GRAIN.density);
         }
     }
     rig.model.skin = 0.25 * RADIUS;
@@ -180,15 +180,15 @@ fn digest(rig: &Rig) -> u64 {
     digest.finish()
 }
 
-/// What a heap did on its way.
-struct Way {
+/// Results of a run with a heap.
+struct HeapRun {
     digests: Vec<u64>,
     n_builds: u64,
-    /// Most springs that were loaded at the same time.
+    /// Largest number of simultaneously loaded springs.
     n_loaded_max: usize,
 }
 
-fn run(mut rig: Rig, n_threads: usize) -> Way {
+fn run(mut rig: Rig, n_threads: usize) -> HeapRun {
     let (mut digests, mut n_loaded_max) = (Vec::new(), 0);
     parallel::lead(&parallel::ThreadPool::new(n_threads).unwrap(), || {
         for step in 0..4000 {
@@ -202,7 +202,7 @@ fn run(mut rig: Rig, n_threads: usize) -> Way {
         }
     });
     health::check(&rig.state, &rig.scratch, 0).unwrap();
-    Way { digests, n_builds: rig.scratch.neighbours.n_builds, n_loaded_max }
+    HeapRun { digests, n_builds: rig.scratch.neighbors.n_builds, n_loaded_max }
 }
 
 #[test]
@@ -213,52 +213,56 @@ fn threads_and_rebuilds_change_no_bit() {
     for (n_threads, share) in [(2, 1.0), (7, 1.0), (1, 0.2), (2, 3.0)] {
         let mut rig = heap();
         rig.model.skin *= share;
-        let way = run(rig, n_threads);
+        let found = run(rig, n_threads);
         let same_skin = share.to_bits() == 1.0_f64.to_bits();
-        assert_eq!(way.n_builds == expected.n_builds, same_skin, "built at other times");
+        assert_eq!(
+            found.n_builds == expected.n_builds,
+            same_skin,
+            "the lists are built at other times"
+        );
         // Oracle: the run on one thread with the usual skin, to the last bit: also the springs,
-        // which were handed over at other times.
-        assert_eq!(way.digests, expected.digests, "{n_threads} threads, skin × {share}");
+        // which are transferred at other times.
+        assert_eq!(found.digests, expected.digests, "{n_threads} threads, skin × {share}");
     }
 }
 
 #[test]
-fn a_saved_heap_goes_on_with_the_same_bits() {
-    alone(|| {
-        let mut whole = heap();
-        (0..1500).for_each(|_| whole.step());
+fn a_saved_heap_continues_with_the_same_bits() {
+    on_one_thread(|| {
+        let mut uninterrupted = heap();
+        (0..1500).for_each(|_| uninterrupted.step());
         let mut resumed = heap();
-        resumed.state = saved_state::read(&saved_state::write(&whole.state)).unwrap();
+        resumed.state = saved_state::read(&saved_state::write(&uninterrupted.state)).unwrap();
         resumed.scratch = Scratch::new(&resumed.model);
         for _ in 0..500 {
-            whole.step();
+            uninterrupted.step();
             resumed.step();
         }
-        // Oracle: the run without a break.
-        assert_eq!(digest(&resumed), digest(&whole));
+        // Oracle: the uninterrupted run.
+        assert_eq!(digest(&resumed), digest(&uninterrupted));
     });
 }
 
-/// A grain dropped through the middle of a hole of the sheet, much smaller than the hole.
+/// A grain much smaller than a hole of the membrane falls through it.
 #[test]
-fn a_grain_that_falls_through_a_hole_is_found() {
-    alone(|| {
+fn a_grain_that_falls_through_a_hole_is_detected() {
+    on_one_thread(|| {
         let mut rig = rig(3, elastic(0.0), 1e-5);
         let hole = Vec3::new(0.5, 0.75_f64.sqrt() / 3.0, 0.0) * EDGE;
         rig.add_grain(hole + Vec3::z() * 1e-3, Vec3::z() * -0.1, 0.05e-3, GRAIN.density);
         rig.model.skin = 0.25 * 0.05e-3;
-        let mut found_below = None;
+        let mut height_found = None;
         for _ in 0..3000 {
             rig.step();
             let height = rig.state.grains.positions[0].z;
             if health::check(&rig.state, &rig.scratch, 0).is_err() {
-                found_below = Some(height);
+                height_found = Some(height);
                 break;
             }
         }
-        // Oracle: where the grain is. Found after its centre has crossed z = 0, and before it is
-        // further off than the skin.
-        let height = found_below.unwrap();
+        // Oracle: the position of the grain. It must be detected after its center has crossed z = 0 and
+        // before it is farther away than the skin.
+        let height = height_found.unwrap();
         assert!(height < 0.0 && height > -rig.model.skin, "found at {height:e} m");
     });
 }

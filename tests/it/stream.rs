@@ -1,4 +1,4 @@
-//! Zero-copy streams: what a reader on this host sees, and that no reader can hold up the writer.
+//! Zero-copy streams: what a reader on this host receives, and that no reader can delay the writer.
 
 use std::{
     io::{BufRead, BufReader},
@@ -19,14 +19,14 @@ fn prefix(what: &str) -> String {
     format!("jamgrip_test_{}_{what}", std::process::id())
 }
 
-#[expect(clippy::disallowed_methods, reason = "a limit on how long a test waits")]
+#[expect(clippy::disallowed_methods, reason = "a timeout of the test")]
 fn now() -> Instant {
     Instant::now()
 }
 
-/// Oracle: the synthetic system's formula, read from the other side of shared memory, bit by bit.
+/// Oracle: the formula of the synthetic system, read from shared memory, bit for bit.
 #[test]
-fn a_reader_sees_every_tick_as_it_was() {
+fn a_reader_receives_every_tick() {
     let prefix = prefix("every_tick");
     let mut stream = Stream::open(&prefix, N_GRAINS, N_VERTICES).unwrap();
     let services = Services::join(&prefix).unwrap();
@@ -63,9 +63,9 @@ fn a_reader_sees_every_tick_as_it_was() {
     assert_eq!((stream.counters().n_written, stream.counters().n_failed), (100, 0));
 }
 
-/// Oracle: the contract. A reader that never reads loses the oldest ticks; the newest stay.
+/// Oracle: a reader that never reads loses the oldest ticks; the newest stay.
 #[test]
-fn a_reader_that_sleeps_loses_old_ticks_and_holds_up_nothing() {
+fn a_sleeping_reader_loses_old_ticks_and_delays_nothing() {
     let prefix = prefix("sleeper");
     let mut stream = Stream::open(&prefix, N_GRAINS, N_VERTICES).unwrap();
     let services = Services::join(&prefix).unwrap();
@@ -80,20 +80,23 @@ fn a_reader_that_sleeps_loses_old_ticks_and_holds_up_nothing() {
     }
     assert_eq!((stream.counters().n_written, stream.counters().n_failed), (5000, 0));
 
-    let mut seen = Vec::new();
+    let mut received = Vec::new();
     while let Some(row) = states.receive().unwrap() {
-        seen.push(row.tick);
+        received.push(row.tick);
     }
-    assert_eq!(seen.last(), Some(&5000), "the newest tick is there");
-    assert!(seen.len() <= 4 && seen.windows(2).all(|it| it[0] + 1 == it[1]), "{seen:?}");
+    assert_eq!(received.last(), Some(&5000), "the newest tick is available");
+    assert!(
+        received.len() <= 4 && received.windows(2).all(|it| it[0] + 1 == it[1]),
+        "{received:?}"
+    );
     let list = grains.receive().unwrap().expect("grains of a recent tick");
     assert!(is(list.payload()[0].position[0], number(list.user_header().tick)));
 }
 
-/// Oracle: the contract. A second process reads, is killed while it reads, and the writer goes on
-/// without a fault.
+/// Oracle: a second process reads and is killed while it reads; the writer continues without an
+/// error.
 #[test]
-fn another_process_reads_and_may_die() {
+fn another_process_reads_and_may_be_killed() {
     let prefix = prefix("two_processes");
     let mut stream = Stream::open(&prefix, N_GRAINS, N_VERTICES).unwrap();
     let mut system = Synthetic::new("object");
@@ -123,7 +126,7 @@ fn another_process_reads_and_may_die() {
         lines.map_while(Result::ok).try_for_each(|line| send.send(line))
     });
     let start = now();
-    // It says once a second what it has read; before its first state it says `tick 0`.
+    // It prints once a second what it has read; before its first state it prints `tick 0`.
     while !received.try_iter().any(|line| line.starts_with("tick ") && !line.starts_with("tick 0 "))
     {
         assert!(now() - start < Duration::from_secs(60), "the first reader read nothing in 60 s");
@@ -133,33 +136,39 @@ fn another_process_reads_and_may_die() {
     victim.kill().unwrap();
     victim.wait().unwrap();
     drop(received);
-    // It ends with the victim's output; a line that nobody takes any more ends it earlier.
+    // The thread ends with the victim's output, or when nothing receives its lines.
     let _ended = listener.join().unwrap();
     write_for(&mut stream, Duration::from_millis(500));
 
     let mut reader = spawn("200");
     let start = now();
     while reader.try_wait().unwrap().is_none() {
-        assert!(now() - start < Duration::from_secs(60), "the reader got no 200 states in 60 s");
+        assert!(
+            now() - start < Duration::from_secs(60),
+            "the reader did not receive 200 states in 60 s"
+        );
         write_for(&mut stream, Duration::from_millis(50));
     }
     let output = reader.wait_with_output().unwrap();
-    let said = String::from_utf8(output.stdout).unwrap();
-    assert!(output.status.success() && said.contains("3000 grains down to 498.0 mm"), "{said}");
-    let fault = stream.take_fault();
-    assert_eq!(stream.counters().n_failed, 0, "{fault:?}");
+    let output_text = String::from_utf8(output.stdout).unwrap();
+    assert!(
+        output.status.success() && output_text.contains("3000 grains down to 498.0 mm"),
+        "{output_text}"
+    );
+    let error = stream.take_error();
+    assert_eq!(stream.counters().n_failed, 0, "{error:?}");
 }
 
-/// Oracle: the contract. Two writers under one name are refused, and the text says the remedy.
+/// Oracle: a second writer under one name is rejected, and the error names the remedy.
 #[test]
-fn a_second_writer_is_told_how_to_choose_a_name() {
+fn a_second_writer_is_rejected_with_a_remedy() {
     let prefix = prefix("second");
     let _first = Stream::open(&prefix, 1, 1).unwrap();
     let error = Stream::open(&prefix, 1, 1).err().expect("one writer per name").to_string();
     assert!(error.contains(&prefix) && error.contains(PREFIX_VARIABLE), "{error}");
 }
 
-/// Equal bit by bit: the streams copy, they do not compute.
+/// Equal bit for bit: the streams copy, they do not compute.
 fn is(a: f64, b: f64) -> bool {
     a.to_bits() == b.to_bits()
 }

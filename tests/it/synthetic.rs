@@ -1,4 +1,4 @@
-//! A scene and snapshots made up for tests of what comes after the physics.
+//! A synthetic scene and snapshots, for tests that do not need the physics.
 
 use std::sync::Arc;
 
@@ -20,12 +20,12 @@ use jamgrip::{
     wire::to_ros::Encoder,
 };
 
-/// Length of a tick (ns).
+/// Length of a tick [ns].
 pub(crate) const TICK_NS: u64 = 1_000_000;
 /// Name of the only object.
 pub(crate) const OBJECT: &str = "cylinder";
 
-/// Rates that are easy to count with: 100 Hz of states, 10 Hz of grains and so on.
+/// A scene with round rates: 100 Hz for states, 10 Hz for grains, and so on.
 pub(crate) fn scene() -> Scene {
     let material = Material { youngs_modulus: 5e6, poisson_ratio: 0.3, density: 1000.0 };
     Scene {
@@ -112,7 +112,7 @@ fn outputs() -> Outputs {
 /// Two triangles.
 pub(crate) const TRIANGLES: [[u32; 3]; 2] = [[0, 1, 2], [0, 2, 3]];
 
-/// Their corners, at rest.
+/// Their vertices.
 pub(crate) fn corners() -> Vec<Vec3> {
     vec![
         Vec3::new(0.0, 0.0, -0.04),
@@ -127,7 +127,7 @@ pub(crate) fn encoder() -> Arc<Encoder> {
     Arc::new(Encoder::new(&Arc::new(scene()), &TRIANGLES, &corners()))
 }
 
-/// The packet of a tick, with the heavy parts when they are due.
+/// The packet of a tick, with large parts at their rates.
 pub(crate) fn packet(tick: u64) -> Arc<Packet> {
     Arc::new(Packet::new(snapshot(tick), tick.is_multiple_of(200).then(|| run(tick))))
 }
@@ -148,7 +148,7 @@ pub(crate) fn incompressible_packet(tick: u64) -> Arc<Packet> {
     Arc::new(Packet::new(snapshot, None))
 }
 
-/// The snapshot of a tick; its numbers depend on the tick, and none is zero.
+/// The snapshot of a tick. Its numbers depend on the tick, and none is zero.
 pub(crate) fn snapshot(tick: u64) -> Snapshot {
     let t = tick as f64 * 1e-3;
     let wrench = |scale: f64| Wrench {
@@ -217,9 +217,9 @@ fn membrane() -> MembraneSnapshot {
 }
 
 fn grains() -> GrainsSnapshot {
-    let place = |i: u32| Vec3::new(f64::from(i) * 1e-3, 1e-3, -1e-3);
+    let position = |i: u32| Vec3::new(f64::from(i) * 1e-3, 1e-3, -1e-3);
     GrainsSnapshot {
-        positions: (0..250).map(place).collect(),
+        positions: (0..250).map(position).collect(),
         radii: vec![2e-3; 250],
         velocities: vec![Vec3::new(1e-3, 2e-3, 3e-3); 250],
         normal_forces: (0..250).map(f64::from).collect(),
@@ -238,7 +238,7 @@ fn contacts() -> Vec<ContactSnapshot> {
     vec![contact(0.01, 1.0), contact(-0.01, 2.0)]
 }
 
-/// One command of each kind at the tenth tick, one of them refused.
+/// One command of each kind at tick 10, one of them rejected.
 fn commands(tick: u64) -> Vec<CommandRecord> {
     if tick != 10 {
         return Vec::new();
@@ -249,13 +249,13 @@ fn commands(tick: u64) -> Vec<CommandRecord> {
         position: [0.0, 0.1, f64::NAN],
         orientation: [0.0, 0.0, 0.0, 1.0],
     };
-    let refused = Refusal::NotFinite { field: "position.z", value: f64::NAN };
+    let reason = Refusal::NotFinite { field: "position.z", value: f64::NAN };
     let applied = |command| CommandRecord { command, outcome: Outcome::Applied };
     vec![
         applied(Command::Vacuum { gauge_pa: -80_000.0 }),
         CommandRecord {
             command: Command::FlangePose(pose.clone()),
-            outcome: Outcome::Refused(refused),
+            outcome: Outcome::Refused(reason),
         },
         applied(Command::ObjectPose { object: OBJECT.to_owned(), pose: pose.clone() }),
         applied(Command::ObjectPose { object: "ghost".to_owned(), pose }),

@@ -1,12 +1,12 @@
 //! A small triaxial specimen: isotropic under the confining pressure, stiffer when sheared, and the
-//! same bits after a break.
-#![expect(clippy::print_stderr, reason = "what was measured is shown with the result")]
+//! same bits after an interruption.
+#![expect(clippy::print_stderr, reason = "prints measured values")]
 
 use jamgrip::experiments::{
     Experiment, Plan, Run, SceneText, Size, record::Record, triaxial::Triaxial,
 };
 
-/// 205 grains in a tube half as wide and half as high as the source's, sheared five times as fast.
+/// 205 grains in a tube of half the radius and half the height of the source, sheared five times as fast.
 const SMALL: [&str; 12] = [
     "case1.radius=12.5 mm",
     "case1.height=50 mm",
@@ -27,23 +27,23 @@ fn plan(overrides: &[&str]) -> Box<dyn Plan> {
     let (source, text) = Triaxial.scene();
     Triaxial
         .read(&SceneText { text, source, overrides: &overrides, size: Size::Quick })
-        .unwrap_or_else(|faults| panic!("{faults}"))
+        .unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Goes on to the end.
+/// Runs to the end.
 fn finish(run: &mut dyn Run) -> Record {
     while !run.advance().unwrap().is_done {}
     run.record()
 }
 
-/// Goes to the end, saved and resumed by another run whenever a stage has gone on for three slices.
+/// Runs to the end. After the third slice of each stage, the run is saved and resumed by another one.
 fn finish_with_breaks(plan: &dyn Plan, case: &str) -> (Record, usize) {
     let mut run = plan.start(case).unwrap();
     let (mut last, mut n_slices, mut n_breaks) = ("", 0, 0);
     loop {
         let progress = run.advance().unwrap();
-        n_slices = if progress.stage == last { n_slices + 1 } else { 1 };
-        last = progress.stage;
+        n_slices = if progress.phase == last { n_slices + 1 } else { 1 };
+        last = progress.phase;
         if progress.is_done {
             return (run.record(), n_breaks);
         }
@@ -57,15 +57,15 @@ fn finish_with_breaks(plan: &dyn Plan, case: &str) -> (Record, usize) {
 }
 
 #[test]
-fn a_small_specimen_is_isotropic_gets_stiffer_and_a_break_costs_no_bit() {
+fn a_small_specimen_is_isotropic_stiffens_and_can_be_resumed_with_the_same_bits() {
     let plan = plan(&[]);
     let case = "case1_triangles_A";
     let record = finish(plan.start(case).unwrap().as_mut());
-    let (again, n_breaks) = finish_with_breaks(plan.as_ref(), case);
+    let (resumed, n_breaks) = finish_with_breaks(plan.as_ref(), case);
     assert!(n_breaks >= 3, "growing, confining, shearing: {n_breaks}");
-    // Oracle: the run without breaks.
-    assert_eq!(again.digest, record.digest);
-    assert_eq!(again, record);
+    // Oracle: the uninterrupted run.
+    assert_eq!(resumed.digest, record.digest);
+    assert_eq!(resumed, record);
 
     let first = |name: &str| record.column(name).unwrap()[0];
     let pressure = 1e5;
@@ -80,18 +80,18 @@ fn a_small_specimen_is_isotropic_gets_stiffer_and_a_break_costs_no_bit() {
     // Oracle: p_plate = p_c. Tolerance 1 %: the servo stops within 0.5 %, and the area is current.
     assert!(first("stress_difference").abs() < 0.01 * pressure);
     let applied = pressure + first("hoop_pressure");
-    // Oracle: U22, σ = 1/V Σ f l is the applied pressure: air, less what the springs of the membrane
-    // bear. Tolerance 4 %: the ends of the middle half cut some sixty contacts of so small a specimen,
-    // and their shear makes it scatter by 2 %; the row of the large ones keeps the 2 % of U22.
+    // Oracle: U22, σ = 1/V Σ f l is the applied pressure: that of the air minus that carried by the
+    // membrane's springs. Tolerance 4 %: the ends of the middle half cut about sixty contacts of this small
+    // specimen, which causes a scatter of 2 %; large specimens must meet the 2 % of U22.
     assert!((first("lateral_stress") / applied - 1.0).abs() < 0.04);
     let stress = record.column("stress_difference").unwrap();
-    // Oracle: Mohr and Coulomb, 20° would be 104 kPa; at 2 % strain at least a quarter of it is there.
+    // Oracle: Mohr–Coulomb; 20° would be 104 kPa. At 2 % strain at least a quarter of it is reached.
     assert!(stress[stress.len() - 1] > 0.25 * pressure, "{stress:?}");
     assert_eq!(record.validity.n_leaked, 0);
 }
 
 #[test]
-fn spheres_instead_of_triangles_hold_the_same_pressure_and_both_are_timed_in_turns() {
+fn spheres_carry_the_same_pressure_as_triangles_and_both_are_timed() {
     let plan = plan(&["shear.strain=0.01", "shear.n_points=5"]);
     let record = finish(plan.start("case1_spheres_A").unwrap().as_mut());
     let stress = record.column("stress_difference").unwrap();
@@ -103,7 +103,7 @@ fn spheres_instead_of_triangles_hold_the_same_pressure_and_both_are_timed_in_tur
     let timed = finish(plan.start("case1_timing").unwrap().as_mut());
     for kind in ["triangles", "spheres"] {
         assert!(timed.n_substeps[kind] > 0);
-        // Oracle: the scene's 0.1 ms, and at most a slice of substeps more.
+        // Oracle: 0.1 ms from the scene, plus at most one slice of substeps.
         let time = timed.scalar(&format!("time_{kind}")).unwrap();
         assert!((1e-4..5e-3).contains(&time), "{time}");
     }

@@ -1,7 +1,7 @@
-"""Calls services and an action the way that rmw_cyclonedds does, on CycloneDDS itself.
+"""Calls services and an action with the service mapping of rmw_cyclonedds, on CycloneDDS itself.
 
-Pauses the simulation, steps it by service and by action, grips, and reads a parameter; prints what
-came of it as one JSON line.
+Pauses the simulation, steps it by service and by action, grips, and reads a parameter; prints the
+results as one JSON line.
 """
 
 import json
@@ -30,7 +30,7 @@ def part(package, name, kind="srv"):
 
 @dataclass
 @final
-class Told(IdlStruct, typename="simulation_interfaces::msg::dds_::Result_"):
+class Result(IdlStruct, typename="simulation_interfaces::msg::dds_::Result_"):
     result: uint8 = 0
     error_message: str = ""
 
@@ -45,8 +45,8 @@ def half(name, package, **fields):
     return final(dataclass(made))
 
 
-def told():
-    return (Told, field(default_factory=Told))
+def result_field():
+    return (Result, field(default_factory=Result))
 
 
 SIMULATION = "simulation_interfaces"
@@ -54,11 +54,11 @@ GOAL = (array[uint8, 16], field(default_factory=lambda: [0] * 16))
 TYPES = {
     "set_simulation_state": (
         half("SetSimulationState_Request", SIMULATION, state=(uint8, 0)),
-        half("SetSimulationState_Response", SIMULATION, result=told()),
+        half("SetSimulationState_Response", SIMULATION, result=result_field()),
     ),
     "step_simulation": (
         half("StepSimulation_Request", SIMULATION, steps=(uint64, 0)),
-        half("StepSimulation_Response", SIMULATION, result=told()),
+        half("StepSimulation_Response", SIMULATION, result=result_field()),
     ),
     "grip_cmd": (
         half("SetBool_Request", "std_srvs", data=(bool, False)),
@@ -75,7 +75,7 @@ TYPES = {
     ),
     "simulate_steps/_action/get_result": (
         half("SimulateSteps_GetResult_Request", SIMULATION, goal_id=GOAL),
-        half("SimulateSteps_GetResult_Response", SIMULATION, status=(int8, 0), result=told()),
+        half("SimulateSteps_GetResult_Response", SIMULATION, status=(int8, 0), result=result_field()),
     ),
     "get_parameter_types": (
         half("GetParameterTypes_Request", "rcl_interfaces", names=(sequence[str], field(default_factory=list))),
@@ -147,7 +147,7 @@ gripped = Client(node, "grip_cmd").call(data=True)
 kinds = Client(node, "get_parameter_types").call(names=["chamber.lag", "nothing", "seed"])
 time.sleep(0.3)
 after = {it.clock.seconds() for it in clock.take(N=1000)}
-told_steps = [(it.completed_steps, it.remaining_steps) for it in feedback.take(N=100)]
+steps_reported = [(it.completed_steps, it.remaining_steps) for it in feedback.take(N=100)]
 print(
     json.dumps(
         {
@@ -159,7 +159,7 @@ print(
             "gripped": gripped.success,
             "types": list(kinds.types),
             "n_ticks": len([it for it in after if it > before]),
-            "feedback": told_steps,
+            "feedback": steps_reported,
             "listed": node.nodes()["/jamgrip"],
         }
     ),

@@ -1,5 +1,5 @@
-// A ROS 2 peer on Fast DDS itself, told only ROS 2's names and types, going the way of rmw_fastrtps: reads
-// topics, commands a vacuum, calls services and an action, and says what came of it as one JSON line.
+// A ROS 2 peer on Fast DDS itself, which only knows the ROS 2 names and types, with the service mapping of
+// rmw_fastrtps: reads topics, commands a vacuum, calls services and an action, and prints one JSON line.
 
 #include <chrono>
 #include <cstdint>
@@ -32,7 +32,7 @@ using eprosima::fastrtps::rtps::SerializedPayload_t;
 using eprosima::fastrtps::rtps::WriteParams;
 using Bytes = std::vector<uint8_t>;
 
-// Any type: bytes of little-endian CDR behind the four that name the encoding.
+// Any type: bytes of little-endian CDR after the four bytes of encapsulation.
 class AnyType : public TopicDataType {
 public:
     explicit AnyType(const std::string& name) {
@@ -115,45 +115,45 @@ template <typename T> static Bytes bytes(T value) {
     return body;
 }
 
-// A service's client: requests name the reader that answers shall go to.
+// A service client: requests name the reader for the responses.
 class Client {
 public:
     Client(const std::string& name, const std::string& package, const std::string& type)
-        : name_(name), asks_(writer("rq/jamgrip/" + name + "Request", package + "::dds_::" + type + "_Request_")),
-          answers_(reader("rr/jamgrip/" + name + "Reply", package + "::dds_::" + type + "_Response_")) {
+        : name_(name), requests_(writer("rq/jamgrip/" + name + "Request", package + "::dds_::" + type + "_Request_")),
+          responses_(reader("rr/jamgrip/" + name + "Reply", package + "::dds_::" + type + "_Response_")) {
         wait_for(name.c_str(), [this] {
-            PublicationMatchedStatus heard;
-            SubscriptionMatchedStatus hears;
-            asks_->get_publication_matched_status(heard);
-            answers_->get_subscription_matched_status(hears);
-            seen_heard_ = heard.current_count;
-            seen_hears_ = hears.current_count;
-            return 0 < seen_heard_ && 0 < seen_hears_;
+            PublicationMatchedStatus matched;
+            SubscriptionMatchedStatus responding;
+            requests_->get_publication_matched_status(matched);
+            responses_->get_subscription_matched_status(responding);
+            n_readers_ = matched.current_count;
+            n_writers_ = responding.current_count;
+            return 0 < n_readers_ && 0 < n_writers_;
         });
     }
     Bytes call(Bytes request) {
         WriteParams parameters;
-        parameters.related_sample_identity().writer_guid(answers_->guid());
-        asks_->write(&request, parameters);
-        const auto asked = parameters.sample_identity();
-        Bytes answer;
-        wait_for(("an answer of " + name_).c_str(), [&] {
+        parameters.related_sample_identity().writer_guid(responses_->guid());
+        requests_->write(&request, parameters);
+        const auto sent = parameters.sample_identity();
+        Bytes response;
+        wait_for(("a response of " + name_).c_str(), [&] {
             SampleInfo info;
-            while (take(answers_, answer, info)) {
+            while (take(responses_, response, info)) {
                 const auto& related = info.related_sample_identity;
-                const bool is_mine = related.writer_guid() == answers_->guid() || related.writer_guid() == asked.writer_guid();
-                if (is_mine && related.sequence_number() == asked.sequence_number()) return true;
+                const bool is_mine = related.writer_guid() == responses_->guid() || related.writer_guid() == sent.writer_guid();
+                if (is_mine && related.sequence_number() == sent.sequence_number()) return true;
             }
             return false;
         });
-        return answer;
+        return response;
     }
 
 private:
     std::string name_;
-    DataWriter* asks_;
-    DataReader* answers_;
-    int seen_heard_ = 0, seen_hears_ = 0;
+    DataWriter* requests_;
+    DataReader* responses_;
+    int n_readers_ = 0, n_writers_ = 0;
 };
 
 static std::set<int64_t> times(DataReader* clock) {
@@ -190,7 +190,7 @@ int main() {
     Client step("step_simulation", srv, "StepSimulation");
     const int stepped = step.call(bytes<uint64_t>(7))[0];
     std::this_thread::sleep_for(std::chrono::milliseconds(300));
-    // While time stands still the last one is told again and again.
+    // While time is paused, the last message is published repeatedly.
     size_t n_ticks = 0;
     for (const auto time : times(clock)) n_ticks += before.count(time) == 0;
 
@@ -206,7 +206,7 @@ int main() {
     double setpoint = 0.0;
     wait_for("the command's effect", [&] {
         while (take(vacuum, body, info)) {
-            // Stamp, length of the frame's name, name, then the gauge pressure and its set-point.
+            // Stamp, length of the frame's name, name, then the gauge pressure and its setpoint.
             const size_t end = 12 + read<uint32_t>(body, 8);
             setpoint = read<double>(body, (end + 7) / 8 * 8 + 8);
         }

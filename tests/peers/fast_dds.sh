@@ -1,8 +1,8 @@
 #!/bin/sh
-# A coarse gripper beside a peer on Fast DDS (Debian: apt-get install g++ libfastrtps-dev): topics, services
-# and an action, in a network of their own. By hand, because not every machine has Fast DDS:
+# A coarse gripper and a peer on Fast DDS (Debian: apt-get install g++ libfastrtps-dev): topics, services
+# and an action, in a private network. Run by hand, because not every machine has Fast DDS:
 #   sh tests/peers/fast_dds.sh
-# Says what came of it as one line of JSON; right is
+# Prints one line of JSON; expected:
 #   {"paused": 1, "stepped": 1, "n_ticks": 7, "setpoint": -30000.0, "accepted": 1, "status": 4, "feedback": 2}
 set -e
 cd "$(dirname "$0")/../.."

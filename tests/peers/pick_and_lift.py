@@ -1,10 +1,11 @@
-"""Commands the whole pick-and-lift over ROS 2 topics, from an independent DDS implementation.
+"""Commands a whole pick-and-lift over ROS 2 topics, from an independent DDS implementation.
 
-An own small controller, not the project's: it comes down until it feels the object, pushes in,
-evacuates, lifts, holds, puts back and lets go. Meanwhile it reads force, poses, vacuum, membrane
-and grains. Prints one JSON line with what it saw.
+A small controller of its own, not the project's: it approaches until it touches the object, pushes,
+evacuates, lifts, holds, puts back and releases. Meanwhile it reads force, poses, vacuum, membrane
+and grains. Prints one JSON line with the results.
 
-With `--lockstep` time waits for it: whatever the machine is busy with, the run is the same.
+With `--lockstep` the simulation waits for its commands, so the run does not depend on the load of the
+machine.
 """
 
 import argparse
@@ -47,7 +48,7 @@ if LOCKSTEP:
 
 
 class Seen:
-    """The newest of every topic, and what was counted."""
+    """The newest message of every topic, and counters."""
 
     now = None
     stamps = {}
@@ -58,7 +59,7 @@ class Seen:
     grain_heights = None
     vertex_heights = None
     n_clouds = 0
-    n_sheets = 0
+    n_membranes = 0
     hold_forces = []
     holding = False
 
@@ -89,14 +90,14 @@ class Seen:
             read = columns(it)
             self.vertex_heights = read["z"]
             assert all(math.isfinite(it) for it in read["z"] + read["strain"]), "vertices are finite"
-            self.n_sheets += 1
+            self.n_membranes += 1
 
     def is_complete(self):
         parts = (self.now, self.force, self.flange, self.object, self.gauge)
         return all(it is not None for it in parts + (self.grain_heights, self.vertex_heights))
 
     def has_all_of(self, seconds):
-        """True once all that a decision needs has come of this time."""
+        """True once all messages that a decision needs have arrived for this time."""
         return all(seconds - 1e-6 < it for it in [self.now, *self.stamps.values()])
 
     def push(self):
@@ -104,10 +105,10 @@ class Seen:
 
 
 seen = Seen()
-heard_at = time.monotonic()
+received_at = time.monotonic()
 called_at = -1e9
 while not seen.is_complete():
-    assert time.monotonic() - heard_at < 300.0, "the run did not begin"
+    assert time.monotonic() - received_at < 300.0, "the run did not begin"
     # The run waits for a first command; poses are known after its first tick.
     if 2.0 < time.monotonic() - called_at:
         if LOCKSTEP:
@@ -125,30 +126,30 @@ trace = []
 
 
 def wait_for_news():
-    """The next tick that is seen; in lockstep all of the last one that a command lets pass."""
-    global heard_at
+    """Waits for the next tick; in lockstep, for all messages of the last tick that a command allowed."""
+    global received_at
     before = seen.now
     while seen.now == before or (LOCKSTEP and not seen.has_all_of(before + PERIOD_S)):
-        assert time.monotonic() - heard_at < SILENCE_S, "the clock stands still"
+        assert time.monotonic() - received_at < SILENCE_S, "no clock message"
         time.sleep(0.0005)
         seen.look()
-    heard_at = time.monotonic()
+    received_at = time.monotonic()
 
 
 def run_until(is_over, speed=0.0, goal=None):
-    """Moves the set-point to height `goal` at `speed` until it is there or `is_over()`."""
-    said_at = seen.now
+    """Moves the setpoint to height `goal` at `speed` until it is reached or `is_over()`."""
+    sent_at = seen.now
     while not is_over():
-        step = PERIOD_S if LOCKSTEP else seen.now - said_at
+        step = PERIOD_S if LOCKSTEP else seen.now - sent_at
         if PERIOD_S <= step:
-            said_at = seen.now
+            sent_at = seen.now
             if goal is not None:
                 left = goal - position[2]
                 if abs(left) < 1e-9:
                     return False
                 position[2] += math.copysign(min(abs(left), speed * step), left)
             pose = t.Pose(t.Point(*position), upright)
-            # The stamp of the pose is what lets time pass: the vacuum goes first.
+            # The stamp of the pose advances time, so the vacuum is sent first.
             vacuum_cmd.write(t.Float64(pressure))
             flange_cmd.write(t.PoseStamped(t.Header(t.Time(), "world"), pose))
         wait_for_news()
@@ -156,7 +157,7 @@ def run_until(is_over, speed=0.0, goal=None):
 
 
 def after(seconds):
-    """True when so much simulated time has passed since the call."""
+    """True once this much simulation time has passed since the call."""
     end = seen.now + seconds
     return lambda: end <= seen.now
 
@@ -166,7 +167,7 @@ def never():
 
 
 def mean(samples):
-    """Weighted by sin², so that a swing that is cut off at the ends does not count."""
+    """Mean weighted by sin², so that a truncated oscillation does not count."""
     weights = [math.sin(math.pi * (i + 0.5) / len(samples)) ** 2 for i in range(len(samples))]
     return sum(w * it for w, it in zip(weights, samples)) / sum(weights)
 
@@ -241,7 +242,7 @@ print(
             "n_grains": len(seen.grain_heights),
             "n_vertices": len(seen.vertex_heights),
             "n_clouds": seen.n_clouds,
-            "n_sheets": seen.n_sheets,
+            "n_membranes": seen.n_membranes,
             "put_back_m": seen.object.z - rest_z,
             "let_go_n": seen.push(),
             "trace": trace,

@@ -1,4 +1,4 @@
-"""Reads a rosbag2 folder with two independent libraries and prints what is in it, as JSON.
+"""Reads a rosbag2 folder with two independent libraries and prints its contents as JSON.
 
     read_bag.py FOLDER
 
@@ -59,10 +59,10 @@ def with_rosbags(folder):
 
 
 def with_mcap(folder):
-    """Counts by topic in all files, and what the last file says about itself."""
+    """Counts by topic in all files, and the metadata of the last file."""
     counts, first_topics = {}, []
     last_ns = -1
-    # The tenth comes after the ninth.
+    # By number: the tenth file comes after the ninth.
     files = sorted(folder.glob("*.mcap"), key=lambda file: (len(file.stem), file.stem))
     for file in files:
         with file.open("rb") as stream:
@@ -76,7 +76,7 @@ def with_mcap(folder):
             first_topics.append(sorted(of_file[:3]))
             summary = reader.get_summary()
             header = reader.get_header()
-            told = {
+            described = {
                 "profile": header.profile,
                 "library": header.library,
                 "channels": len(summary.channels),
@@ -91,7 +91,7 @@ def with_mcap(folder):
                 },
                 "metadata": {record.name: record.metadata for record in reader.iter_metadata()},
             }
-    return {"counts": counts, "files": len(files), "first_topics": first_topics, **told}
+    return {"counts": counts, "files": len(files), "first_topics": first_topics, **described}
 
 
 def main():

@@ -1,4 +1,4 @@
-"""Reads an HTML page: all tags must match, nothing may be fetched. Prints ids, number of pictures, and texts."""
+"""Reads an HTML page: all tags must match, nothing may be loaded. Prints IDs, number of pictures, and texts."""
 
 import sys
 from html.parser import HTMLParser

@@ -1,4 +1,4 @@
-"""A little ROS 2 node on an independent DDS implementation: topics by their ROS names and types."""
+"""A small ROS 2 node on an independent DDS implementation: topics by their ROS names and types."""
 
 import os
 import struct
@@ -43,7 +43,7 @@ class Node:
                 for node in getattr(info, "node_entities_info_seq", []):
                     name = node.node_namespace.rstrip("/") + "/" + node.node_name
                     if not found:
-                        # A node tells of itself anew with every topic it opens.
+                        # A node publishes its list again with every topic it opens.
                         deadline = time.monotonic() + 0.5
                     found[name] = (len(node.reader_gid_seq), len(node.writer_gid_seq))
             time.sleep(0.02)

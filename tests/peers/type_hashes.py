@@ -1,7 +1,7 @@
-"""Compares type hashes, given as NAME=HASH, with those of `rosbags`: of its own store of types where it
+"""Compares type hashes, given as NAME=HASH, with those of `rosbags`: from its own type store if it
 has the type, else computed from msgs/.
 
-Prints how many are compared with its own types, and how many with those of msgs/.
+Prints the numbers of types compared with its own store and with msgs/.
 """
 
 import pathlib

@@ -1,4 +1,4 @@
-"""Writes a rosbag2 folder with `rosbags`, as others would.
+"""Writes a rosbag2 folder with `rosbags`, as other programs do.
 
     write_bag.py FOLDER
 

@@ -4,8 +4,8 @@ inputs and each combination of features that makes sense for it.
     write_conformance.py FOLDER
 
 The files themselves are kept with the format's source (github.com/foxglove/mcap, tests/conformance/data) and are
-in no package. They are small and regular, so they are written anew here after the description of the format, and
-SHA-256 sums that were published with them say that they are the same. Prints the number of files and of sums.
+in no package. They are small and regular, so they are generated here from the description of the format, and
+compared with published SHA-256 sums. Prints the number of files and of sums.
 """
 
 import hashlib
@@ -32,7 +32,7 @@ INPUTS = {
     "TenMessages": [SCHEMA_1, CHANNEL_1]
     + [(MESSAGE, 1, i, t, t) for i, t in enumerate((0, 2, 1, 3, 3, 5, 4, 7, 8, 9))],
 }
-# Of these files the sums were published, as pointers of Git LFS.
+# Published sums of these files, from Git LFS pointers.
 SUMS = {
     "NoData-st-sum": "78aed9973f50c4ebc30a8eab27453f6e42b2984c4f402d57e002dafdf217b744",
     "OneMetadata-mdx-st-sum": "6d7681e1536e3c61a0d9755b1b10b9a7ad4c2042855a839ce96c8c024bc64316",
@@ -42,7 +42,7 @@ SUMS = {
     "TenMessages-ch-mx-rch": "5a738f776cf6f27f4956d777a6c5e2374650c0d861bd0a2b20c5e15c2152ef7c",
     "TenMessages-pad-rch-rsh-st-sum": "a586164671262b2b56b13ff15b5f340257c4c3d343e58b05f79b507de206833d",
 }
-# Of this one the checksums of both sections, in the description of its records.
+# Published checksums of both sections of this file, from the description of its records.
 CHECKSUMS = {"OneAttachment-ax-pad-st-sum": (1702036232, 2541810275)}
 
 
@@ -64,7 +64,7 @@ def record(opcode, body, pad=b""):
 
 
 def body_of(kind, *fields):
-    """A record of an input without its head."""
+    """The body of a record of an input."""
     if kind == SCHEMA:
         number, name, encoding, data = fields
         return struct.pack("<H", number) + text(name) + text(encoding) + struct.pack("<I", len(data)) + data
@@ -86,7 +86,7 @@ def whole(records, on):
     out = bytearray(MAGIC + record(HEADER, text("") + text(""), pad))
     chunk, messages, indexes = b"", [], {CHUNK_INDEX: b"", ATTACHMENT_INDEX: b"", METADATA_INDEX: b""}
     for kind, *fields in records:
-        # In a chunk nothing is padded, nor are messages anywhere: their data go to the end.
+        # Records in chunks are not padded, nor are messages, because their data extend to the end.
         if kind == MESSAGE:
             messages.append((fields[2], len(chunk)))
         if "ch" in on and kind in (SCHEMA, CHANNEL, MESSAGE):

@@ -3,7 +3,7 @@ features that the `mcap` package's writer has, each into a file of its own.
 
     write_variants.py FOLDER
 
-Prints the number of files. A file's name tells its features.
+Prints the number of files. The name of a file lists its features.
 """
 
 import itertools

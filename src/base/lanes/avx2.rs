@@ -1,7 +1,7 @@
 //! Four lanes: AVX2.
 //!
-//! Every function here is inlined into `run`, which is compiled for the extension, or into nothing.
-#![expect(unsafe_code, reason = "the processor's own instructions")]
+//! Every function here is inlined into `run`, which is compiled for the extension.
+#![expect(unsafe_code, reason = "processor intrinsics")]
 
 use std::{
     arch::x86_64::*,
@@ -14,9 +14,9 @@ use super::{Kernel, Lanes, Mask};
 #[derive(Clone, Copy)]
 pub(super) struct Four(__m256d);
 
-/// Four truths, all bits of a lane.
+/// Four booleans: all bits of a lane are set where true.
 #[derive(Clone, Copy)]
-pub(super) struct Truths(__m256d);
+pub(super) struct FourMask(__m256d);
 
 /// Runs `kernel` with four lanes.
 ///
@@ -27,9 +27,8 @@ pub(super) unsafe fn run(kernel: impl Kernel) {
     kernel.run::<Four>();
 }
 
-// SAFETY of all that follows: `Four` is private to its parent, which hands it only to kernels that
-// `run` runs, and `run` asks for the extension. Loads and stores are of slices whose lengths are
-// checked.
+// SAFETY of everything below: `Four` is private to the parent module, which uses it only in kernels that
+// `run` runs, and `run` requires the extension. Loads and stores use slices whose lengths are checked.
 macro_rules! operator {
     ($trait:ident, $name:ident, $intrinsic:ident) => {
         impl $trait for Four {
@@ -73,7 +72,7 @@ unsafe fn transposed([a, b, c, d]: [__m256d; 4]) -> [__m256d; 4] {
 
 impl Lanes for Four {
     const N: usize = 4;
-    type Mask = Truths;
+    type Mask = FourMask;
 
     #[inline(always)]
     fn splat(value: f64) -> Self {
@@ -125,17 +124,17 @@ impl Lanes for Four {
     }
 
     #[inline(always)]
-    fn lt(self, other: Self) -> Truths {
-        Truths(unsafe { _mm256_cmp_pd::<_CMP_LT_OQ>(self.0, other.0) })
+    fn lt(self, other: Self) -> FourMask {
+        FourMask(unsafe { _mm256_cmp_pd::<_CMP_LT_OQ>(self.0, other.0) })
     }
 
     #[inline(always)]
-    fn le(self, other: Self) -> Truths {
-        Truths(unsafe { _mm256_cmp_pd::<_CMP_LE_OQ>(self.0, other.0) })
+    fn le(self, other: Self) -> FourMask {
+        FourMask(unsafe { _mm256_cmp_pd::<_CMP_LE_OQ>(self.0, other.0) })
     }
 
     #[inline(always)]
-    fn or_where(self, mask: Truths, other: Self) -> Self {
+    fn or_where(self, mask: FourMask, other: Self) -> Self {
         Self(unsafe { _mm256_blendv_pd(other.0, self.0, mask.0) })
     }
 
@@ -212,7 +211,7 @@ impl Lanes for Four {
     }
 }
 
-impl Mask for Truths {
+impl Mask for FourMask {
     #[inline(always)]
     fn and(self, other: Self) -> Self {
         Self(unsafe { _mm256_and_pd(self.0, other.0) })

@@ -1,7 +1,7 @@
 //! Eight lanes: AVX-512 (F, DQ and VL).
 //!
-//! Every function here is inlined into `run`, which is compiled for the extension, or into nothing.
-#![expect(unsafe_code, reason = "the processor's own instructions")]
+//! Every function here is inlined into `run`, which is compiled for the extension.
+#![expect(unsafe_code, reason = "processor intrinsics")]
 
 use std::{
     arch::x86_64::*,
@@ -23,9 +23,8 @@ pub(super) unsafe fn run(kernel: impl Kernel) {
     kernel.run::<Eight>();
 }
 
-// SAFETY of all that follows: `Eight` is private to its parent, which hands it only to kernels that
-// `run` runs, and `run` asks for the extension. Loads and stores are of slices whose lengths are
-// checked.
+// SAFETY of everything below: `Eight` is private to the parent module, which uses it only in kernels that
+// `run` runs, and `run` requires the extension. Loads and stores use slices whose lengths are checked.
 macro_rules! operator {
     ($trait:ident, $name:ident, $intrinsic:ident) => {
         impl $trait for Eight {
@@ -59,7 +58,7 @@ unsafe fn halves(low: &[f64; 4], high: &[f64; 4]) -> __m512d {
     }
 }
 
-/// Transposes four rows of four in each half: `[x0.. , x4..]`-wise columns of eight rows.
+/// Transposes eight rows of four, given as four registers with rows `k` and `k + 4`, into columns.
 #[inline(always)]
 unsafe fn columns_of_4(rows: [__m512d; 4]) -> [Eight; 4] {
     let [a, b, c, d] = rows;
@@ -183,7 +182,7 @@ impl Lanes for Eight {
     fn to_rows_of_3([x, y, z]: [Self; 3], rows: &mut [[f64; 3]]) {
         let flat = rows[..8].as_flattened_mut();
         unsafe {
-            // As above: 0 to 7 of x, 8 to 15 of y, then z over them where the mask says.
+            // Indices 0 to 7 select from x, 8 to 15 from y; then the mask overwrites elements with z.
             let a = _mm512_permutex2var_pd(x.0, _mm512_set_epi64(10, 2, 0, 9, 1, 0, 8, 0), y.0);
             let b = _mm512_permutex2var_pd(x.0, _mm512_set_epi64(5, 0, 12, 4, 0, 11, 3, 0), y.0);
             let c = _mm512_permutex2var_pd(x.0, _mm512_set_epi64(0, 15, 7, 0, 14, 6, 0, 13), y.0);
@@ -218,7 +217,7 @@ impl Lanes for Eight {
         let rows = &mut rows[..8];
         let [a, b, c, d, e, f, g, h] = columns;
         unsafe {
-            // The transpose within quarters, then quarters to their places.
+            // Transposes within quarters, then moves the quarters to their rows.
             let left = [
                 _mm512_unpacklo_pd(a.0, b.0),
                 _mm512_unpackhi_pd(a.0, b.0),
@@ -232,7 +231,7 @@ impl Lanes for Eight {
                 _mm512_unpackhi_pd(g.0, h.0),
             ];
             for odd in 0..2 {
-                // Rows odd, odd + 2, odd + 4, odd + 6 stand in the quarters of these four.
+                // The quarters of these four hold rows odd, odd + 2, odd + 4 and odd + 6.
                 let [ab, cd, ef, gh] = [left[odd], left[odd + 2], right[odd], right[odd + 2]];
                 let first = _mm512_shuffle_f64x2::<0b10_00_10_00>(ab, cd);
                 let second = _mm512_shuffle_f64x2::<0b11_01_11_01>(ab, cd);

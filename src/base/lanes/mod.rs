@@ -1,9 +1,9 @@
-//! Several numbers computed at once: one lane each, with the same bits as one after the other.
+//! SIMD lanes: several numbers are computed at once, with the same bits as one at a time.
 //!
-//! A law is written once, for any width. `widest` runs it with the widest registers that this processor
-//! has: eight lanes (AVX-512), four (AVX2) or one (everywhere else). Only operations that IEEE 754
-//! rounds exactly are offered, and none is ever fused with another, so a lane holds the same bits
-//! whatever the width; how the work is cut into registers is not part of a result.
+//! A law is written once, for any width. `widest` runs it with the widest registers of this
+//! processor: eight lanes (AVX-512), four (AVX2) or one (everywhere else). The only operations are
+//! those that IEEE 754 rounds exactly, and none are fused, so the bits of a lane do not depend on
+//! the width.
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;
@@ -28,65 +28,65 @@ pub trait Lanes:
     + Div<Output = Self>
     + Neg<Output = Self>
 {
-    /// How many.
+    /// Number of lanes.
     const N: usize;
-    /// One truth per lane.
+    /// One boolean per lane.
     type Mask: Mask;
 
     /// The same number in all lanes.
     fn splat(value: f64) -> Self;
-    /// The first `N` numbers of a slice that has as many.
+    /// Loads the first `N` numbers of a slice.
     fn load(from: &[f64]) -> Self;
-    /// Writes the lanes to the first `N` places of a slice that has as many.
+    /// Stores the lanes in the first `N` elements of a slice.
     fn store(self, to: &mut [f64]);
     /// Square root.
     fn sqrt(self) -> Self;
-    /// The larger number; `other` where one of both is not a number.
+    /// The larger number; `other` where either is NaN.
     fn max(self, other: Self) -> Self;
-    /// The smaller number; `other` where one of both is not a number.
+    /// The smaller number; `other` where either is NaN.
     fn min(self, other: Self) -> Self;
     /// The magnitude of `self` with the sign of `sign`.
     fn copysign(self, sign: Self) -> Self;
-    /// The nearest whole number, halves away from zero.
+    /// The nearest integer; halves are rounded away from zero.
     fn round(self) -> Self;
     /// Where `self < other`.
     fn lt(self, other: Self) -> Self::Mask;
     /// Where `self <= other`.
     fn le(self, other: Self) -> Self::Mask;
-    /// `self` where `mask` holds, else `other`.
+    /// `self` where `mask` is true, else `other`.
     fn or_where(self, mask: Self::Mask, other: Self) -> Self;
-    /// One row of four per lane, as four columns.
+    /// Loads one row of four per lane, as four columns.
     fn from_rows_of_4<'a>(row: impl Fn(usize) -> &'a [f64; 4]) -> [Self; 4];
-    /// The first `N` rows of three, as three columns.
+    /// Loads the first `N` rows of three, as three columns.
     fn from_rows_of_3(rows: &[[f64; 3]]) -> [Self; 3];
-    /// Writes three columns as the first `N` rows of three.
+    /// Stores three columns as the first `N` rows of three.
     fn to_rows_of_3(columns: [Self; 3], rows: &mut [[f64; 3]]);
-    /// Writes four columns as the first `N` rows of four.
+    /// Stores four columns as the first `N` rows of four.
     fn to_rows_of_4(columns: [Self; 4], rows: &mut [[f64; 4]]);
-    /// Writes eight columns as the first `N` rows of eight.
+    /// Stores eight columns as the first `N` rows of eight.
     fn to_rows_of_8(columns: [Self; 8], rows: &mut [[f64; 8]]);
 }
 
-/// Truths, one per lane.
+/// One boolean per lane.
 pub trait Mask: Copy {
-    /// Where both hold.
+    /// True where both are true.
     fn and(self, other: Self) -> Self;
-    /// Where it does not hold.
+    /// True where `self` is false.
     fn not(self) -> Self;
-    /// True if it holds somewhere.
+    /// True if any lane is true.
     fn any(self) -> bool;
-    /// One bit per lane, the first lane in the lowest.
+    /// One bit per lane; the first lane is the lowest bit.
     fn bits(self) -> u8;
 }
 
-/// Work that can be done at any width. `run` must be `#[inline(always)]`, and what it calls too, so
-/// that it is compiled anew for each width.
+/// A computation that can run at any width. `run` and everything it calls must be
+/// `#[inline(always)]`, so that they are compiled for each width.
 pub trait Kernel {
-    /// Does it with registers of `L`.
+    /// Runs with registers of type `L`.
     fn run<L: Lanes>(self);
 }
 
-/// How wide registers may be.
+/// Number of lanes of a register.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum Width {
@@ -98,15 +98,16 @@ pub enum Width {
     Eight = 8,
 }
 
-/// The widest that may be used.
+/// The largest width that may be used.
 static LIMIT: AtomicU8 = AtomicU8::new(Width::Eight as u8);
 
-/// From now on nothing wider than `width` is used in this process. For comparisons: bits do not change.
+/// Limits the width of registers in this process to `width`. Results do not change; this is for comparing
+/// speeds.
 pub fn limit(width: Width) {
     LIMIT.store(width as u8, Ordering::Relaxed);
 }
 
-/// What `widest` takes on this processor.
+/// The width that `widest` uses on this processor.
 #[inline]
 pub fn width() -> Width {
     let limit = LIMIT.load(Ordering::Relaxed);
@@ -132,24 +133,24 @@ fn has(width: Width) -> bool {
     }
 }
 
-/// Runs `kernel` with the widest registers.
+/// Runs `kernel` with the widest registers of this processor.
 #[inline]
 pub fn widest(kernel: impl Kernel) {
     run_at(width(), kernel);
 }
 
-/// Runs `kernel` with registers of a width that this processor has.
+/// Runs `kernel` with registers of `width`, which this processor must have.
 #[inline]
 fn run_at(width: Width, kernel: impl Kernel) {
-    assert!(has(width), "{width:?} lanes");
+    assert!(has(width), "this processor has no registers of width {width:?}");
     match width {
         #[cfg(target_arch = "x86_64")]
-        #[expect(unsafe_code, reason = "code for a processor's extension")]
-        // SAFETY: the processor has it.
+        #[expect(unsafe_code, reason = "code compiled for a processor extension")]
+        // SAFETY: the processor has the extension.
         Width::Eight => unsafe { avx512::run(kernel) },
         #[cfg(target_arch = "x86_64")]
-        #[expect(unsafe_code, reason = "code for a processor's extension")]
-        // SAFETY: the processor has it.
+        #[expect(unsafe_code, reason = "code compiled for a processor extension")]
+        // SAFETY: the processor has the extension.
         Width::Four => unsafe { avx2::run(kernel) },
         _ => kernel.run::<f64>(),
     }

@@ -1,4 +1,4 @@
-//! One lane: a plain number, on every processor.
+//! One lane: a plain number, for every processor.
 
 use super::{Lanes, Mask};
 

@@ -1,11 +1,11 @@
-//! Every width gives the bits of plain numbers.
+//! Every width gives the same bits as plain numbers.
 
 use std::cmp::Ordering;
 
 use super::*;
 use crate::base::random::{Random, Stream};
 
-/// Numbers of all kinds: ordinary, zero of both signs, halves, infinite, none.
+/// All kinds of numbers: ordinary, zero of both signs, halves, infinity, NaN.
 fn numbers(random: &mut Random) -> [f64; 24] {
     let special = [0.0, -0.0, 0.5, -0.5, 1.5, 2.5, 0.5_f64.next_down(), f64::INFINITY, f64::NAN];
     std::array::from_fn(|k| match special.get(k) {
@@ -14,14 +14,14 @@ fn numbers(random: &mut Random) -> [f64; 24] {
     })
 }
 
-/// All operations on lanes, into rows of numbers.
-struct All<'a> {
+/// All operations on lanes; each result goes into its own row.
+struct AllOperations<'a> {
     a: &'a [f64],
     b: &'a [f64],
     out: &'a mut [Vec<f64>],
 }
 
-impl Kernel for All<'_> {
+impl Kernel for AllOperations<'_> {
     #[inline(always)]
     fn run<L: Lanes>(self) {
         for start in (0..self.a.len()).step_by(L::N) {
@@ -53,7 +53,7 @@ impl Kernel for All<'_> {
     }
 }
 
-/// All ways to bring rows into lanes and back.
+/// All ways to load rows into lanes and to store them.
 struct Moves<'a> {
     from: &'a [f64],
     to_3: &'a mut [[f64; 3]; 8],
@@ -69,7 +69,7 @@ impl Kernel for Moves<'_> {
         let (rows_4, _) = self.from.as_chunks::<4>();
         for start in (0..8).step_by(L::N) {
             let three = L::from_rows_of_3(&rows_3[start..]);
-            // In an order of its own, as lists of neighbours have it.
+            // In an irregular order, as neighbor lists have it.
             let four = L::from_rows_of_4(|lane| &rows_4[(start + lane) * 5 % 6]);
             let [x, y, z] = three;
             L::to_rows_of_3([y, z, x], &mut self.to_3[start..]);
@@ -84,7 +84,7 @@ impl Kernel for Moves<'_> {
 }
 
 fn bits(numbers: &[f64]) -> Vec<u64> {
-    // One kind of NaN is as good as another.
+    // All NaNs count as equal.
     numbers.iter().map(|it| if it.is_nan() { u64::MAX } else { it.to_bits() }).collect()
 }
 
@@ -95,17 +95,17 @@ fn at_every_width(check: impl Fn(Width)) {
 }
 
 #[test]
-fn operations_have_the_bits_of_plain_numbers() {
+fn operations_give_the_same_bits_as_plain_numbers() {
     let mut random = Random::new(5, Stream::Position);
     for _ in 0..300 {
         let (a, b) = (numbers(&mut random), numbers(&mut random));
         at_every_width(|width| {
             let mut out = vec![vec![0.0; 24]; 15];
-            run_at(width, All { a: &a, b: &b, out: &mut out });
+            run_at(width, AllOperations { a: &a, b: &b, out: &mut out });
             for k in 0..24 {
                 let (a, b) = (a[k], b[k]);
                 let one = |it: bool| f64::from(u8::from(it));
-                // Oracle: the operations of the language on plain numbers, bit for bit.
+                // Oracle: the language's operations on plain numbers, bit for bit.
                 let expected = [
                     a + b,
                     a - b,
@@ -124,7 +124,7 @@ fn operations_have_the_bits_of_plain_numbers() {
                     one(a < b),
                 ];
                 for (operation, expected) in expected.into_iter().enumerate() {
-                    // The sign of something that is no number is nobody's business.
+                    // The sign of a NaN does not matter.
                     if operation == 9 && (a.is_nan() || b.is_nan()) {
                         continue;
                     }
@@ -141,7 +141,7 @@ fn operations_have_the_bits_of_plain_numbers() {
 }
 
 #[test]
-fn rows_come_in_and_go_out_unchanged() {
+fn loading_and_storing_rows_preserves_bits() {
     let mut random = Random::new(6, Stream::Position);
     let from: [f64; 24] = std::array::from_fn(|_| random.between(-3.0, 3.0));
     let (three, _) = from.as_chunks::<3>();

@@ -1,18 +1,18 @@
-//! A vector in each lane.
+//! Vectors in lanes.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::Lanes;
 use crate::base::Vec3;
 
-/// Three numbers in each lane.
+/// A vector in each lane.
 #[derive(Clone, Copy, Debug)]
 pub struct Vector<L> {
-    /// First components.
+    /// x components.
     pub x: L,
-    /// Second components.
+    /// y components.
     pub y: L,
-    /// Third components.
+    /// z components.
     pub z: L,
 }
 
@@ -41,13 +41,13 @@ impl<L: Lanes> Vector<L> {
         Self { x, y, z }
     }
 
-    /// Scalar product.
+    /// Dot product.
     #[inline(always)]
     pub fn dot(self, other: Self) -> L {
         self.x * other.x + self.y * other.y + self.z * other.z
     }
 
-    /// Vector product.
+    /// Cross product.
     #[inline(always)]
     pub fn cross(self, other: Self) -> Self {
         Self::new(
@@ -57,7 +57,7 @@ impl<L: Lanes> Vector<L> {
         )
     }
 
-    /// `self` where `mask` holds, else `other`.
+    /// `self` where `mask` is true, else `other`.
     #[inline(always)]
     pub fn or_where(self, mask: L::Mask, other: Self) -> Self {
         Self::new(

@@ -1,9 +1,11 @@
-//! A plant that ticks in real time: a settled session that stands still, beside a solver that is as busy as
-//! one that just keeps up.
+//! A plant for the latency benchmark: a settled session that does not advance, and a solver that is
+//! as busy as one that barely runs in real time.
 
 use std::cell::RefCell;
 
-use super::{Heard, Latency, LatencyError, N_FIRST, latency, listener::Samples, percentiles};
+use super::{
+    Latency, LatencyError, ListenerSamples, N_FIRST, latency, listener::Samples, percentiles,
+};
 use crate::{
     base::{Real, Tick, parallel, real::real_of},
     benchmarks::{
@@ -11,18 +13,18 @@ use crate::{
         packing::{Boxed, Phase},
     },
     command::{Command, change::Change},
-    cosim::refused::ChangeError,
+    cosim::change_error::ChangeError,
     host::clock::{Stopwatch, wall_ns},
     node::plant::Plant,
     physics::{System, health::Diverged},
     session::Session,
-    simulator::Subject,
+    simulator::WorldAccess,
     snapshot::{Parts, Snapshot, view::View},
 };
 
-/// Time for which all solver threads are at work in each tick (s).
+/// Time for which all solver threads are busy in each tick (s).
 const BUSY: Real = 7e-4;
-/// Grains of the solver's box: a substep of some ten microseconds.
+/// The solver's box, with a substep of some ten microseconds.
 const BOX: Boxed = Boxed { n_grains: 300, n_tiles: [1; 3], phase: Phase::Rest };
 
 /// The plant.
@@ -32,14 +34,14 @@ pub(super) struct IdlePlant {
     tick_ns: u64,
     pool: parallel::ThreadPool,
     solver: System,
-    /// Number of each command, and when the first tick that has it began (ns).
+    /// Number of each command, and the start time of the first tick that has it (ns).
     used: Samples,
-    /// Each tick, and when it was given out (ns). `Plant::view` only borrows.
-    shown: RefCell<Samples>,
+    /// Each tick, and the time at which it was published (ns). `Plant::view` only borrows.
+    published: RefCell<Samples>,
 }
 
 impl IdlePlant {
-    /// Beside `session`, which does not tick.
+    /// A plant with a `session` that does not advance.
     pub(super) fn new(
         session: Session,
         tick_ns: u64,
@@ -48,8 +50,8 @@ impl IdlePlant {
         let pool = parallel::ThreadPool::new(options.n_threads)?;
         let grown = parallel::lead(&pool, || BOX.grow())?;
         let solver = BOX.system(grown);
-        let shown = RefCell::default();
-        Ok(Self { session, tick: 0, tick_ns, pool, solver, used: Vec::new(), shown })
+        let published = RefCell::default();
+        Ok(Self { session, tick: 0, tick_ns, pool, solver, used: Vec::new(), published })
     }
 
     /// The session, for its sizes.
@@ -57,24 +59,27 @@ impl IdlePlant {
         &self.session
     }
 
-    /// What was measured here, with what was heard over there.
-    pub(super) fn latencies(&self, heard: &Heard) -> Result<Vec<Latency>, LatencyError> {
-        let shown = self.shown.borrow();
+    /// Latencies from the samples of both processes.
+    pub(super) fn latencies(
+        &self,
+        samples: &ListenerSamples,
+    ) -> Result<Vec<Latency>, LatencyError> {
+        let published = self.published.borrow();
         let first = N_FIRST * self.tick_ns;
         let counted: Vec<u64> =
-            shown.iter().filter(|(mark, _)| first < *mark).map(|(_, at)| *at).collect();
+            published.iter().filter(|(mark, _)| first < *mark).map(|(_, at)| *at).collect();
         let periods = counted.windows(2).map(|it| 1e-3 * real_of(it[1] - it[0])).collect();
         Ok(vec![
-            latency("command_to_tick_ros", 1, &heard.commands, &self.used)?,
-            latency("tick_to_sample_ros", first, &shown, &heard.ros)?,
-            latency("tick_to_sample_stream", first, &shown, &heard.stream)?,
+            latency("command_to_tick_ros", 1, &samples.commands, &self.used)?,
+            latency("tick_to_sample_ros", first, &published, &samples.ros)?,
+            latency("tick_to_sample_stream", first, &published, &samples.stream)?,
             percentiles("tick_period", periods, counted.len() - 1),
         ])
     }
 }
 
-impl Subject for IdlePlant {
-    fn look(&self) -> Snapshot {
+impl WorldAccess for IdlePlant {
+    fn full_snapshot(&self) -> Snapshot {
         Plant::snapshot(self, Parts::ALL)
     }
 
@@ -110,11 +115,11 @@ impl Plant for IdlePlant {
         Snapshot { tick, time_ns, run_tick, ..self.session.snapshot(parts) }
     }
 
-    fn view<'a>(&'a self, seen: &'a Snapshot) -> View<'a> {
-        // Asked for right before it is given out; the start is shown again and again, and not counted.
-        if 0 < seen.time_ns {
-            self.shown.borrow_mut().push((seen.time_ns, wall_ns()));
+    fn view<'a>(&'a self, snapshot: &'a Snapshot) -> View<'a> {
+        // Called right before publishing. The start is published repeatedly and not counted.
+        if 0 < snapshot.time_ns {
+            self.published.borrow_mut().push((snapshot.time_ns, wall_ns()));
         }
-        self.session.view(seen)
+        self.session.view(snapshot)
     }
 }

@@ -1,4 +1,5 @@
-//! The other process: it subscribes to ticks over ROS 2 and in shared memory, and commands.
+//! The other process: it subscribes to ticks over ROS 2 and in shared memory, and publishes
+//! commands.
 
 use std::{
     error::Error,
@@ -9,7 +10,7 @@ use std::{
 
 use serde::{Deserialize, Serialize};
 
-use super::reach;
+use super::discovery_range;
 use crate::{
     base::Real,
     benchmarks::lift,
@@ -18,34 +19,35 @@ use crate::{
     shm::stream::Services,
     wire::{
         messages::{RosMessage, rosgraph_msgs::Clock, std_msgs::Float64},
-        topics::{Common, Topic, topics},
+        topics::{CommonTopic, Topic, topics},
     },
 };
 
-/// Marks, and when they were seen by the wall clock (ns).
+/// Marks, and the wall-clock times at which they were sent or received (ns).
 pub(super) type Samples = Vec<(u64, u64)>;
 
-/// Time between two commands: no multiple of a tick, so that they come at all times of it.
+/// Time between two commands: not a multiple of a tick, so that they arrive at all times within a
+/// tick.
 const COMMAND_EVERY: Duration = Duration::from_micros(10_300);
-/// ROS 2 is asked for samples this often; the pause adds to what is measured.
+/// Polling interval of ROS 2, which adds to the measured latency.
 const POLL_EVERY: Duration = Duration::from_micros(20);
-/// How long the others may take to come (s).
+/// Timeout of discovery (s).
 const TIMEOUT: Real = 30.0;
-/// How much longer than the run it listens (s).
-const LONGER: Real = 1.0;
+/// Time for which it listens longer than the run (s).
+const MARGIN: Real = 1.0;
 
-/// All that was heard and said.
+/// All samples of the listener.
 #[derive(Debug, Default, Serialize, Deserialize)]
-pub(super) struct Heard {
-    /// Ticks over ROS 2.
+pub(super) struct ListenerSamples {
+    /// Ticks received over ROS 2.
     pub(super) ros: Samples,
-    /// Ticks in shared memory.
+    /// Ticks received in shared memory.
     pub(super) stream: Samples,
-    /// Commands, by their numbers.
+    /// Published commands, by their numbers.
     pub(super) commands: Samples,
 }
 
-/// The number of a command with this gauge pressure (Pa).
+/// The number of the command with this gauge pressure (Pa).
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
@@ -60,29 +62,30 @@ fn pressure(number: u32) -> f64 {
     -f64::from(number)
 }
 
-/// Listens to the run whose streams have `prefix`, commands for `seconds`, and returns JSON of what it
-/// heard.
+/// Subscribes to the run whose streams have `prefix`, publishes commands for `seconds` (s), and
+/// returns all samples as JSON.
 ///
 /// # Errors
-/// If there is no such run, or it does not answer.
+/// If there is no such run.
 pub fn listen(prefix: &str, seconds: Real) -> Result<String, Box<dyn Error + Send + Sync>> {
     let topics = topics(&lift::scene(&[]).map_err(|error| error.to_string())?);
-    let [clock, vacuum] = [Common::Clock, Common::VacuumCommand].map(|it| &topics[it as usize]);
-    let node = RosNode::join_as("listener", &reach())?;
+    let [clock, vacuum] =
+        [CommonTopic::Clock, CommonTopic::VacuumCommand].map(|it| &topics[it as usize]);
+    let node = RosNode::join_as("listener", &discovery_range())?;
     let is_over = AtomicBool::new(false);
-    let heard = thread::scope(|scope| {
+    let samples = thread::scope(|scope| {
         let stream = scope.spawn(|| stream(prefix, &is_over));
         let ros = scope.spawn(|| ros(&node, clock, &is_over));
         let commands = command(&node, [clock, vacuum], seconds);
         is_over.store(true, Ordering::Relaxed);
-        let joined = "a panic is a fault of this program";
-        Ok::<_, Box<dyn Error + Send + Sync>>(Heard {
+        let joined = "a panic is a bug in this program";
+        Ok::<_, Box<dyn Error + Send + Sync>>(ListenerSamples {
             ros: ros.join().expect(joined)?,
             stream: stream.join().expect(joined)?,
             commands: commands?,
         })
     });
-    Ok(serde_json::to_string(&heard?)?)
+    Ok(serde_json::to_string(&samples?)?)
 }
 
 fn stream(prefix: &str, is_over: &AtomicBool) -> Result<Samples, Box<dyn Error + Send + Sync>> {
@@ -118,7 +121,7 @@ fn ros(
     Ok(samples)
 }
 
-/// Commands until `seconds` are over, and waits until the run is.
+/// Publishes commands for `seconds` (s), then waits for the end of the run.
 fn command(
     node: &RosNode,
     [clock, topic]: [&Topic; 2],
@@ -128,16 +131,16 @@ fn command(
     let watch = Stopwatch::start();
     while node.n_readers(&topic.name) == 0 || node.n_writers(&clock.name) == 0 {
         if TIMEOUT < watch.total_s() {
-            return Err(format!("nobody listens to {}", topic.name).into());
+            return Err(format!("no subscriber of {} after 30 s", topic.name).into());
         }
         thread::sleep(COMMAND_EVERY);
     }
     let mut samples = Samples::new();
     let watch = Stopwatch::start();
     let mut number = 0;
-    while watch.total_s() < seconds + LONGER {
-        // What is said after the run has ended would count as lost.
-        if watch.total_s() < seconds - LONGER {
+    while watch.total_s() < seconds + MARGIN {
+        // Commands after the end of the run would count as lost.
+        if watch.total_s() < seconds - MARGIN {
             number += 1;
             samples.push((u64::from(number), wall_ns()));
             let body = Body::new(Float64 { data: pressure(number) }.to_cdr());

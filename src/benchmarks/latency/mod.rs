@@ -1,10 +1,10 @@
-//! Latency of the loop at 1 kHz beside a busy solver: from a command on a topic to the first tick that uses
-//! it, and from a tick to its sample at a subscriber, over ROS 2 and in shared memory.
+//! Latency of the loop at 1 kHz with a busy solver: from a command on a topic to the first tick
+//! that uses it, and from a tick to its sample at a subscriber, over ROS 2 and in shared memory.
 //!
-//! The loop is `node::run` itself with its own sinks and sources. In place of the bag stands a plant
-//! that keeps all solver threads at work for most of each tick. Who listens and commands is another
-//! process; both take the time of the same clock. All of it happens in a network of its own: nothing leaves
-//! this host, and nothing comes in.
+//! The loop is `node::run` with its own sinks and sources. The gripper is replaced by a plant that
+//! keeps all solver threads busy for most of each tick. Another process subscribes and commands;
+//! both use the same clock. Everything runs in a private network: nothing leaves or enters this
+//! host.
 
 mod idle_plant; // a plant that only ticks in real time
 mod listener; // the subscriber process
@@ -17,7 +17,7 @@ use std::{
 
 use serde::{Deserialize, Serialize};
 
-use super::{BenchError, Case, Figures, Options, lift};
+use super::{BenchError, BenchResult, Case, Options, lift};
 use crate::{
     base::{
         Real,
@@ -40,70 +40,71 @@ use crate::{
 };
 use idle_plant::IdlePlant;
 pub use listener::listen;
-use listener::{Heard, Samples};
-pub use private_network::PrivateError;
+use listener::{ListenerSamples, Samples};
+pub use private_network::PrivateNetworkError;
 
-/// The scene whose sizes the messages have, commanded from outside at 1 kHz.
+/// The scene that determines the sizes of messages, with commands from topics at 1 kHz.
 const OVERRIDES: [&str; 2] = ["controller=topics", "outputs.state_rate=1 kHz"];
-/// Ticks that are not counted: matching readers, filling caches.
+/// Ticks that are not counted: readers are matched, caches are filled.
 const N_FIRST: u64 = 200;
-/// Shortest time that is worth a percentile of 99.9 (s).
+/// Shortest time for a meaningful percentile of 99.9 (s).
 const SECONDS_MIN: Real = 3.0;
 
-/// The loop's latencies cannot be measured.
+/// The latencies of the loop cannot be measured.
 #[derive(Debug, thiserror::Error)]
 pub enum LatencyError {
-    /// There is no network of its own.
+    /// There is no private network.
     #[error(transparent)]
-    Private(#[from] PrivateError),
+    Private(#[from] PrivateNetworkError),
     /// ROS 2 or shared memory cannot be opened.
     #[error("{0}")]
     Closed(String),
     /// The other process failed.
     #[error("the listener failed: {0}")]
     Listener(String),
-    /// Nothing came through.
-    #[error("{path}: only {n} samples came through, {expected} were expected at least")]
+    /// Too few samples arrived.
+    #[error("{path}: only {n} samples arrived, expected at least {expected}")]
     Silent {
-        /// Which way.
+        /// Path through the loop.
         path: &'static str,
-        /// How many did.
+        /// Number of samples that arrived.
         n: usize,
-        /// How many should have.
+        /// Minimum number of samples.
         expected: usize,
     },
 }
 
-/// Latency on one way through the loop.
+/// Latency of one path through the loop.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Latency {
-    /// Which way.
+    /// Name of the path.
     pub path: String,
-    /// Samples.
+    /// Number of samples.
     pub n: usize,
-    /// Samples that were sent, and not seen.
+    /// Number of samples that were sent but did not arrive.
     pub n_lost: usize,
-    /// Half are below (us).
+    /// Median (us).
     pub p50_us: Real,
-    /// 99 % are below (us).
+    /// 99th percentile (us).
     pub p99_us: Real,
-    /// 99.9 % are below (us).
+    /// 99.9th percentile (us).
     pub p999_us: Real,
-    /// The largest (us).
+    /// Maximum (us).
     pub max_us: Real,
 }
 
-/// Measures here, if this is a network of its own, or else in one.
-pub(super) fn run(case: &Case, options: &Options) -> Result<Figures, BenchError> {
+/// Measures in this process if its network is private, otherwise in a new process in a private
+/// network.
+pub(super) fn run(case: &Case, options: &Options) -> Result<BenchResult, BenchError> {
     if private_network::is_private() {
-        return here(case, options);
+        return measure(case, options);
     }
-    let figures = private_network::run(case, options);
-    figures.map_err(|fault| BenchError::Latency { fault: fault.into() })
+    let result = private_network::run(case, options);
+    result.map_err(|error| BenchError::Latency { error: error.into() })
 }
 
-fn here(case: &Case, options: &Options) -> Result<Figures, BenchError> {
-    let latency = |fault| BenchError::Latency { fault };
+fn measure(case: &Case, options: &Options) -> Result<BenchResult, BenchError> {
+    let latency = |error| BenchError::Latency { error };
     let overrides = OVERRIDES.map(str::to_owned);
     let scene = lift::scene(&overrides)?;
     let session = lift::session(&scene, options)?;
@@ -116,19 +117,19 @@ fn here(case: &Case, options: &Options) -> Result<Figures, BenchError> {
     let mut context = context(&scene, &encoder, &prefix, &plant, seconds).map_err(latency)?;
     let child = spawn(&prefix, seconds).map_err(latency)?;
     let shutdown = context.shutdown().clone();
-    let listening = std::thread::spawn(move || {
-        let heard = heard(child);
-        // Without the other process nobody commands, and the run would wait for ever.
+    let listener = std::thread::spawn(move || {
+        let samples = samples_of(child);
+        // Without the other process there are no commands, and the run would wait forever.
         shutdown.request();
-        heard
+        samples
     });
     let report = crate::node::run(&mut plant, &mut context);
-    report.ending.map_err(|fault| BenchError::Diverged { case: case.name.to_owned(), fault })?;
-    let heard = listening.join().expect("a panic is a fault of this program").map_err(latency)?;
+    report.ending.map_err(|error| BenchError::Diverged { case: case.name.to_owned(), error })?;
+    let samples = listener.join().expect("a panic is a bug in this program").map_err(latency)?;
     context.close();
-    let latencies = plant.latencies(&heard).map_err(latency)?;
+    let latencies = plant.latencies(&samples).map_err(latency)?;
     let state = &plant.session().coupled().system.state;
-    Ok(Figures {
+    Ok(BenchResult {
         case: case.name.to_owned(),
         n_grains: state.grains.len(),
         n_vertices: state.membrane.positions.len(),
@@ -136,11 +137,11 @@ fn here(case: &Case, options: &Options) -> Result<Figures, BenchError> {
         real_time_factor: report.real_time_factor,
         latencies,
         peak_rss_bytes: super::process::peak(),
-        ..Figures::default()
+        ..BenchResult::default()
     })
 }
 
-/// All that is around the plant, in real time.
+/// Everything around the plant, in real time.
 fn context(
     scene: &Scene,
     encoder: &Arc<Encoder>,
@@ -149,7 +150,7 @@ fn context(
     seconds: Real,
 ) -> Result<RunContext, LatencyError> {
     let closed = |error: &dyn std::fmt::Display| LatencyError::Closed(error.to_string());
-    let node = RosNode::join(&reach()).map_err(|it| closed(&it))?;
+    let node = RosNode::join(&discovery_range()).map_err(|it| closed(&it))?;
     let sink = RosSink::new(&node, encoder).map_err(|it| closed(&it))?;
     let source = RosSource::new(&node, encoder).map_err(|it| closed(&it))?;
     let mut outputs = OutputSinks::default();
@@ -173,12 +174,12 @@ fn context(
     Ok(RunContext::new(Arc::new(scene), inputs, outputs, supervision))
 }
 
-/// The domain is nobody else's: the network is this process' own.
-fn reach() -> DiscoveryRange {
+/// The network is private, so any domain will do.
+fn discovery_range() -> DiscoveryRange {
     DiscoveryRange { domain_id: 0, extent: DiscoveryExtent::Host }
 }
 
-/// This program once more, as the one who listens and commands.
+/// Starts this program again as the process that subscribes and commands.
 fn spawn(prefix: &str, seconds: Real) -> Result<Child, LatencyError> {
     let failed = |error: std::io::Error| LatencyError::Listener(error.to_string());
     let program = std::env::current_exe().map_err(failed)?;
@@ -188,7 +189,7 @@ fn spawn(prefix: &str, seconds: Real) -> Result<Child, LatencyError> {
     command.spawn().map_err(failed)
 }
 
-fn heard(child: Child) -> Result<Heard, LatencyError> {
+fn samples_of(child: Child) -> Result<ListenerSamples, LatencyError> {
     let failed = |text: String| LatencyError::Listener(text);
     let output = child.wait_with_output().map_err(|error| failed(error.to_string()))?;
     if !output.status.success() {
@@ -197,23 +198,23 @@ fn heard(child: Child) -> Result<Heard, LatencyError> {
     serde_json::from_slice(&output.stdout).map_err(|error| failed(error.to_string()))
 }
 
-/// Times from `sent` to `seen` by their marks; marks up to `first` do not count.
+/// Times from `sent` to `received`, matched by their marks; marks up to `first` do not count.
 fn latency(
     path: &'static str,
     first: u64,
     sent: &Samples,
-    seen: &Samples,
+    received: &Samples,
 ) -> Result<Latency, LatencyError> {
     let sent: Vec<(u64, u64)> = sent.iter().copied().filter(|(mark, _)| first < *mark).collect();
     let mut times = Vec::with_capacity(sent.len());
-    let mut rest = seen.iter().peekable();
-    for &(mark, left_ns) in &sent {
+    let mut rest = received.iter().peekable();
+    for &(mark, sent_ns) in &sent {
         while rest.next_if(|(other, _)| *other < mark).is_some() {}
-        if let Some((_, came_ns)) = rest.next_if(|(other, _)| *other == mark) {
-            times.push(1e-3 * real_of(came_ns.saturating_sub(left_ns)));
+        if let Some((_, received_ns)) = rest.next_if(|(other, _)| *other == mark) {
+            times.push(1e-3 * real_of(received_ns.saturating_sub(sent_ns)));
         }
     }
-    // Half of them: a way that loses more is broken, and its percentiles mean nothing.
+    // Half of them: a path that loses more is broken, and its percentiles mean nothing.
     let expected = sent.len().div_ceil(2).max(1);
     if times.len() < expected {
         return Err(LatencyError::Silent { path, n: times.len(), expected });
@@ -221,7 +222,7 @@ fn latency(
     Ok(percentiles(path, times, sent.len()))
 }
 
-/// The percentiles of `times` (us), of `n_sent` samples.
+/// The percentiles of `times` (us), out of `n_sent` samples.
 fn percentiles(path: &str, mut times: Vec<Real>, n_sent: usize) -> Latency {
     times.sort_by(Real::total_cmp);
     let n = times.len();
@@ -244,23 +245,23 @@ fn percentiles(path: &str, mut times: Vec<Real>, n_sent: usize) -> Latency {
 mod tests {
     use super::*;
 
-    /// Oracle: by hand. Sample k takes k us; two get lost, one is of the first ones.
+    /// Oracle: computed by hand. Sample k takes k us; two are lost, one is among the first ones.
     #[test]
-    fn percentiles_are_of_those_that_came() {
+    fn percentiles_are_those_of_received_samples() {
         let sent: Samples = (1..=1003).map(|k| (k, 10_000 * k)).collect();
-        let came = |(mark, left): &(u64, u64)| (*mark, left + 1000 * (mark - 1));
-        let seen: Samples =
-            sent.iter().filter(|(mark, _)| *mark != 500 && *mark != 501).map(came).collect();
-        let found = latency("way", 1, &sent, &seen).unwrap();
+        let receive = |(mark, left): &(u64, u64)| (*mark, left + 1000 * (mark - 1));
+        let received: Samples =
+            sent.iter().filter(|(mark, _)| *mark != 500 && *mark != 501).map(receive).collect();
+        let found = latency("path", 1, &sent, &received).unwrap();
         assert_eq!((found.n, found.n_lost), (1000, 2));
         let [p50, p99, p999] = [found.p50_us, found.p99_us, found.p999_us].map(|it| it.round());
         assert_eq!(format!("{p50} {p99} {p999} {}", found.max_us.round()), "502 992 1001 1002");
     }
 
     #[test]
-    fn a_silent_way_is_no_way() {
+    fn too_few_samples_are_an_error() {
         let sent: Samples = (1..=100).map(|k| (k, k)).collect();
-        let error = latency("way", 0, &sent, &sent[..49].to_vec()).unwrap_err();
+        let error = latency("path", 0, &sent, &sent[..49].to_vec()).unwrap_err();
         assert!(matches!(error, LatencyError::Silent { n: 49, expected: 50, .. }), "{error}");
     }
 }

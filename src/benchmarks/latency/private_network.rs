@@ -1,34 +1,34 @@
-//! A network of its own: a namespace with nothing but a loopback interface. What speaks DDS here never
-//! uses another.
+//! A private network: a namespace with only a loopback interface. DDS traffic of benchmarks never
+//! uses another one.
 
 use std::{
     fs,
     process::{Command, Stdio},
 };
 
-use crate::benchmarks::{Case, Figures, Options};
+use crate::benchmarks::{BenchResult, Case, Options};
 
-/// Brings loopback up and becomes the program.
+/// Brings loopback up and executes the program.
 const ENTER: &str = concat!(include_str!("loopback_up.sh"), "exec \"$0\" \"$@\"\n");
-/// Set inside, so that a namespace that is none does not make another.
+/// Set inside, so that a namespace that is not private does not create another one.
 const INSIDE: &str = "JAMGRIP_BENCH_PRIVATE_NETWORK";
-/// Interfaces that a new namespace may have from the start, all of them down.
+/// Interfaces that a new namespace may have from the start; all of them are down.
 const HARMLESS: [&str; 7] = ["lo", "tunl", "gre", "erspan", "sit", "ip6", "ip_vti"];
 
-/// There is no network of its own.
+/// There is no private network.
 #[derive(Debug, thiserror::Error)]
-pub enum PrivateError {
+pub enum PrivateNetworkError {
     /// The system does not allow one.
     #[error(
-        "this system allows no private network, and no other is used:\n{tried}run as root, with \
+        "this system does not allow a private network, and no other is used:\n{tried}run as root, with \
          CAP_SYS_ADMIN in a container, or allow unprivileged user namespaces"
     )]
     Refused {
-        /// What was tried.
+        /// The failed attempts.
         tried: String,
     },
-    /// What ran inside failed.
-    #[error("in its own network: {0}")]
+    /// The process inside failed.
+    #[error("in the private network: {0}")]
     Inside(String),
 }
 
@@ -39,23 +39,23 @@ pub(super) fn is_private() -> bool {
     names.map(str::trim).all(|name| HARMLESS.iter().any(|it| name.starts_with(it)))
 }
 
-/// Runs the case by this program in a network of its own.
-pub(super) fn run(case: &Case, options: &Options) -> Result<Figures, PrivateError> {
+/// Runs the case with this program in a private network.
+pub(super) fn run(case: &Case, options: &Options) -> Result<BenchResult, PrivateNetworkError> {
     if std::env::var_os(INSIDE).is_some() {
         let tried = "unshare: the new network has interfaces\n".to_owned();
-        return Err(PrivateError::Refused { tried });
+        return Err(PrivateNetworkError::Refused { tried });
     }
-    let inside = |text: String| PrivateError::Inside(text);
+    let inside = |text: String| PrivateNetworkError::Inside(text);
     let program = std::env::current_exe().map_err(|error| inside(error.to_string()))?;
     let mut tried = String::new();
     for option in ["-n", "-rn"] {
-        // Whether it is allowed is asked first: what fails later has another reason.
+        // Check first that it is allowed: a later failure has another cause.
         let allowed = Command::new("unshare").args([option, "true"]).output();
         match allowed {
             Ok(output) if output.status.success() => {}
             Ok(output) => {
-                let fault = String::from_utf8_lossy(&output.stderr);
-                tried += &format!("unshare {option}: {}\n", fault.trim());
+                let error = String::from_utf8_lossy(&output.stderr);
+                tried += &format!("unshare {option}: {}\n", error.trim());
                 continue;
             }
             Err(error) => {
@@ -78,9 +78,9 @@ pub(super) fn run(case: &Case, options: &Options) -> Result<Figures, PrivateErro
         if !output.status.success() {
             return Err(inside(String::from_utf8_lossy(&output.stderr).trim().to_owned()));
         }
-        let figures: Result<Vec<Figures>, _> = serde_json::from_slice(&output.stdout);
-        let figures = figures.map_err(|error| inside(error.to_string()))?;
-        return figures.into_iter().next().ok_or_else(|| inside("no figures".to_owned()));
+        let results: Result<Vec<BenchResult>, _> = serde_json::from_slice(&output.stdout);
+        let results = results.map_err(|error| inside(error.to_string()))?;
+        return results.into_iter().next().ok_or_else(|| inside("no result".to_owned()));
     }
-    Err(PrivateError::Refused { tried })
+    Err(PrivateNetworkError::Refused { tried })
 }

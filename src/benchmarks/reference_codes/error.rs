@@ -1,54 +1,54 @@
-//! What can go wrong with a peer.
+//! Errors of reference codes.
 
 use std::{io, process::ExitStatus};
 
 use crate::base::Real;
 
-/// A peer does not run, or says what cannot be understood.
+/// A reference code does not run, or its output cannot be parsed.
 #[derive(Debug, thiserror::Error)]
-pub enum PeerError {
+pub enum ReferenceError {
     /// It cannot be started, or its files cannot be written.
     #[error("{peer}: {reason}")]
     Io {
-        /// Which.
+        /// Name of the code.
         peer: &'static str,
-        /// What the operating system said.
+        /// The error of the operating system.
         reason: io::Error,
     },
-    /// It ended in a fault.
+    /// It ended with an error.
     #[error("{peer}: ended with {status}; its last lines:\n{tail}")]
     Failed {
-        /// Which.
+        /// Name of the code.
         peer: &'static str,
-        /// How.
+        /// Exit status.
         status: ExitStatus,
-        /// What it printed at last.
+        /// Its last lines of output.
         tail: String,
     },
-    /// It did not say what it should.
-    #[error("{peer}: no `{wanted}` in what it prints; its last lines:\n{tail}")]
+    /// Its output lacks something.
+    #[error("{peer}: no `{wanted}` in its output; its last lines:\n{tail}")]
     Unreadable {
-        /// Which.
+        /// Name of the code.
         peer: &'static str,
-        /// What was looked for.
+        /// What is missing.
         wanted: &'static str,
-        /// What it printed at last.
+        /// Its last lines of output.
         tail: String,
     },
     /// It has lost its contacts.
-    #[error("{peer}: {found:.0} contacts between grains, expected {expected:.0} at least")]
+    #[error("{peer}: {found:.0} contacts between grains, expected at least {expected:.0}")]
     Empty {
-        /// Which.
+        /// Name of the code.
         peer: &'static str,
-        /// What was found.
+        /// Number of contacts.
         found: Real,
-        /// What it should be.
+        /// Minimum number of contacts.
         expected: Real,
     },
     /// Several threads need MPI.
     #[error("{peer}: more than one thread needs `mpirun`; install it, or use --threads 1")]
     NoMpi {
-        /// Which.
+        /// Name of the code.
         peer: &'static str,
     },
 }

@@ -1,5 +1,6 @@
-//! The same packing in other codes, in alternation with ours: LAMMPS, LIGGGHTS and YADE, whichever is
-//! installed. They run as programs of their own and time themselves; what they print is read strictly.
+//! The same packing in other DEM codes, alternating with jamgrip: LAMMPS, LIGGGHTS and YADE, as far
+//! as installed. They run as separate programs and measure their own times; their output is parsed
+//! strictly.
 
 mod error; // what can go wrong
 mod input; // input files
@@ -23,53 +24,53 @@ use crate::{
     },
     physics::System,
 };
-pub use error::PeerError;
+pub use error::ReferenceError;
 use input::{numbers, packing};
 use output::{Repetition, read, tail};
 use tool::{TOOLS, Tool, on_path};
 
-/// What solver threads of ours are nicer than the process.
+/// Niceness of jamgrip's solver threads relative to the process.
 const NICE: i32 = 10;
 
-/// What is told of a peer.
+/// The result of a reference code.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct PeerFigures {
-    /// Which.
+pub struct ReferenceResult {
+    /// Name of the code.
     pub peer: String,
-    /// What it says of its version.
+    /// Version that it prints.
     pub version: String,
     /// Contacts between grains times steps per second and thread, the median of all runs.
     pub contact_steps_per_s_per_core: Real,
-    /// Slowest over fastest run, less one.
+    /// Time of the slowest run divided by that of the fastest, minus one.
     pub spread: Real,
     /// Contacts at the end.
     pub n_contacts: Real,
     /// Kinetic energy at the end (J), without spins.
     pub kinetic_energy_j: Real,
-    /// Our contact-steps per second over its own.
+    /// Contact-steps per second of jamgrip divided by its own.
     pub ratio: Real,
 }
 
-/// All peers that are installed, with the packing of a case.
-pub(super) struct Peers {
+/// All installed reference codes, with the packing of a case.
+pub(super) struct ReferenceCodes {
     folder: Folder,
     case: Value,
     n_threads: usize,
     work: Work,
     n_contacts_min: Real,
     found: Vec<(Tool, PathBuf, Vec<Repetition>)>,
-    /// What is not installed, with the remedy.
+    /// Codes that are not installed, with the remedy.
     pub(super) missing: Vec<String>,
 }
 
-impl Peers {
-    /// Looks for peers, and writes the packing of `boxed` as it is in `system` for them.
+impl ReferenceCodes {
+    /// Finds installed codes, and writes the packing of `boxed` in `system` for them.
     pub(super) fn new(
         boxed: &Boxed,
         system: &System,
         (work, limits): (Work, &Limits),
         n_threads: usize,
-    ) -> Result<Self, PeerError> {
+    ) -> Result<Self, ReferenceError> {
         let (mut found, mut missing) = (Vec::new(), Vec::new());
         for tool in TOOLS {
             match tool.program() {
@@ -77,14 +78,15 @@ impl Peers {
                 None => missing.push(format!("{}: not installed; {}", tool.name(), tool.remedy())),
             }
         }
-        let folder = Folder::new().map_err(|reason| PeerError::Io { peer: "peers", reason })?;
+        let folder = Folder::new()
+            .map_err(|reason| ReferenceError::Io { peer: "reference codes", reason })?;
         for (tool, ..) in &found {
             let (name, text) = tool.script();
             let write = || {
                 fs::write(folder.0.join(name), text)?;
                 fs::write(folder.0.join(tool.data()), packing(*tool, system, boxed))
             };
-            write().map_err(|reason| PeerError::Io { peer: tool.name(), reason })?;
+            write().map_err(|reason| ReferenceError::Io { peer: tool.name(), reason })?;
         }
         let n_contacts_min = limits.contacts_per_grain * real(system.state.grains.len());
         let case = numbers(boxed, work);
@@ -92,7 +94,7 @@ impl Peers {
     }
 
     /// One run of each.
-    pub(super) fn repetition(&mut self) -> Result<(), PeerError> {
+    pub(super) fn repetition(&mut self) -> Result<(), ReferenceError> {
         for k in 0..self.found.len() {
             let (tool, program, _) = &self.found[k];
             let repetition = self.run(*tool, program)?;
@@ -101,8 +103,8 @@ impl Peers {
         Ok(())
     }
 
-    /// What came out, beside our own contact-steps per second and thread.
-    pub(super) fn figures(&self, ours: Real) -> Vec<PeerFigures> {
+    /// The results, compared with jamgrip's contact-steps per second and thread.
+    pub(super) fn results(&self, ours: Real) -> Vec<ReferenceResult> {
         let of_tool = |(tool, _, repetitions): &(Tool, PathBuf, Vec<Repetition>)| {
             let n_steps = real_of(self.work.n_steps);
             let speed = |repetition: &Repetition| {
@@ -113,7 +115,7 @@ impl Peers {
             speeds.sort_by(Real::total_cmp);
             let last = repetitions.last()?;
             let theirs = median(&speeds);
-            Some(PeerFigures {
+            Some(ReferenceResult {
                 peer: tool.name().to_owned(),
                 version: last.version.clone(),
                 contact_steps_per_s_per_core: theirs,
@@ -126,27 +128,27 @@ impl Peers {
         self.found.iter().filter_map(of_tool).collect()
     }
 
-    fn run(&self, tool: Tool, program: &Path) -> Result<Repetition, PeerError> {
+    fn run(&self, tool: Tool, program: &Path) -> Result<Repetition, ReferenceError> {
         let peer = tool.name();
         let mut command = self.command(tool, program)?;
         command.current_dir(&self.folder.0).stdin(Stdio::null());
-        let output = command.output().map_err(|reason| PeerError::Io { peer, reason })?;
-        let said = String::from_utf8_lossy(&output.stdout).into_owned();
-        let fault = String::from_utf8_lossy(&output.stderr).into_owned();
+        let output = command.output().map_err(|reason| ReferenceError::Io { peer, reason })?;
+        let stdout = String::from_utf8_lossy(&output.stdout).into_owned();
+        let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
         if !output.status.success() {
-            let tail = tail(&format!("{said}\n{fault}"));
-            return Err(PeerError::Failed { peer, status: output.status, tail });
+            let tail = tail(&format!("{stdout}\n{stderr}"));
+            return Err(ReferenceError::Failed { peer, status: output.status, tail });
         }
-        let repetition = read(tool, &said)?;
+        let repetition = read(tool, &stdout)?;
         let fewest = repetition.n_contacts[0].min(repetition.n_contacts[1]);
         if fewest >= self.n_contacts_min {
             return Ok(repetition);
         }
-        Err(PeerError::Empty { peer, found: fewest, expected: self.n_contacts_min })
+        Err(ReferenceError::Empty { peer, found: fewest, expected: self.n_contacts_min })
     }
 
-    /// The command line of a peer, as nice as our solver's threads are.
-    fn command(&self, tool: Tool, program: &Path) -> Result<Command, PeerError> {
+    /// The command line of a code, with the niceness of jamgrip's solver threads.
+    fn command(&self, tool: Tool, program: &Path) -> Result<Command, ReferenceError> {
         let mut command = Command::new("nice");
         command.arg("-n").arg((NICE - niceness()).to_string());
         let n_threads = self.n_threads.to_string();
@@ -160,10 +162,11 @@ impl Peers {
         }
         let home = program.parent().and_then(Path::parent);
         if 1 < self.n_threads {
-            // MPI of the same environment: programs and launchers of different ones do not meet.
+            // MPI of the same environment: programs and launchers of different ones do not work
+            // together.
             let own = home.map(|it| it.join("bin/mpiexec")).filter(|it| it.is_file());
             let launcher = own.or_else(|| on_path("mpirun"));
-            let launcher = launcher.ok_or(PeerError::NoMpi { peer: tool.name() })?;
+            let launcher = launcher.ok_or(ReferenceError::NoMpi { peer: tool.name() })?;
             command.arg(launcher).args(["-n", &n_threads]);
             command.env("OMPI_ALLOW_RUN_AS_ROOT", "1").env("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1");
             command.env("OMPI_MCA_hwloc_base_binding_policy", "none");
@@ -184,7 +187,7 @@ impl Peers {
     }
 }
 
-/// A folder for the time of the runs.
+/// A temporary folder.
 struct Folder(PathBuf);
 
 impl Folder {
@@ -197,7 +200,7 @@ impl Folder {
 
 impl Drop for Folder {
     fn drop(&mut self) {
-        // What cannot be removed only takes room.
+        // A folder that cannot be removed only takes space.
         drop(fs::remove_dir_all(&self.0));
     }
 }

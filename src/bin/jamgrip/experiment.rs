@@ -15,7 +15,7 @@ use jamgrip::{
         experiment::{self, RunRequest},
         folder::Policy,
         outcome::{Outcome, sized_name},
-        table::{self, Look},
+        table::{self, TableLayout},
         validation_doc,
     },
 };
@@ -34,7 +34,7 @@ pub(crate) fn experiment(args: &Experiment) -> Result<ExitCode, Box<dyn Error>> 
         return list();
     }
     let name = args.name.as_deref().unwrap_or_default();
-    let order = RunRequest {
+    let request = RunRequest {
         experiment: experiment::by_name(name)?,
         size: args.size(),
         overrides: args.set.clone(),
@@ -42,7 +42,7 @@ pub(crate) fn experiment(args: &Experiment) -> Result<ExitCode, Box<dyn Error>> 
     };
     let out = args.out(name);
     let policy = Policy { is_fresh: args.fresh, allows_mixed_builds: args.mixed_builds };
-    let tasks = [Task { order, out: Some(out.clone()) }];
+    let tasks = [Task { request, out: Some(out.clone()) }];
     let ending = run(&tasks, &args.common, policy)?;
     let Ending::Finished(outcomes) = ending else { return interrupted(&ending, true) };
     let mut stdout = io::stdout().lock();
@@ -50,7 +50,7 @@ pub(crate) fn experiment(args: &Experiment) -> Result<ExitCode, Box<dyn Error>> 
         if args.common.json {
             writeln!(stdout, "{}", outcome.to_line())?;
         } else {
-            write!(stdout, "{}", table::of_one(outcome, look()))?;
+            write!(stdout, "{}", table::of_one(outcome, layout()))?;
             writeln!(stdout, "results in {}; see report.html", out.display())?;
         }
     }
@@ -64,10 +64,10 @@ pub(crate) fn validate(args: &Validate) -> Result<ExitCode, Box<dyn Error>> {
         experiments = chosen.collect::<Result<_, _>>()?;
     }
     let task = |experiment| {
-        let order =
+        let request =
             RunRequest { experiment, size: Size::Quick, overrides: Vec::new(), scene: None };
         let name = sized_name(experiment.name(), Size::Quick);
-        Task { order, out: args.out.as_ref().map(|out| out.join(name)) }
+        Task { request, out: args.out.as_ref().map(|out| out.join(name)) }
     };
     let tasks: Vec<Task<'_>> = experiments.into_iter().map(task).collect();
     let policy = Policy { is_fresh: args.fresh, allows_mixed_builds: false };
@@ -77,11 +77,11 @@ pub(crate) fn validate(args: &Validate) -> Result<ExitCode, Box<dyn Error>> {
     };
     let mut stdout = io::stdout().lock();
     if args.common.json {
-        let rows = outcomes.iter().flat_map(Outcome::rows_for_machines);
+        let rows = outcomes.iter().flat_map(Outcome::rows_as_json);
         let lines: Vec<String> = rows.map(|row| row.to_string()).collect();
         writeln!(stdout, "[\n{}\n]", lines.join(",\n"))?;
     } else {
-        write!(stdout, "{}", table::of_all(&outcomes, look()))?;
+        write!(stdout, "{}", table::of_all(&outcomes, layout()))?;
     }
     Ok(verdict(&outcomes))
 }
@@ -122,11 +122,11 @@ fn verdict(outcomes: &[Outcome]) -> ExitCode {
     if !outcomes.iter().all(Outcome::is_complete) {
         return ExitCode::from(FAILED);
     }
-    let is_red = outcomes.iter().any(|outcome| 0 < outcome.n_red());
+    let is_red = outcomes.iter().any(|outcome| 0 < outcome.n_failed());
     if is_red { ExitCode::from(RED) } else { ExitCode::SUCCESS }
 }
 
 /// Width of the terminal, if the shell exports it.
-fn look() -> Look {
-    Look::new(std::env::var("COLUMNS").ok().and_then(|columns| columns.parse().ok()))
+fn layout() -> TableLayout {
+    TableLayout::new(std::env::var("COLUMNS").ok().and_then(|columns| columns.parse().ok()))
 }

@@ -5,16 +5,16 @@ use std::error::Error;
 use jamgrip::{
     node::launch::RunError,
     node::start::StartError,
-    scene::{SceneError, error::Fault},
+    scene::{SceneError, error::Diagnostic},
 };
 
 /// What to add to the text of an error.
 pub(crate) fn of(error: &(dyn Error + 'static)) -> Option<&'static str> {
     if let Some(scene) = error.downcast_ref::<SceneError>() {
-        let is_override = |it: &Fault| it.place.source.starts_with("override ");
+        let is_override = |it: &Diagnostic| it.location.source.starts_with("override ");
         let has_override = match scene {
             SceneError::NotAnOverride { .. } => true,
-            SceneError::Faults(faults) => faults.iter().any(is_override),
+            SceneError::Invalid(diagnostics) => diagnostics.iter().any(is_override),
             _ => false,
         };
         return has_override.then_some("Overrides are set with --set KEY=VALUE.");

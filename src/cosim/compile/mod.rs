@@ -1,6 +1,6 @@
-//! A checked scene becomes a model: laws, meshes, surfaces, and the substep that all of them bear.
+//! Compiles a scene to a model: laws, meshes, surfaces, and a stable substep.
 //!
-//! The substep is a share of the critical one (`physics::critical_step`) under the contacts that
+//! The substep is a fraction of the critical one (`physics::critical_step`) under the contacts that
 //! press on a vertex at full vacuum.
 
 mod density_scaling;
@@ -10,7 +10,7 @@ pub use density_scaling::ScaledScene;
 use super::{
     FLANGE, Plan,
     flange::Limits,
-    saved_state::{self, SavedStateError, same_counts},
+    saved_state::{self, SavedStateError, check_counts},
 };
 use crate::{
     base::{
@@ -24,7 +24,7 @@ use crate::{
         boundary::{
             body::BodyMotion,
             motion::WallMotion,
-            shape::{Bulk, ShapeFault, Surface},
+            shape::{Bulk, ShapeError, Surface},
             wall::WallShape,
         },
         builder::{BuildError, Membrane, Vertices, Wall},
@@ -36,68 +36,68 @@ use crate::{
     scene::{Object, Scene, Shape},
 };
 
-/// Changes whenever the same scene would settle differently: part of every cache key.
+/// To be incremented whenever the same scene would settle differently; part of every cache key.
 pub const PHYSICS_VERSION: u64 = 6;
-/// Neighbours are listed this share of the largest radius beyond contact.
+/// Skin of the neighbor lists, relative to the largest radius.
 const SKIN_SHARE: Real = 0.25;
-/// Longest time between two steps of the rigid world (s).
+/// Longest time between two steps of the rigid-body world (s).
 const EXCHANGE_MAX: Real = 1e-4;
-/// Effective radius R* of a sample of the membrane on the table: that of the source's object (m).
+/// Effective radius R* of a contact point of the membrane on the table: the object's in the source (m).
 const TABLE_CONTACT_RADIUS: Real = 0.01;
 
 /// Why a scene cannot be compiled.
 #[derive(Debug, thiserror::Error)]
 pub enum CompileError {
-    /// The substep set by hand is unstable.
+    /// The substep of the scene is unstable.
     #[error(
         "time.substep: {given_s:.3e} s exceeds the critical step {critical_s:.3e} s; \
-         use at most {advised_s:.3e} s, leave it out, or take softer materials or a coarser mesh"
+         use at most {advised_s:.3e} s, omit it, or use softer materials or a coarser mesh"
     )]
     SubstepTooLong {
-        /// Asked for (s).
+        /// The substep of the scene (s).
         given_s: Real,
-        /// Where the system becomes unstable (s).
+        /// The critical step (s).
         critical_s: Real,
-        /// What would be derived (s).
+        /// The substep that would be derived (s).
         advised_s: Real,
     },
-    /// The bag cannot be meshed.
+    /// The membrane cannot be meshed.
     #[error("membrane: {0}")]
-    Membrane(#[from] crate::physics::membrane::mesh::MeshFault),
+    Membrane(#[from] crate::physics::membrane::mesh::MeshError),
     /// An object's shape cannot be used.
-    #[error("object `{name}`: {fault}")]
+    #[error("object `{name}`: {error}")]
     Object {
         /// Its name.
         name: String,
-        /// What is wrong with it.
-        fault: ShapeFault,
+        /// The error.
+        error: ShapeError,
     },
-    /// The parts of the gripper do not fit each other.
+    /// The parts of the gripper are inconsistent.
     #[error("gripper: {0}")]
     Build(#[from] BuildError),
 }
 
-/// A scene ready to run.
+/// A compiled scene.
 pub struct Compiled {
-    /// Where it came from.
+    /// The scene.
     pub scene: Scene,
     /// Grains, membrane and chamber.
     pub model: Model,
-    /// How a tick is cut.
+    /// How a tick is divided.
     pub plan: Plan,
     /// Mass properties of the objects.
     pub bulks: Vec<Bulk>,
     /// Limits of the flange's motion.
     pub limits: Limits,
-    /// The solver's threads.
+    /// Threads of the solver.
     pub pool: ThreadPool,
 }
 
-/// What a scene compiles to, without the threads that will run it.
+/// A compiled scene without its thread pool.
 pub struct Gripper {
     /// Grains, membrane and chamber.
     pub model: Model,
-    /// How a tick is cut.
+    /// How a tick is divided.
     pub plan: Plan,
     /// Mass properties of the objects.
     pub bulks: Vec<Bulk>,
@@ -140,7 +140,7 @@ pub fn gripper(scene: &Scene) -> Result<Gripper, CompileError> {
 }
 
 impl Compiled {
-    /// Compiles `scene`, to be run by the threads of `pool`; no result depends on their number.
+    /// Compiles `scene`, to be run on the threads of `pool`. No result depends on their number.
     ///
     /// # Errors
     /// If the substep is too long or a shape is unusable.
@@ -150,7 +150,7 @@ impl Compiled {
         Ok(Self { scene: scene.clone(), model, plan, bulks, limits, pool: pool.clone() })
     }
 
-    /// Key of the settled start state: everything that the filling depends on, nothing else.
+    /// Cache key of the settled start state: exactly what the filling depends on.
     pub fn start_digest(&self) -> u64 {
         let Scene { seed, grains, membrane, flange, .. } = &self.scene;
         let gravity = &self.model.gravity;
@@ -164,31 +164,31 @@ impl Compiled {
 }
 
 impl Compiled {
-    /// The settled start state in `bytes`: the flange stands at its first pose, the bag is vented.
+    /// Reads a settled start state: the flange is at its initial pose, the gauge pressure is zero.
     ///
     /// # Errors
-    /// If the bytes are damaged or of another scene.
+    /// If the bytes are corrupt or of another scene.
     pub fn read_start_state(&self, bytes: &[u8]) -> Result<State, SavedStateError> {
-        let mut state = self.fitting_state(bytes)?;
+        let mut state = self.checked_state(bytes)?;
         state.gauge = 0.0;
         state.walls[FLANGE] = BodyMotion { pose: self.scene.flange.pose, twist: Twist::zero() };
         Ok(state)
     }
 
-    /// The state in `bytes`, in the middle of a run.
+    /// Reads the state of a running simulation.
     ///
     /// # Errors
-    /// If the bytes are damaged or of another scene.
+    /// If the bytes are corrupt or of another scene.
     pub fn read_state(&self, bytes: &[u8]) -> Result<State, SavedStateError> {
-        let state = self.fitting_state(bytes)?;
-        same_counts(&[("body springs", state.springs.bodies.len(), self.n_samples())])?;
+        let state = self.checked_state(bytes)?;
+        check_counts(&[("body springs", state.springs.bodies.len(), self.n_samples())])?;
         Ok(state)
     }
 
-    fn fitting_state(&self, bytes: &[u8]) -> Result<State, SavedStateError> {
+    fn checked_state(&self, bytes: &[u8]) -> Result<State, SavedStateError> {
         let state = saved_state::read(bytes)?;
         let n_vertices = self.model.membrane.mesh.n_vertices();
-        same_counts(&[
+        check_counts(&[
             ("grains", state.grains.len(), self.scene.grains.count),
             ("vertices", state.membrane.positions.len(), n_vertices),
             ("walls", state.walls.len(), self.model.walls.len()),
@@ -196,7 +196,7 @@ impl Compiled {
         Ok(state)
     }
 
-    /// Number of samples of the membrane on all bodies.
+    /// Number of contact points of the membrane with all bodies.
     pub fn n_samples(&self) -> usize {
         self.model.n_samples() * self.model.bodies.len()
     }
@@ -226,8 +226,8 @@ fn bodies(scene: &ScaledScene) -> Result<(Vec<BodyModel>, Vec<Bulk>), CompileErr
     Ok(bodies.collect::<Result<Vec<_>, _>>()?.into_iter().unzip())
 }
 
-/// An object that is put in during a run, as the membrane meets it, and what it weighs. The damping
-/// of its contacts is that of the scene without density scaling.
+/// The body of an object that is inserted during a run, and its mass properties. The damping of its
+/// contacts is that of the scene without density scaling.
 ///
 /// # Errors
 /// If its shape cannot be used.
@@ -237,19 +237,20 @@ pub fn body(scene: &Scene, object: &Object) -> Result<(BodyModel, Bulk), Compile
 
 fn scaled_body(scene: &ScaledScene, object: &Object) -> Result<(BodyModel, Bulk), CompileError> {
     let surface = surface(&object.shape)
-        .map_err(|fault| CompileError::Object { name: object.name.clone(), fault })?;
+        .map_err(|error| CompileError::Object { name: object.name.clone(), error })?;
     let bulk = surface.bulk(object.material.density);
     let on_object = law::Surface::of_membrane(&scene.membrane, object.friction);
     let model = BodyModel {
         law: PairLaw::between(&scene.membrane.material, &object.material, on_object),
         contact_radius: contact_radius(&object.shape, bulk.volume),
         bounding_radius: surface.bounding_radius(),
+        of_grains: None,
         surface: BodySurface::Shape(Box::new(surface)),
     };
     Ok((model, bulk))
 }
 
-/// Takes materials and pump from `scene` again; shapes and steps stay.
+/// Updates materials and pump from `scene`; shapes and steps stay.
 pub fn retune(scene: &Scene, model: &mut Model) {
     let scene = &ScaledScene::new(scene);
     let laws = Laws::new(scene);
@@ -262,13 +263,13 @@ pub fn retune(scene: &Scene, model: &mut Model) {
     }
 }
 
-/// The longest stable substep of `scene` with an object that was not there when it was compiled (s).
+/// The critical step of `scene` with an additional object (s).
 pub fn critical_step_with(scene: &Scene, model: &Model, body: &BodyModel) -> Real {
     let scene = &ScaledScene::new(scene);
     critical_step(scene, &model.membrane, &Laws::new(scene), std::slice::from_ref(body))
 }
 
-fn surface(shape: &Shape) -> Result<Surface, ShapeFault> {
+fn surface(shape: &Shape) -> Result<Surface, ShapeError> {
     Ok(match shape {
         Shape::Sphere { radius } => Surface::Sphere { radius: *radius },
         Shape::Box { size } => Surface::cuboid(size),
@@ -279,8 +280,8 @@ fn surface(shape: &Shape) -> Result<Surface, ShapeFault> {
     })
 }
 
-/// Effective radius R* of a soft membrane on the object: the radius of spheres, cylinders and
-/// capsules as in the source; for others that of the sphere of the same volume.
+/// Effective radius R* of a contact of the membrane with an object: for spheres, cylinders and capsules
+/// their radius, as in the source; for other shapes the radius of a sphere of the same volume.
 fn contact_radius(shape: &Shape, volume: Real) -> Real {
     match shape {
         Shape::Sphere { radius }
@@ -299,6 +300,7 @@ fn table(scene: &ScaledScene) -> BodyModel {
         law: PairLaw::against_rigid(&scene.membrane.material, on_table),
         contact_radius: TABLE_CONTACT_RADIUS,
         bounding_radius: Real::INFINITY,
+        of_grains: None,
     }
 }
 
@@ -310,7 +312,7 @@ fn plan(
 ) -> Result<Plan, CompileError> {
     let critical = critical_step(scene, membrane, laws, bodies);
     let advised = scene.time.safety * critical;
-    let wanted = match scene.time.substep {
+    let requested = match scene.time.substep {
         Some(given) if given > critical => {
             return Err(CompileError::SubstepTooLong {
                 given_s: given,
@@ -322,8 +324,8 @@ fn plan(
         None => advised,
     };
     let tick = std::time::Duration::from_nanos(scene.time.tick_ns).as_secs_f64();
-    // A hand-set step that divides the tick must not be cut once more by rounding.
-    let n_first = count(tick / wanted - 1e-9);
+    // A substep that divides the tick must not become shorter by rounding.
+    let n_first = count(tick / requested - 1e-9);
     let n_per_exchange = count((EXCHANGE_MAX * real(n_first) / tick).floor()).max(1);
     let n_substeps = n_first.div_ceil(n_per_exchange) * n_per_exchange;
     Ok(Plan { tick, n_substeps, n_per_exchange })
@@ -336,8 +338,8 @@ fn critical_step(
     bodies: &[BodyModel],
 ) -> Real {
     let grains = &scene.grains;
-    // Under the strongest vacuum a grain carries the pressure on its square of membrane, a sample
-    // that on its share of the membrane.
+    // Under the strongest vacuum, a grain carries the pressure on its square of the membrane, a contact
+    // point with a body that on its share of the membrane.
     let pressure = scene.chamber.gauge_min.abs().max(scene.chamber.gauge_max);
     let on_vertex =
         critical_step::stiffness_at_vertex(membrane, &laws.membrane, grains.radius_max, pressure)

@@ -1,8 +1,8 @@
-//! A grip ready to run: its model, and where object and pump are at any time.
+//! A prepared grip: its model, and the set-points of object and pump at any time.
 
 use super::{
     cases::{Case, Change, Grip},
-    phase::{Phase, Way, staircase},
+    phase::{Phase, Stroke, staircase},
     scene::GripperScene,
 };
 use crate::{
@@ -14,26 +14,26 @@ use crate::{
     physics::{Controls, Model, State, System, boundary::body::BodyMotion},
 };
 
-/// How far the object goes down beyond its starting point if the bag does not let go of it (m).
-const WAY_OUT_BEYOND: Real = 0.02;
+/// Distance below its start to which the object is withdrawn if it is not released before (m).
+const BEYOND_START: Real = 0.02;
 
-/// A grip ready to run.
-pub(super) struct Ready {
+/// A prepared grip.
+pub(super) struct PreparedGrip {
     pub(super) scene: GripperScene,
     model: Model,
     pub(super) change: Change,
     pub(super) is_inserted: bool,
     /// True if it may end before the object is free.
     pub(super) is_cut: bool,
-    /// Substeps in a tick.
+    /// Number of substeps in a tick.
     pub(super) n_substeps: usize,
     /// Length of a tick (s).
     pub(super) tick: Real,
 }
 
-impl Ready {
-    /// The first grip of the case of several pressures goes on until the object is free: it shows
-    /// the whole record.
+impl PreparedGrip {
+    /// Prepares a grip. The first grip of a case with several pressures goes on until the object is
+    /// free: it shows the complete record.
     pub(super) fn new(
         scene: &GripperScene,
         grip: &Grip,
@@ -46,9 +46,9 @@ impl Ready {
         Ok(Self { scene, model, change, is_inserted, is_cut, n_substeps, tick })
     }
 
-    /// The system of this grip, beginning with `state`.
+    /// The system of this grip, starting from `state`.
     pub(super) fn system(&self, mut state: State) -> System {
-        // The bag was filled without any body.
+        // The membrane was filled without any body.
         state.springs.bodies.resize(self.model.n_samples(), Vec3::zeros());
         let object = BodyMotion { pose: Pose::identity(), twist: Twist::zero() };
         let controls =
@@ -56,32 +56,33 @@ impl Ready {
         System::new(self.model.clone(), controls, state)
     }
 
-    fn way_in(&self) -> Way {
+    fn insertion(&self) -> Stroke {
         let protocol = &self.scene.protocol;
         let speed = protocol.insert_speed * self.scene.accelerations.insert_speed_factor;
         let length = protocol.clearance + protocol.penetration;
-        Way { length, speed, ramp: protocol.ramp_time }
+        Stroke { length, speed, ramp: protocol.ramp_time }
     }
 
-    fn way_out(&self) -> Way {
+    fn withdrawal(&self) -> Stroke {
         let protocol = &self.scene.protocol;
         let speed = protocol.withdraw_speed * self.scene.accelerations.withdraw_speed_factor;
-        let length = protocol.penetration + WAY_OUT_BEYOND;
-        Way { length, speed, ramp: protocol.ramp_time }
+        let length = protocol.penetration + BEYOND_START;
+        Stroke { length, speed, ramp: protocol.ramp_time }
     }
 
-    /// How long a phase takes at most (s).
+    /// Maximum duration of a phase (s).
     pub(super) fn duration(&self, phase: Phase) -> Real {
         let protocol = &self.scene.protocol;
         match phase {
-            Phase::Insert => self.way_in().duration(),
+            Phase::Insert => self.insertion().duration(),
             Phase::Relax => protocol.relax_time,
             Phase::Evacuate => protocol.step_time * real(protocol.n_pressure_steps),
             Phase::Hold => protocol.hold_time,
-            Phase::Withdraw => self.way_out().duration(),
+            Phase::Withdraw => self.withdrawal().duration(),
         }
     }
 
+    /// Expected number of substeps.
     pub(super) fn n_substeps_expected(&self) -> usize {
         let first = if self.is_inserted { Phase::Evacuate } else { Phase::Insert };
         let n_ticks = |phase| {
@@ -98,23 +99,23 @@ impl Ready {
         phases.map(|&phase| n_ticks(phase) * self.n_substeps).sum()
     }
 
-    /// Where the object and the pump's set-point are at `time` (s) of `phase`; `low` is the height
-    /// of the settled bag's lowest point (m).
+    /// Sets the motion of the object and the pump's set-point at `time` (s) of `phase`; `low` is
+    /// the height of the settled membrane's lowest point (m).
     pub(super) fn control(&self, controls: &mut Controls, phase: Phase, time: Real, low: Real) {
         let protocol = &self.scene.protocol;
         let (start, inside) = (-protocol.clearance, protocol.penetration);
         let (top, speed) = match phase {
             Phase::Insert => {
-                let (way, speed) = self.way_in().at(time);
-                (start + way, speed)
+                let (distance, speed) = self.insertion().at(time);
+                (start + distance, speed)
             }
             Phase::Relax | Phase::Evacuate | Phase::Hold => (inside, 0.0),
             Phase::Withdraw => {
-                let (way, speed) = self.way_out().at(time);
-                (inside - way, -speed)
+                let (distance, speed) = self.withdrawal().at(time);
+                (inside - distance, -speed)
             }
         };
-        let z = low + top - self.scene.object_radius();
+        let z = low + top - self.scene.gripper.object.radius;
         controls.bodies[0].pose.translation.vector = Vec3::new(0.0, 0.0, z);
         controls.bodies[0].twist.linear = Vec3::new(0.0, 0.0, speed);
         let steps = protocol.n_pressure_steps;
@@ -127,15 +128,15 @@ impl Ready {
 
     /// I = γ̇ d √(ρ/p): the object's speed shears the grains over its diameter.
     pub(super) fn inertial_number(&self, speed: Real, pressure: Real) -> Real {
-        let rate = speed / (2.0 * self.scene.object_radius());
+        let rate = speed / (2.0 * self.scene.gripper.object.radius);
         let density = self.scene.gripper.grains.material.density * self.model.density_scaling;
         rate * 2.0 * self.model.radius_mean * (density / pressure).sqrt()
     }
 }
 
-/// The model of a scene, without the table, the substeps in a tick, and the tick (s).
+/// The model of a scene without the table, the number of substeps in a tick, and the tick (s).
 pub(super) fn compile(scene: &GripperScene) -> Result<(Model, usize, Real), CompileError> {
-    let Gripper { mut model, plan, .. } = compile::gripper(&scene.gripper)?;
+    let Gripper { mut model, plan, .. } = compile::gripper(&scene.gripper.scene())?;
     model.bodies.truncate(1);
     Ok((model, plan.n_substeps, plan.tick))
 }

@@ -1,18 +1,19 @@
-//! Which grips are done in which case: what is varied, and from which state each grip begins.
+//! The cases: which grips belong together, what each of them varies, and from which state it
+//! starts.
 //!
-//! A case is one filling. Its grips share the settled bag, and those that differ only from the
-//! relaxed state on share the insertion too, so that a comparison is not blurred by the scatter
-//! between fillings.
+//! A case is one filling. Its grips share the settled state, and those that differ only from the
+//! relaxed state on share the insertion, too, so that the scatter between fillings does not affect
+//! comparisons.
 
 use super::scene::GripperScene;
 use crate::base::{Real, real::real};
 
-/// One filling and the grips that are done with it.
+/// One filling and its grips.
 #[derive(Clone, Debug)]
 pub(super) struct Case {
-    /// Its name.
+    /// Name of the case.
     pub(super) name: String,
-    /// Which filling; added to the scene's seed.
+    /// Index of the filling; added to the scene's seed.
     pub(super) filling: usize,
     /// Modulus of the grains (Pa).
     pub(super) modulus: Real,
@@ -27,11 +28,11 @@ pub(super) struct Case {
 pub(super) struct Grip {
     /// What is varied.
     pub(super) change: Change,
-    /// True if it begins with the object already inserted by the case's first grip.
+    /// True if it starts from the relaxed state of the case's first grip, with the object inserted.
     pub(super) is_inserted: bool,
 }
 
-/// What a grip does differently.
+/// What a grip varies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Change {
     /// Nothing.
@@ -44,20 +45,22 @@ pub(super) enum Change {
     Radius(Real),
     /// Another damping ratio of the membrane's springs.
     SpringDamping(Real),
-    /// Both ways slower by this factor.
+    /// Both speeds of the object multiplied by this factor.
     Slowdown(Real),
 }
 
 impl Change {
-    /// Name, part of the names of what is recorded.
+    /// Name, a part of the names of recorded numbers.
     pub(super) fn name(self) -> String {
         match self {
             Self::Nothing => "protocol".to_owned(),
-            Self::Pressure(pressure) => format!("pressure_{}", tidy(pressure.abs() / 1e3, "kPa")),
-            Self::Friction(friction) => format!("friction_{}", tidy(friction, "")),
-            Self::Radius(radius) => format!("radius_{}", tidy(radius * 1e3, "mm")),
-            Self::SpringDamping(ratio) => format!("spring_damping_{}", tidy(ratio, "")),
-            Self::Slowdown(factor) => format!("slowdown_{}", tidy(factor, "")),
+            Self::Pressure(pressure) => {
+                format!("pressure_{}", rounded(pressure.abs() / 1e3, "kPa"))
+            }
+            Self::Friction(friction) => format!("friction_{}", rounded(friction, "")),
+            Self::Radius(radius) => format!("radius_{}", rounded(radius * 1e3, "mm")),
+            Self::SpringDamping(ratio) => format!("spring_damping_{}", rounded(ratio, "")),
+            Self::Slowdown(factor) => format!("slowdown_{}", rounded(factor, "")),
         }
     }
 
@@ -67,8 +70,8 @@ impl Change {
         match self {
             Self::Nothing => {}
             Self::Pressure(pressure) => changed.protocol.pressure = pressure,
-            Self::Friction(friction) => changed.gripper.objects[0].friction = friction,
-            Self::Radius(radius) => changed.set_object_radius(radius),
+            Self::Friction(friction) => changed.gripper.object.friction = friction,
+            Self::Radius(radius) => changed.gripper.object.radius = radius,
             Self::SpringDamping(ratio) => changed.gripper.membrane.spring_damping = ratio,
             Self::Slowdown(factor) => {
                 changed.accelerations.insert_speed_factor *= factor;
@@ -84,29 +87,29 @@ pub(super) fn cases(scene: &GripperScene) -> Vec<Case> {
     let mut cases = over_modulus(scene);
     let grains = &scene.gripper.grains;
     let (modulus, count) = (grains.material.youngs_modulus, grains.count);
-    let radii = others(&scene.sweep.radii, scene.object_radius()).map(Change::Radius);
+    let radii = others(&scene.sweep.radii, scene.gripper.object.radius).map(Change::Radius);
     let mut families = vec![("radius", radii.collect::<Vec<_>>())];
     if !scene.accelerations.is_varied_relaxed {
-        families.push(("history", histories(scene)));
+        families.push(("history", variations(scene)));
     }
     for (family, changes) in families {
         if !changes.is_empty() {
-            let grips = changes.into_iter().map(Grip::from_the_start).collect();
+            let grips = changes.into_iter().map(Grip::from_settled).collect();
             let name = format!("{family}_filling_0");
             cases.push(Case { name, filling: 0, modulus, count, grips });
         }
     }
     for count in counts(scene) {
-        let (name, grips) = (count_name(count), vec![Grip::from_the_start(Change::Nothing)]);
+        let (name, grips) = (count_name(count), vec![Grip::from_settled(Change::Nothing)]);
         cases.push(Case { name, filling: 0, modulus, count, grips });
     }
     cases
 }
 
-/// Changes that can also be made in the relaxed state.
-fn histories(scene: &GripperScene) -> Vec<Change> {
+/// Changes that may also start from the relaxed state.
+fn variations(scene: &GripperScene) -> Vec<Change> {
     let (own, sweep) = (&scene.gripper, &scene.sweep);
-    others(&sweep.frictions, own.objects[0].friction)
+    others(&sweep.frictions, own.object.friction)
         .map(Change::Friction)
         .chain(
             others(&sweep.spring_dampings, own.membrane.spring_damping).map(Change::SpringDamping),
@@ -115,8 +118,8 @@ fn histories(scene: &GripperScene) -> Vec<Change> {
         .collect()
 }
 
-/// The protocol for each modulus and filling; the first filling of the reference also shows other
-/// pressures, and all that is varied in the relaxed state.
+/// The protocol for each modulus and filling. The first filling of the reference modulus also
+/// covers other pressures and everything that is varied from the relaxed state on.
 fn over_modulus(scene: &GripperScene) -> Vec<Case> {
     let own = &scene.gripper.grains;
     let mut cases = Vec::new();
@@ -127,10 +130,10 @@ fn over_modulus(scene: &GripperScene) -> Vec<Case> {
                 let pressures = others(&scene.sweep.pressures, scene.protocol.pressure);
                 changes.extend(pressures.map(Change::Pressure));
                 if scene.accelerations.is_varied_relaxed {
-                    changes.extend(histories(scene));
+                    changes.extend(variations(scene));
                 }
             }
-            let mut grips = vec![Grip::from_the_start(Change::Nothing)];
+            let mut grips = vec![Grip::from_settled(Change::Nothing)];
             grips.extend(changes.into_iter().map(|change| Grip { change, is_inserted: true }));
             let name = modulus_name(modulus, filling);
             cases.push(Case { name, filling, modulus, count: own.count, grips });
@@ -139,14 +142,14 @@ fn over_modulus(scene: &GripperScene) -> Vec<Case> {
     cases
 }
 
-/// What a grip of 4200 soft grains takes at ten times the source's speed, in seconds on one thread
-/// of a machine of 2026; the filling takes half of it.
+/// Run time of a grip of 4200 soft grains at ten times the source's speed, on one thread of a
+/// machine of 2026 (s); the filling takes half of it.
 const GRIP_S: Real = 35.0;
-/// Modulus above which the grains and not the membrane limit the substep (Pa).
+/// Modulus above which the grains, not the membrane, limit the substep (Pa).
 const HARD: Real = 3.2e7;
 
 impl Case {
-    /// About how long it takes on one thread (s).
+    /// Expected run time on one thread (s).
     pub(super) fn expected_s(&self, scene: &GripperScene) -> Real {
         let size = real(self.count) / 4200.0;
         let hardness = (self.modulus / HARD).sqrt().max(1.0);
@@ -155,7 +158,7 @@ impl Case {
             Change::Slowdown(factor) => 1.0 / factor,
             _ => 1.0,
         };
-        // Without the insertion it is a third.
+        // Without insertion it takes a third.
         let share = |grip: &Grip| if grip.is_inserted { 1.0 / 3.0 } else { 1.0 };
         let grips: Real = self.grips.iter().map(|grip| slowness(grip) * share(grip)).sum();
         GRIP_S * size * hardness * (0.5 + speed * grips)
@@ -163,12 +166,12 @@ impl Case {
 }
 
 impl Grip {
-    fn from_the_start(change: Change) -> Self {
+    fn from_settled(change: Change) -> Self {
         Self { change, is_inserted: false }
     }
 }
 
-/// All moduli, the reference among them, rising (Pa).
+/// All moduli including the reference, rising (Pa).
 pub(super) fn moduli(scene: &GripperScene) -> Vec<Real> {
     let reference = scene.gripper.grains.material.youngs_modulus;
     let mut moduli: Vec<Real> = others(&scene.sweep.moduli, reference).collect();
@@ -177,24 +180,24 @@ pub(super) fn moduli(scene: &GripperScene) -> Vec<Real> {
     moduli
 }
 
-/// Other numbers of grains than the reference.
+/// Numbers of grains other than the reference.
 pub(super) fn counts(scene: &GripperScene) -> Vec<usize> {
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
         reason = "the scene's limits keep it between 1 and 200 000"
     )]
-    let whole = |it: &Real| it.round() as usize;
-    let counts = scene.sweep.counts.iter().map(whole);
+    let rounded = |it: &Real| it.round() as usize;
+    let counts = scene.sweep.counts.iter().map(rounded);
     counts.filter(|&it| it != scene.gripper.grains.count).collect()
 }
 
-/// The values that are not the reference.
+/// The values that differ from the reference.
 pub(super) fn others(values: &[Real], reference: Real) -> impl Iterator<Item = Real> {
     values.iter().copied().filter(move |&it| !is_same(it, reference))
 }
 
-/// True for values that were written alike.
+/// True for values that were written equally.
 fn is_same(a: Real, b: Real) -> bool {
     (a - b).abs() <= 1e-9 * a.abs().max(b.abs())
 }
@@ -211,10 +214,10 @@ pub(super) fn count_name(count: usize) -> String {
 
 /// A modulus in a name.
 pub(super) fn modulus_text(modulus: Real) -> String {
-    if modulus < 1e9 { tidy(modulus / 1e6, "MPa") } else { tidy(modulus / 1e9, "GPa") }
+    if modulus < 1e9 { rounded(modulus / 1e6, "MPa") } else { rounded(modulus / 1e9, "GPa") }
 }
 
-/// A number without the noise of its last digits.
-fn tidy(value: Real, unit: &str) -> String {
+/// A number without the rounding error of its last digits.
+fn rounded(value: Real, unit: &str) -> String {
     format!("{}{unit}", (value * 1e6).round() / 1e6)
 }

@@ -1,29 +1,26 @@
-//! The granular gripper of Götz (2024), section 4.2: a sphere is pushed into the vented bag, the bag
-//! is evacuated in steps, the sphere is pulled out. The largest pull is the holding force F_h.
+//! The granular gripper (Götz 2024, section 4.2): a sphere is pushed into the vented gripper, the
+//! gripper is evacuated in steps, and the sphere is pulled out. The largest pull is the holding
+//! force.
 //!
-//! The object moves as prescribed and the gripper's plate stands still, so the rigid world has no
-//! part in it: grains, membrane and air alone are advanced, and their state is all there is to save.
+//! The motion of the object is prescribed and the flange does not move, so there is no rigid-body
+//! dynamics: only grains, membrane and air are advanced and saved.
 
-mod build; // the gripper, ready to run
-mod cases; // the list of grips
+mod build; // a prepared grip
+mod cases; // the list of cases
 mod evaluate; // verdicts from the records
 mod force_history; // the force over a whole grip
-mod measure; // measurements during a grip
+mod measure; // measurements during a grip and its results
 mod phase; // phases of a grip
 mod plots; // plots for the report
+mod results; // results by what was varied
 mod run; // one case
 mod scene; // scene keys
-mod summary; // the summary of a grip
 
-use super::{Experiment, Plan, Run, SceneText, StartError, findings::Findings, record::Record};
+use super::{
+    Experiment, Plan, Run, SceneText, StartError, find_case, findings::Findings, record::Record,
+};
 use crate::scene::{SceneError, text};
 use scene::GripperScene;
-
-/// The scene that comes with the program.
-const SCENE: (&str, &str) = (
-    "launch_configs/experiments/gripper.yaml",
-    include_str!("../../../launch_configs/experiments/gripper.yaml"),
-);
 
 /// The experiment.
 pub struct Gripper;
@@ -38,16 +35,20 @@ impl Experiment for Gripper {
     }
 
     fn scene(&self) -> (&'static str, &'static str) {
-        SCENE
+        (
+            "launch_configs/experiments/gripper.yaml",
+            include_str!("../../../launch_configs/experiments/gripper.yaml"),
+        )
     }
 
     fn read(&self, scene: &SceneText<'_>) -> Result<Box<dyn Plan>, SceneError> {
-        let scene = text::fill(&scene.layers(false), GripperScene::blank())?;
+        let scene = text::read::<GripperScene>(&scene.layers(false))?;
         let cases = cases::cases(&scene);
         Ok(Box::new(GripperPlan { scene, cases }))
     }
 }
 
+/// The cases of a scene.
 struct GripperPlan {
     scene: GripperScene,
     cases: Vec<cases::Case>,
@@ -64,10 +65,8 @@ impl Plan for GripperPlan {
     }
 
     fn start(&self, name: &str) -> Result<Box<dyn Run>, StartError> {
-        let Some(case) = self.cases.iter().find(|case| case.name == name) else {
-            return Err(StartError::NoSuchCase { name: name.to_owned(), known: self.cases() });
-        };
-        Ok(Box::new(run::GripRun::new(&self.scene, case)?))
+        let case = find_case(&self.cases, name, |case| case.name.clone())?;
+        Ok(Box::new(run::GripperRun::new(&self.scene, case)?))
     }
 
     fn evaluate(&self, records: &[Record]) -> Findings {

@@ -1,20 +1,20 @@
-//! The phases of a grip, as set-points over time: pure functions, so that a resumed run meets the
-//! same ones.
+//! The phases of a grip, and set-points over time as pure functions, so that a resumed run has the
+//! same.
 
 use serde::{Deserialize, Serialize};
 
 use crate::base::Real;
 
-/// What is done in a grip, in this order.
+/// The phases of a grip, in their order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub(super) enum Phase {
-    /// The object moves up into the bag.
+    /// The object moves up into the gripper.
     Insert,
-    /// Nothing moves, the bag is still vented.
+    /// Nothing moves, the gripper is still vented.
     Relax,
     /// The pressure falls in steps.
     Evacuate,
-    /// Nothing moves, the bag is jammed.
+    /// Nothing moves, the gripper is jammed.
     Hold,
     /// The object moves down until it is free.
     Withdraw,
@@ -25,7 +25,7 @@ impl Phase {
     pub(super) const ALL: [Self; 5] =
         [Self::Insert, Self::Relax, Self::Evacuate, Self::Hold, Self::Withdraw];
 
-    /// Its name.
+    /// Name in records.
     pub(super) fn name(self) -> &'static str {
         match self {
             Self::Insert => "inserting",
@@ -42,29 +42,29 @@ impl Phase {
     }
 }
 
-/// A straight way from rest to rest.
+/// A straight motion from rest to rest with a trapezoidal velocity profile.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Way {
-    /// Its length (m).
+pub(super) struct Stroke {
+    /// Distance (m).
     pub(super) length: Real,
-    /// The speed between the ramps (m/s).
+    /// Speed between the ramps (m/s).
     pub(super) speed: Real,
-    /// How long it takes to reach the speed, and to stop (s).
+    /// Time to reach the speed, and to stop (s).
     pub(super) ramp: Real,
 }
 
-impl Way {
-    /// The ramp, shorter if the way is too short for it (s).
+impl Stroke {
+    /// The ramp, shortened if the distance is too short for it (s).
     fn ramp(&self) -> Real {
         self.ramp.min(self.length / self.speed)
     }
 
-    /// How long it takes (s).
+    /// Duration (s).
     pub(super) fn duration(&self) -> Real {
         self.length / self.speed + self.ramp()
     }
 
-    /// Distance from the beginning (m) and speed (m/s) at `time` (s).
+    /// Distance from the start (m) and speed (m/s) at `time` (s).
     pub(super) fn at(&self, time: Real) -> (Real, Real) {
         let (ramp, end) = (self.ramp(), self.duration());
         if end <= time {
@@ -83,8 +83,8 @@ impl Way {
     }
 }
 
-/// A set-point that goes from 0 to `goal` in `n_steps` equal steps, one each `step_time` (s), the
-/// first at once; its value at `time` (s).
+/// Value at `time` (s) of a set-point that goes from 0 to `goal` in `n_steps` equal steps, one
+/// every `step_time` (s), the first one at time 0.
 pub(super) fn staircase(goal: Real, n_steps: usize, step_time: Real, time: Real) -> Real {
     let n = crate::base::real::real(n_steps);
     goal * ((time / step_time).floor() + 1.0).clamp(1.0, n) / n
@@ -95,23 +95,23 @@ mod tests {
     use super::*;
 
     /// Oracles: the speed is the derivative of the distance (central difference of a piecewise
-    /// quadratic, exact but at the kinks: 1e-6 of the speed away from them), and the ends.
+    /// quadratic, exact except at the kinks: 1e-6 of the speed away from them), and the ends.
     #[test]
-    fn the_way_begins_and_ends_at_rest_and_its_speed_is_its_derivative() {
-        for way in [
-            Way { length: 0.029, speed: 0.1, ramp: 0.01 },
-            Way { length: 0.0005, speed: 0.1, ramp: 0.01 },
+    fn a_stroke_starts_and_ends_at_rest_and_its_speed_is_the_derivative() {
+        for stroke in [
+            Stroke { length: 0.029, speed: 0.1, ramp: 0.01 },
+            Stroke { length: 0.0005, speed: 0.1, ramp: 0.01 },
         ] {
-            let end = way.duration();
-            assert_eq!(way.at(0.0), (0.0, 0.0));
-            assert_eq!(way.at(end), (way.length, 0.0));
+            let end = stroke.duration();
+            assert_eq!(stroke.at(0.0), (0.0, 0.0));
+            assert_eq!(stroke.at(end), (stroke.length, 0.0));
             let h = end * 1e-6;
             for k in 1..100 {
                 let time = end * f64::from(k) / 100.0 + 1e-3 * h;
-                let slope = (way.at(time + h).0 - way.at(time - h).0) / (2.0 * h);
-                let speed = way.at(time).1;
-                assert!((slope - speed).abs() < 2e-4 * way.speed, "{time}: {slope} {speed}");
-                assert!(speed <= way.speed);
+                let slope = (stroke.at(time + h).0 - stroke.at(time - h).0) / (2.0 * h);
+                let speed = stroke.at(time).1;
+                assert!((slope - speed).abs() < 2e-4 * stroke.speed, "{time}: {slope} {speed}");
+                assert!(speed <= stroke.speed);
             }
         }
     }

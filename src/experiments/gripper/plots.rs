@@ -1,11 +1,10 @@
-//! What is drawn and tabulated: force over time, holding force over everything that is varied.
+//! Plots and tables: force over time, holding force over everything that is varied.
 
 use super::{
     cases::{self, modulus_text},
-    evaluate::View,
-    measure,
+    measure::{self, rows},
     phase::Phase,
-    summary::rows,
+    results::Results,
 };
 use crate::{
     base::Real,
@@ -16,27 +15,27 @@ use crate::{
 };
 
 /// Adds quantities, curves and plots.
-pub(super) fn add(view: &View<'_>, findings: &mut Findings) {
-    force_record(view, findings);
-    over_modulus(view, findings);
-    over_pressure(view, findings);
-    over_object(view, findings);
-    let points = view.over_count("holding_force");
+pub(super) fn add(results: &Results<'_>, findings: &mut Findings) {
+    force_record(results, findings);
+    over_modulus(results, findings);
+    over_pressure(results, findings);
+    over_object(results, findings);
+    let points = results.over_count("holding_force");
     if points.len() > 1 {
-        let push = view.over_count("force_relaxed").into_iter().map(|[n, f]| [n, -f]).collect();
+        let push = results.over_count("force_relaxed").into_iter().map(|[n, f]| [n, -f]).collect();
         let mut plot =
-            plot("Filling", "nothing: the number of grains is left out", "grains", "force [N]");
+            plot("Filling", "nothing: the number of grains is not given", "grains", "force [N]");
         plot.series = vec![
-            series("holding force", Kind::Points, points),
-            series("push after relaxation", Kind::Points, push),
+            Series::new("holding force", Kind::Points, points),
+            Series::new("push after relaxation", Kind::Points, push),
         ];
         findings.plots.push(plot);
     }
 }
 
 /// Fig. 11.
-fn force_record(view: &View<'_>, findings: &mut Findings) {
-    let Some(record) = view.record(&view.reference()) else { return };
+fn force_record(results: &Results<'_>, findings: &mut Findings) {
+    let Some(record) = results.record(&results.reference()) else { return };
     let of_first = |name: &str| -> Vec<Real> {
         Phase::ALL.iter().flat_map(|&phase| rows(record, 0, phase, name)).collect()
     };
@@ -49,7 +48,7 @@ fn force_record(view: &View<'_>, findings: &mut Findings) {
     );
     let (time, force) = (of_first("time"), of_first("force"));
     let points = time.iter().zip(&force).map(|(&t, &f)| [t, f]).collect();
-    plot.series.push(series("force of the membrane on the object", Kind::Line, points));
+    plot.series.push(Series::new("force of the membrane on the object", Kind::Line, points));
     findings.plots.push(plot);
     let columns = record.columns.iter().map(|column| Column {
         name: column.name.clone(),
@@ -60,21 +59,22 @@ fn force_record(view: &View<'_>, findings: &mut Findings) {
 }
 
 /// Fig. 12.
-fn over_modulus(view: &View<'_>, findings: &mut Findings) {
+fn over_modulus(results: &Results<'_>, findings: &mut Findings) {
     let mut plot = plot(
         "Holding force over the grains' modulus (Fig. 12)",
-        "large for soft grains, small for hard ones (about 100 MPa and more); nothing below 5 MPa",
+        "large for soft grains, small for hard ones (about 100 MPa and more); no data below 5 MPa",
         "Young's modulus of the grains [Pa]",
         "holding force [N]",
     );
     plot.log_x = true;
-    let mut measured = series("measured, mean and s.d.", Kind::Points, Vec::new());
-    for modulus in cases::moduli(view.scene) {
+    let mut measured =
+        Series::new("measured, mean and standard deviation", Kind::Points, Vec::new());
+    for modulus in cases::moduli(results.scene) {
         for (quantity, meaning, unit) in [
             ("holding_force", "largest pull, mean over fillings", "N"),
             ("normal_force", "sum of normal forces on the object after evacuation", "N"),
         ] {
-            let Some(mean) = view.of_modulus(modulus, quantity) else { continue };
+            let Some(mean) = results.of_modulus(modulus, quantity) else { continue };
             findings.quantities.push(Quantity {
                 name: format!("{quantity}_{}", modulus_text(modulus)),
                 meaning: meaning.to_owned(),
@@ -104,62 +104,60 @@ fn over_modulus(view: &View<'_>, findings: &mut Findings) {
             "volume" => "m^3",
             _ => "1",
         };
-        if let Some(value) = view.protocol(quantity) {
-            findings.quantities.push(Quantity {
-                name: quantity.to_owned(),
-                meaning: "of the reference case".to_owned(),
-                value,
-                deviation: None,
-                n: 1,
-                unit: unit.to_owned(),
-            });
+        if let Some(value) = results.protocol(quantity) {
+            let quantity = Quantity::new(quantity, "of the reference case", value, unit);
+            findings.quantities.push(quantity);
         }
     }
 }
 
-fn over_pressure(view: &View<'_>, findings: &mut Findings) {
-    let points = view.over_pressure();
+fn over_pressure(results: &Results<'_>, findings: &mut Findings) {
+    let points = results.over_pressure();
     let Some(&[strongest, force]) = points.last() else { return };
-    let mut plot =
-        plot("Holding force over the vacuum", "only 90 kPa", "vacuum [Pa]", "holding force [N]");
+    let mut plot = plot(
+        "Holding force over the vacuum",
+        "one value only, 90 kPa",
+        "vacuum [Pa]",
+        "holding force [N]",
+    );
     plot.series = vec![
-        series("measured, from one relaxed state", Kind::Points, points.clone()),
-        series("proportional", Kind::Analytic, vec![[0.0, 0.0], [strongest, force]]),
+        Series::new("measured, from one relaxed state", Kind::Points, points.clone()),
+        Series::new("proportional", Kind::Analytic, vec![[0.0, 0.0], [strongest, force]]),
     ];
     findings.plots.push(plot);
     tabulate(findings, "holding_force_over_vacuum", ("vacuum", "Pa"), &points);
 }
 
-fn over_object(view: &View<'_>, findings: &mut Findings) {
-    let points = view.over_friction();
+fn over_object(results: &Results<'_>, findings: &mut Findings) {
+    let points = results.over_friction();
     if points.len() > 1 {
         let mut plot = plot(
             "Holding force over the object's friction",
-            "only 1.2",
+            "one value only, 1.2",
             "friction coefficient",
             "holding force [N]",
         );
-        plot.series.push(series("measured, one filling", Kind::Points, points.clone()));
+        plot.series.push(Series::new("measured, one filling", Kind::Points, points.clone()));
         let pinched =
-            view.protocol("normal_force_at_best").zip(view.protocol("contact_angle_at_best"));
+            results.protocol("normal_force_at_best").zip(results.protocol("contact_angle_at_best"));
         if let Some((normal, angle)) = pinched {
             let at = |k: i32| 0.03 * Real::from(k);
             let line = (0..=50).map(|k| [at(k), measure::pinch(normal, angle, at(k)).max(0.0)]);
-            let label = "pinch formula with normal force and angle of the reference";
-            plot.series.push(series(label, Kind::Analytic, line.collect()));
+            let label = "pinch formula with the normal force and angle of the reference";
+            plot.series.push(Series::new(label, Kind::Analytic, line.collect()));
         }
         findings.plots.push(plot);
         tabulate(findings, "holding_force_over_friction", ("friction", "1"), &points);
     }
-    let points = view.over_radius();
+    let points = results.over_radius();
     if points.len() > 1 {
         let mut plot = plot(
             "Holding force over the object's radius",
-            "only 10 mm",
+            "one value only, 10 mm",
             "radius [m]",
             "holding force [N]",
         );
-        plot.series.push(series("measured, one filling", Kind::Points, points.clone()));
+        plot.series.push(Series::new("measured, one filling", Kind::Points, points.clone()));
         findings.plots.push(plot);
         tabulate(findings, "holding_force_over_radius", ("radius", "m"), &points);
     }
@@ -175,17 +173,5 @@ fn column(name: &str, unit: &str, points: &[[Real; 2]], k: usize) -> Column {
 }
 
 fn plot(title: &str, source_says: &str, x_label: &str, y_label: &str) -> Plot {
-    Plot {
-        title: title.to_owned(),
-        source_says: source_says.to_owned(),
-        x_label: x_label.to_owned(),
-        y_label: y_label.to_owned(),
-        log_x: false,
-        log_y: false,
-        series: Vec::new(),
-    }
-}
-
-fn series(label: &str, kind: Kind, points: Vec<[Real; 2]>) -> Series {
-    Series { label: label.to_owned(), kind, points, deviations: Vec::new() }
+    Plot::new(title, source_says, [x_label, y_label], Vec::new())
 }

@@ -1,14 +1,13 @@
-//! A case on its way: the bag is filled, then one grip after the other.
+//! One case: the membrane is filled, then one grip follows the other.
 
 use serde::{Deserialize, Serialize};
 
 use super::{
-    build::{Ready, compile},
+    build::{PreparedGrip, compile},
     cases::{Case, Change},
-    measure::{self, When},
+    measure::{self, Tick, is_past_peak, record_results},
     phase::Phase,
     scene::GripperScene,
-    summary::{has_passed, summarise},
 };
 use crate::{
     base::{Real, real::real},
@@ -22,59 +21,59 @@ use crate::{
     },
 };
 
-/// Substeps in a slice of work, about.
+/// Approximate number of substeps in a slice.
 const SLICE: usize = 300;
 
-/// How far a case is.
+/// What the run is doing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-enum Place {
-    /// The bag is filled.
+enum RunState {
+    /// Filling the membrane.
     Filling,
     /// A grip.
     Grip {
-        /// Its number.
+        /// Its index.
         grip: usize,
-        /// What is done.
+        /// Its phase.
         phase: Phase,
-        /// Ticks of the phase that are over.
+        /// Completed ticks of the phase.
         tick: usize,
-        /// Ticks of the grip that are over.
+        /// Completed ticks of the grip.
         tick_of_grip: usize,
     },
-    /// All grips are over.
+    /// All grips are done.
     Done,
 }
 
-/// A case on its way.
-pub(super) struct GripRun {
+/// A running case.
+pub(super) struct GripperRun {
     scene: GripperScene,
-    /// The model in which the bag is filled, and that of the settled bag.
+    /// Model of the filling, and model of the settled state.
     models: [Model; 2],
-    grips: Vec<Ready>,
-    place: Place,
+    grips: Vec<PreparedGrip>,
+    run_state: RunState,
     filling: Filling,
     system: Option<System>,
-    /// When everything had come to rest.
+    /// State after filling, at rest.
     settled: Option<State>,
-    /// When the bag had relaxed around the object, if a later grip begins there.
+    /// State after relaxation around the object, if a later grip starts there.
     inserted: Option<State>,
     record: Record,
     n_expected: usize,
 }
 
-/// What is written down of a case that is broken off, besides its states: the present one, and those
-/// that are settled and inserted if there are.
+/// Everything needed to resume, in addition to the states: the current one, and the settled and the
+/// inserted one if there are.
 #[derive(Serialize, Deserialize)]
 struct Saved {
-    place: Place,
-    filling: fill::Place,
+    run_state: RunState,
+    filling: fill::FillPosition,
     has_settled: bool,
     has_inserted: bool,
     record: Record,
 }
 
-impl GripRun {
-    /// A case before its first substep.
+impl GripperRun {
+    /// The case before its first substep.
     pub(super) fn new(scene: &GripperScene, case: &Case) -> Result<Self, CompileError> {
         let mut scene = scene.clone();
         scene.gripper.seed += case.filling as u64;
@@ -85,11 +84,11 @@ impl GripRun {
             soft.gripper.grains.material.youngs_modulus = modulus.min(case.modulus);
         }
         let models = [compile(&soft)?.0, compile(&scene)?.0];
-        let ready: Result<Vec<Ready>, CompileError> =
-            case.grips.iter().map(|grip| Ready::new(&scene, grip, case)).collect();
-        let grips = ready?;
-        let filling = Filling::new(&scene.gripper, &models[0], &models[1]);
-        let of_grips: usize = grips.iter().map(Ready::n_substeps_expected).sum();
+        let prepared: Result<Vec<PreparedGrip>, CompileError> =
+            case.grips.iter().map(|grip| PreparedGrip::new(&scene, grip, case)).collect();
+        let grips = prepared?;
+        let filling = Filling::new(&scene.gripper.scene(), &models[0], &models[1]);
+        let of_grips: usize = grips.iter().map(PreparedGrip::n_substeps_expected).sum();
         let n_expected = filling.n_substeps_max() + of_grips;
         let record = Record {
             case: case.name.clone(),
@@ -101,7 +100,7 @@ impl GripRun {
             scene,
             models,
             grips,
-            place: Place::Filling,
+            run_state: RunState::Filling,
             filling,
             system: None,
             settled: None,
@@ -116,37 +115,37 @@ impl GripRun {
     }
 
     fn fill(&mut self) -> Result<&'static str, Diverged> {
-        let before = self.filling.place();
+        let before = self.filling.position();
         self.filling.advance(SLICE)?;
-        let after = self.filling.place();
+        let after = self.filling.position();
         let name = before.stage.name();
-        // A slice that ends a stage is counted under its name as a whole.
+        // A slice that ends a stage of the filling is counted for that stage as a whole.
         let n = if before.stage == after.stage { after.k - before.k } else { SLICE };
-        *self.record.n_substeps.entry(name.to_owned()).or_default() += n as u64;
+        self.record.count(name, n as u64);
         if self.filling.is_settled() {
             self.settled = Some(self.filling.state().clone());
-            self.begin(0);
+            self.start_grip(0);
         }
         Ok(name)
     }
 
-    /// Begins the grip of this number, or ends the case after the last.
-    fn begin(&mut self, grip: usize) {
-        let Some(ready) = self.grips.get(grip) else {
-            self.place = Place::Done;
+    /// Starts the grip with this index, or ends the case after the last one.
+    fn start_grip(&mut self, grip: usize) {
+        let Some(prepared) = self.grips.get(grip) else {
+            self.run_state = RunState::Done;
             self.record.digest = saved_run::digest(self.state());
             return;
         };
-        let phase = if ready.is_inserted { Phase::Evacuate } else { Phase::Insert };
-        self.place = Place::Grip { grip, phase, tick: 0, tick_of_grip: 0 };
-        let start = if ready.is_inserted { &self.inserted } else { &self.settled };
+        let phase = if prepared.is_inserted { Phase::Evacuate } else { Phase::Insert };
+        self.run_state = RunState::Grip { grip, phase, tick: 0, tick_of_grip: 0 };
+        let start = if prepared.is_inserted { &self.inserted } else { &self.settled };
         if let Some(state) = start {
-            self.system = Some(ready.system(state.clone()));
+            self.system = Some(prepared.system(state.clone()));
         }
     }
 
     fn grip(&mut self) -> Result<&'static str, Diverged> {
-        let Place::Grip { grip, phase, .. } = self.place else { return Ok("done") };
+        let RunState::Grip { grip, phase, .. } = self.run_state else { return Ok("done") };
         let n_ticks = SLICE.div_ceil(self.grips[grip].n_substeps);
         for _ in 0..n_ticks {
             let is_over = self.tick()?;
@@ -157,49 +156,53 @@ impl GripRun {
         Ok(phase.name())
     }
 
-    /// One tick; true if the phase is over with it.
+    /// One tick; returns true if it ends the phase.
     fn tick(&mut self) -> Result<bool, Diverged> {
-        let Place::Grip { grip, phase, tick, tick_of_grip } = self.place else { return Ok(true) };
+        let RunState::Grip { grip, phase, tick, tick_of_grip } = self.run_state else {
+            return Ok(true);
+        };
         let low = self.settled.as_ref().map_or(0.0, lowest);
-        let (ready, Some(system)) = (&self.grips[grip], &mut self.system) else { return Ok(true) };
+        let (prepared, Some(system)) = (&self.grips[grip], &mut self.system) else {
+            return Ok(true);
+        };
         let mut force = 0.0;
-        for s in 0..ready.n_substeps {
-            let time = real(tick * ready.n_substeps + s) * system.model.substep;
-            ready.control(&mut system.controls, phase, time, low);
+        for s in 0..prepared.n_substeps {
+            let time = real(tick * prepared.n_substeps + s) * system.model.substep;
+            prepared.control(&mut system.controls, phase, time, low);
             system.step();
             force += system.scratch.body_wrenches[0].force.z;
         }
         system.check(u64::try_from(tick_of_grip).unwrap_or(u64::MAX))?;
         let (tick, tick_of_grip) = (tick + 1, tick_of_grip + 1);
         let z = system.controls.bodies[0].pose.translation.vector.z;
-        let when = When {
-            time: real(tick_of_grip) * ready.tick,
+        let row = Tick {
+            time: real(tick_of_grip) * prepared.tick,
             grip,
             phase,
-            penetration: z + ready.scene.object_radius() - low,
-            force: force / real(ready.n_substeps),
+            penetration: z + prepared.scene.gripper.object.radius - low,
+            force: force / real(prepared.n_substeps),
         };
-        let (overlap, pressure, n_contacts) = measure::look(&mut self.record, system, when);
+        let (overlap, pressure, n_contacts) = measure::record_tick(&mut self.record, system, row);
         let speed = system.controls.bodies[0].twist.linear.norm();
         let validity = &mut self.record.validity;
         validity.overlap_over_diameter_max = validity.overlap_over_diameter_max.max(overlap);
-        // A weaker vacuum is not claimed to be pulled slowly enough; its number is a scalar.
+        // Grips with a weaker vacuum need not be quasi-static; their number is a scalar.
         if phase == Phase::Withdraw {
-            let inertial = ready.inertial_number(speed, pressure);
-            let name = format!("{}.inertial_number", ready.change.name());
+            let inertial = prepared.inertial_number(speed, pressure);
+            let name = format!("{}.inertial_number", prepared.change.name());
             let before = self.record.scalar(&name).unwrap_or(0.0);
             self.record.set(&name, inertial.max(before), "1");
-            if !matches!(ready.change, Change::Pressure(_)) {
+            if !matches!(prepared.change, Change::Pressure(_)) {
                 let validity = &mut self.record.validity;
                 validity.inertial_number_max = validity.inertial_number_max.max(inertial);
             }
         }
-        *self.record.n_substeps.entry(phase.name().to_owned()).or_default() +=
-            ready.n_substeps as u64;
-        self.place = Place::Grip { grip, phase, tick, tick_of_grip };
-        let is_let_go = phase == Phase::Withdraw
-            && (n_contacts == 0 || ready.is_cut && has_passed(&self.record, grip, &ready.scene));
-        let is_over = is_let_go || ready.duration(phase) <= real(tick) * ready.tick;
+        self.record.count(phase.name(), prepared.n_substeps as u64);
+        self.run_state = RunState::Grip { grip, phase, tick, tick_of_grip };
+        let is_free = phase == Phase::Withdraw
+            && (n_contacts == 0
+                || prepared.is_cut && is_past_peak(&self.record, grip, &prepared.scene));
+        let is_over = is_free || prepared.duration(phase) <= real(tick) * prepared.tick;
         if is_over {
             self.end_phase(grip, phase, tick_of_grip);
         }
@@ -215,15 +218,15 @@ impl GripRun {
             let validity = &mut self.record.validity;
             validity.unbalanced_force = validity.unbalanced_force.max(unbalanced);
         }
-        let is_wanted = self.grips[grip + 1..].iter().any(|it| it.is_inserted);
-        if grip == 0 && phase == Phase::Relax && is_wanted {
+        let is_needed = self.grips[grip + 1..].iter().any(|it| it.is_inserted);
+        if grip == 0 && phase == Phase::Relax && is_needed {
             self.inserted = Some(system.state.clone());
         }
         match phase.next() {
-            Some(phase) => self.place = Place::Grip { grip, phase, tick: 0, tick_of_grip },
+            Some(phase) => self.run_state = RunState::Grip { grip, phase, tick: 0, tick_of_grip },
             None => {
-                summarise(&mut self.record, grip, &self.grips[grip]);
-                self.begin(grip + 1);
+                record_results(&mut self.record, grip, &self.grips[grip]);
+                self.start_grip(grip + 1);
             }
         }
     }
@@ -234,24 +237,24 @@ fn lowest(state: &State) -> Real {
     state.membrane.positions.iter().map(|it| it.z).fold(Real::INFINITY, Real::min)
 }
 
-impl Run for GripRun {
+impl Run for GripperRun {
     fn advance(&mut self) -> Result<Progress, Diverged> {
-        let stage = match self.place {
-            Place::Filling => self.fill()?,
-            Place::Grip { .. } => self.grip()?,
-            Place::Done => "done",
+        let phase = match self.run_state {
+            RunState::Filling => self.fill()?,
+            RunState::Grip { .. } => self.grip()?,
+            RunState::Done => "done",
         };
         let n_done: u64 = self.record.n_substeps.values().sum();
         #[expect(clippy::cast_precision_loss, reason = "substeps are far below 2^53")]
         let share = n_done as Real / real(self.n_expected);
-        let is_done = self.place == Place::Done;
-        Ok(Progress { stage, share: if is_done { 1.0 } else { share.min(1.0) }, is_done })
+        let is_done = self.run_state == RunState::Done;
+        Ok(Progress { phase, share: if is_done { 1.0 } else { share.min(1.0) }, is_done })
     }
 
     fn save(&self) -> Vec<u8> {
         let saved = Saved {
-            place: self.place,
-            filling: self.filling.place(),
+            run_state: self.run_state,
+            filling: self.filling.position(),
             has_settled: self.settled.is_some(),
             has_inserted: self.inserted.is_some(),
             record: self.record.clone(),
@@ -261,29 +264,29 @@ impl Run for GripRun {
     }
 
     fn resume(&mut self, bytes: &[u8]) -> Result<(), ResumeError> {
-        let reason = |reason: &str| saved_run::refusal(reason.to_owned());
+        let error = |reason: &str| saved_run::error(reason.to_owned());
         let (saved, states): (Saved, _) = saved_run::unpack_any(&self.record.case, bytes)?;
         let mut states = states.into_iter();
-        let mut next = || states.next().ok_or_else(|| reason("a state is missing"));
+        let mut next = || states.next().ok_or_else(|| error("a state is missing"));
         let state = next()?;
-        saved_run::of_one_scene(&state, self.state())?;
+        saved_run::check_scene(&state, self.state())?;
         self.settled = saved.has_settled.then(&mut next).transpose()?;
         self.inserted = saved.has_inserted.then(&mut next).transpose()?;
-        self.place = saved.place;
+        self.run_state = saved.run_state;
         self.record = saved.record;
-        match self.place {
-            Place::Filling => {
+        match self.run_state {
+            RunState::Filling => {
                 let [soft, goal] = &self.models;
                 let from = (saved.filling, state);
-                self.filling = Filling::resume(&self.scene.gripper, soft, goal, from);
+                self.filling = Filling::resume(&self.scene.gripper.scene(), soft, goal, from);
                 self.system = None;
             }
-            Place::Grip { grip, .. } => {
-                let ready = self.grips.get(grip).ok_or_else(|| reason("it has other grips"))?;
-                self.system = Some(ready.system(state));
+            RunState::Grip { grip, .. } => {
+                let prepared = self.grips.get(grip).ok_or_else(|| error("it has other grips"))?;
+                self.system = Some(prepared.system(state));
             }
-            Place::Done => {
-                self.system = self.grips.last().map(|ready| ready.system(state));
+            RunState::Done => {
+                self.system = self.grips.last().map(|prepared| prepared.system(state));
             }
         }
         Ok(())

@@ -1,191 +1,164 @@
-//! The gripper's scene: the gripper itself, the protocol of a grip, allowed accelerations, and what
-//! is varied.
+//! The scene of the gripper experiment, key by key: the gripper itself, the protocol of a grip,
+//! accelerations of it, and what is varied.
 
 use crate::{
     base::{Real, Vec3},
     scene::{
-        self, Scene, Shape,
-        quantity::{LENGTH, PRESSURE, SPEED, TIME},
-        schema,
+        Chamber, Grains, Material, Membrane, Scene, Shape, Table, Time,
+        keys::{Flag, Inline, Map, QuantityOr, Text, scene_keys},
+        quantity::{ACCELERATION, LENGTH, PRESSURE, SPEED, TIME},
         text::Keys,
         unset,
-        visit::{Quantity, Range, Visitor},
+        visit::{Quantity, Range},
     },
 };
 
-/// All that the scene says.
-#[derive(Clone, Debug)]
-pub(super) struct GripperScene {
-    /// Gripper and object; without table, motion limits and outputs, which nobody reads here.
-    pub(super) gripper: Scene,
+/// A length that is surely given in the right unit.
+const SOME_LENGTH: Quantity = Quantity { dimension: &LENGTH, range: Range::AboveUpTo(0.0, 10.0) };
+const SOME_SPEED: Quantity = Quantity::above_zero(&SPEED);
+const ANY_TIME: Quantity = Quantity::at_least_zero(&TIME);
+const SOME_MODULUS: Quantity = Quantity::above_zero(&PRESSURE);
+const VACUUM: Quantity = Quantity { dimension: &PRESSURE, range: Range::AtMost(0.0) };
+
+scene_keys! {
+    /// The whole scene.
+    pub(super) struct GripperScene {
+        /// Gripper and object.
+        gripper: Gripper = Inline,
+        /// What is done in a grip.
+        protocol: Protocol = Map,
+        /// What is done faster than in the source.
+        accelerations: Accelerations = Map,
+        /// What is varied.
+        sweep: Sweep = Map,
+    }
+
+    /// Gripper and object: a scene without table, motion limits and outputs, which nothing uses
+    /// here.
+    pub(super) struct Gripper {
+        /// Name of the scene.
+        name: String = Text,
+        /// Seed of the first filling.
+        seed: u64 = 0..=u64::MAX,
+        /// Gravity (m/s²).
+        gravity: Vec3 = Quantity::any(&ACCELERATION),
+        /// Ticks and substeps.
+        time: Time = Map,
+        /// The grains.
+        grains: Grains = Map,
+        /// The membrane.
+        membrane: Membrane = Map,
+        /// The air and its pump.
+        chamber: Chamber = Map,
+        /// The object that is gripped, a sphere.
+        object: Object = Map,
+    }
+
+    /// The object that is gripped, a sphere.
+    pub(super) struct Object {
+        /// Radius (m).
+        radius: Real = SOME_LENGTH,
+        /// Its material.
+        material: Material = Inline,
+        /// Coulomb friction with the membrane.
+        friction: Real = Range::AtLeast(0.0),
+    }
+
     /// What is done in a grip.
-    pub(super) protocol: Protocol,
+    pub(super) struct Protocol {
+        /// Gap between the object and the settled membrane at the start (m).
+        clearance: Real = SOME_LENGTH,
+        /// Speed of the object while it is inserted (m/s).
+        insert_speed: Real = SOME_SPEED,
+        /// How far the object's top goes beyond the lowest point of the settled membrane (m).
+        penetration: Real = SOME_LENGTH,
+        /// Time to relax with the object inside (s).
+        relax_time: Real = ANY_TIME,
+        /// Gauge pressure of the grip (Pa).
+        pressure: Real = VACUUM,
+        /// Number of steps in which it is reached.
+        n_pressure_steps ("pressure_steps"): usize = 1..=1000,
+        /// Duration of a step (s).
+        step_time: Real = ANY_TIME,
+        /// Time at full vacuum before the object is withdrawn (s).
+        hold_time: Real = ANY_TIME,
+        /// Speed of the object while it is withdrawn (m/s).
+        withdraw_speed: Real = SOME_SPEED,
+        /// Time in which the object reaches its speed, and in which it stops (s).
+        ramp_time: Real = Quantity::above_zero(&TIME),
+    }
+
     /// What is done faster than in the source.
-    pub(super) accelerations: Accelerations,
-    /// What is varied.
-    pub(super) sweep: Sweep,
-}
-
-/// What is done in a grip.
-#[derive(Clone, Debug)]
-pub(super) struct Protocol {
-    /// Gap between the object and the settled bag at the start (m).
-    pub(super) clearance: Real,
-    /// Speed of the object on its way in (m/s).
-    pub(super) insert_speed: Real,
-    /// How far its top goes beyond the lowest point of the settled bag (m).
-    pub(super) penetration: Real,
-    /// Time to relax with the object inside (s).
-    pub(super) relax_time: Real,
-    /// Gauge pressure of the grip (Pa).
-    pub(super) pressure: Real,
-    /// Number of steps in which it is reached.
-    pub(super) n_pressure_steps: usize,
-    /// Length of each of them (s).
-    pub(super) step_time: Real,
-    /// Time at full vacuum before the object is pulled (s).
-    pub(super) hold_time: Real,
-    /// Speed of the object on its way out (m/s).
-    pub(super) withdraw_speed: Real,
-    /// Time in which the object reaches a speed, and in which it stops (s).
-    pub(super) ramp_time: Real,
-}
-
-/// What is done faster than in the source.
-#[derive(Clone, Debug)]
-pub(super) struct Accelerations {
-    /// Speed of the way in over the protocol's.
-    pub(super) insert_speed_factor: Real,
-    /// Speed of the way out over the protocol's.
-    pub(super) withdraw_speed_factor: Real,
-    /// Share of the largest force at which a grip ends; at 0 it ends when the object is free.
-    pub(super) withdraw_until: Real,
-    /// Harder grains are filled in with this modulus and hardened in the closed bag (Pa).
-    pub(super) filling_modulus: Option<Real>,
-    /// True if friction, damping and slowness are varied from the relaxed state on, instead of
-    /// from the settled bag.
-    pub(super) is_varied_relaxed: bool,
-}
-
-/// What is varied, one at a time; the values of the other sections are the common reference.
-#[derive(Clone, Debug)]
-pub(super) struct Sweep {
-    /// Fillings of each modulus; the seeds count on from the scene's.
-    pub(super) n_fillings: usize,
-    /// Moduli of the grains (Pa).
-    pub(super) moduli: Vec<Real>,
-    /// Gauge pressures of the grip (Pa).
-    pub(super) pressures: Vec<Real>,
-    /// Friction of the object.
-    pub(super) frictions: Vec<Real>,
-    /// Radii of the object (m).
-    pub(super) radii: Vec<Real>,
-    /// Numbers of grains.
-    pub(super) counts: Vec<Real>,
-    /// Damping ratios of the membrane's springs.
-    pub(super) spring_dampings: Vec<Real>,
-    /// Speeds of both ways over those of the other grips.
-    pub(super) slowdowns: Vec<Real>,
-}
-
-impl GripperScene {
-    /// A scene before it is read.
-    pub(super) fn blank() -> Self {
-        let nan = Real::NAN;
-        let mut gripper = unset::scene();
-        gripper.table = scene::Table { height: nan, friction: 0.0 };
-        "object".clone_into(&mut gripper.objects[0].name);
-        gripper.objects[0].shape = Shape::Sphere { radius: nan };
-        gripper.objects[0].drive_timeout = 1.0;
-        Self {
-            gripper,
-            protocol: Protocol {
-                clearance: nan,
-                insert_speed: nan,
-                penetration: nan,
-                relax_time: nan,
-                pressure: nan,
-                n_pressure_steps: 0,
-                step_time: nan,
-                hold_time: nan,
-                withdraw_speed: nan,
-                ramp_time: nan,
-            },
-            accelerations: Accelerations {
-                insert_speed_factor: nan,
-                withdraw_speed_factor: nan,
-                withdraw_until: nan,
-                filling_modulus: None,
-                is_varied_relaxed: false,
-            },
-            sweep: Sweep {
-                n_fillings: 0,
-                moduli: Vec::new(),
-                pressures: Vec::new(),
-                frictions: Vec::new(),
-                radii: Vec::new(),
-                counts: Vec::new(),
-                spring_dampings: Vec::new(),
-                slowdowns: Vec::new(),
-            },
-        }
+    pub(super) struct Accelerations {
+        /// Factor on the speed of insertion.
+        insert_speed_factor: Real = Range::Above(0.0),
+        /// Factor on the speed of withdrawal.
+        withdraw_speed_factor: Real = Range::Above(0.0),
+        /// Share of the largest force at which a grip ends; with 0 it ends when the object is free.
+        withdraw_until: Real = Range::Between(0.0, 0.95),
+        /// Modulus with which stiffer grains are filled in, before they stiffen at rest (Pa).
+        filling_modulus: Option<Real> = QuantityOr("own", SOME_MODULUS),
+        /// True varies friction, damping and speed from the relaxed state on, not from the settled
+        /// one.
+        is_varied_relaxed ("vary_relaxed"): bool = Flag,
     }
 
-    /// Radius of the object (m).
-    pub(super) fn object_radius(&self) -> Real {
-        match self.gripper.objects[0].shape {
-            Shape::Sphere { radius } => radius,
-            _ => Real::NAN,
-        }
+    /// What is varied, one parameter at a time; the values of the other sections are the reference.
+    pub(super) struct Sweep {
+        /// Fillings of each modulus; their seeds count up from the scene's.
+        n_fillings ("fillings"): usize = 1..=1000,
+        /// Moduli of the grains (Pa).
+        moduli: Vec<Real> = SOME_MODULUS,
+        /// Gauge pressures of the grip (Pa).
+        pressures: Vec<Real> = VACUUM,
+        /// Coulomb frictions of the object.
+        frictions: Vec<Real> = Range::AtLeast(0.0),
+        /// Radii of the object (m).
+        radii: Vec<Real> = SOME_LENGTH,
+        /// Numbers of grains.
+        counts: Vec<Real> = Range::Between(1.0, 200_000.0),
+        /// Damping ratios of the membrane's springs.
+        spring_dampings: Vec<Real> = Range::AtLeast(0.0),
+        /// Factors on both speeds of the object.
+        slowdowns: Vec<Real> = Range::AboveUpTo(0.0, 1.0),
     }
+}
 
-    /// Makes the object a sphere of `radius` (m) far below the bag, where nothing touches it.
-    pub(super) fn set_object_radius(&mut self, radius: Real) {
-        let gripper = &mut self.gripper;
-        gripper.objects[0].shape = Shape::Sphere { radius };
-        let below = 10.0 * (gripper.membrane.radius + radius);
-        gripper.objects[0].pose.translation.vector = Vec3::new(0.0, 0.0, -below);
-        gripper.table.height = -2.0 * below;
+impl Gripper {
+    /// As a scene, with the object far below the membrane, where nothing touches it.
+    pub(super) fn scene(&self) -> Scene {
+        let mut scene = unset::scene();
+        scene.name.clone_from(&self.name);
+        (scene.seed, scene.gravity, scene.time) = (self.seed, self.gravity, self.time);
+        (scene.grains, scene.membrane) = (self.grains, self.membrane);
+        scene.chamber = self.chamber;
+        let below = 10.0 * (self.membrane.radius + self.object.radius);
+        scene.table = Table { height: -2.0 * below, friction: 0.0 };
+        let object = &mut scene.objects[0];
+        "object".clone_into(&mut object.name);
+        object.shape = Shape::Sphere { radius: self.object.radius };
+        (object.material, object.friction) = (self.object.material, self.object.friction);
+        object.pose.translation.vector = Vec3::new(0.0, 0.0, -below);
+        object.drive_timeout = 1.0;
+        scene
     }
 }
 
 impl Keys for GripperScene {
-    fn walk(&mut self, walk: &mut impl Visitor) {
-        let gripper = &mut self.gripper;
-        walk.text("name", &mut gripper.name);
-        walk.whole("seed", 0, u64::MAX, &mut gripper.seed);
-        walk.vector("gravity", Quantity::any(&scene::quantity::ACCELERATION), &mut gripper.gravity);
-        walk.section("time", |walk| schema::time(walk, &mut gripper.time));
-        walk.section("grains", |walk| schema::grains(walk, &mut gripper.grains));
-        walk.section("membrane", |walk| schema::membrane(walk, &mut gripper.membrane));
-        walk.section("chamber", |walk| schema::chamber(walk, &mut gripper.chamber));
-        let mut radius = self.object_radius();
-        let object = &mut self.gripper.objects[0];
-        walk.section("object", |walk| {
-            walk.quantity("radius", LENGTHS, &mut radius);
-            schema::material(walk, &mut object.material);
-            walk.number("friction", Range::AtLeast(0.0), &mut object.friction);
-        });
-        self.set_object_radius(radius);
-        walk.section("protocol", |walk| protocol(walk, &mut self.protocol));
-        walk.section("accelerations", |walk| accelerations(walk, &mut self.accelerations));
-        walk.section("sweep", |walk| sweep(walk, &mut self.sweep));
-    }
-
     fn unfit(&self) -> Vec<(&'static str, String, &'static str)> {
         let mut unfit = Vec::new();
         let gripper = &self.gripper;
-        let bag = gripper.membrane.radius;
+        let membrane = gripper.membrane.radius;
         if gripper.grains.radius_max < gripper.grains.radius_min {
             let reason = "is above grains.radius_max".to_owned();
             unfit.push(("grains.radius_min", reason, "swap them or write equal values"));
         }
-        if bag <= self.protocol.penetration {
+        if membrane <= self.protocol.penetration {
             let reason = "is deeper than the bag".to_owned();
             unfit.push(("protocol.penetration", reason, "stay below membrane.radius"));
         }
-        let largest = self.sweep.radii.iter().copied().fold(self.object_radius(), Real::max);
-        if bag <= largest {
+        let largest = self.sweep.radii.iter().copied().fold(gripper.object.radius, Real::max);
+        if membrane <= largest {
             let reason = "has an object larger than the bag".to_owned();
             unfit.push(("object.radius", reason, "stay below membrane.radius"));
         }
@@ -197,41 +170,4 @@ impl Keys for GripperScene {
         }
         unfit
     }
-}
-
-const LENGTHS: Quantity = Quantity { dimension: &LENGTH, range: Range::AboveUpTo(0.0, 10.0) };
-const VACUUM: Quantity = Quantity { dimension: &PRESSURE, range: Range::AtMost(0.0) };
-
-fn protocol(walk: &mut impl Visitor, it: &mut Protocol) {
-    let (speed, time) = (Quantity::above_zero(&SPEED), Quantity::at_least_zero(&TIME));
-    walk.quantity("clearance", LENGTHS, &mut it.clearance);
-    walk.quantity("insert_speed", speed, &mut it.insert_speed);
-    walk.quantity("penetration", LENGTHS, &mut it.penetration);
-    walk.quantity("relax_time", time, &mut it.relax_time);
-    walk.quantity("pressure", VACUUM, &mut it.pressure);
-    schema::whole_usize(walk, "pressure_steps", (1, 1000), &mut it.n_pressure_steps);
-    walk.quantity("step_time", time, &mut it.step_time);
-    walk.quantity("hold_time", time, &mut it.hold_time);
-    walk.quantity("withdraw_speed", speed, &mut it.withdraw_speed);
-    walk.quantity("ramp_time", Quantity::above_zero(&TIME), &mut it.ramp_time);
-}
-
-fn accelerations(walk: &mut impl Visitor, it: &mut Accelerations) {
-    walk.number("insert_speed_factor", Range::Above(0.0), &mut it.insert_speed_factor);
-    walk.number("withdraw_speed_factor", Range::Above(0.0), &mut it.withdraw_speed_factor);
-    walk.number("withdraw_until", Range::Between(0.0, 0.95), &mut it.withdraw_until);
-    let modulus = Quantity::above_zero(&PRESSURE);
-    walk.quantity_or("filling_modulus", "own", modulus, &mut it.filling_modulus);
-    walk.flag("vary_relaxed", &mut it.is_varied_relaxed);
-}
-
-fn sweep(walk: &mut impl Visitor, it: &mut Sweep) {
-    schema::whole_usize(walk, "fillings", (1, 1000), &mut it.n_fillings);
-    walk.quantities("moduli", Quantity::above_zero(&PRESSURE), &mut it.moduli);
-    walk.quantities("pressures", VACUUM, &mut it.pressures);
-    walk.plain_numbers("frictions", Range::AtLeast(0.0), &mut it.frictions);
-    walk.quantities("radii", LENGTHS, &mut it.radii);
-    walk.plain_numbers("counts", Range::Between(1.0, 200_000.0), &mut it.counts);
-    walk.plain_numbers("spring_dampings", Range::AtLeast(0.0), &mut it.spring_dampings);
-    walk.plain_numbers("slowdowns", Range::AboveUpTo(0.0, 1.0), &mut it.slowdowns);
 }

@@ -2,7 +2,7 @@
 
 use super::{
     cases::{Case, Kind},
-    scene::Scene,
+    scene::HollowSphereScene,
 };
 use crate::{
     base::{
@@ -27,30 +27,34 @@ use crate::{
 
 /// Solid fraction at which grains are scattered before they grow.
 const FIRST_SOLID_FRACTION: Real = 0.15;
-/// Neighbours are listed this share of the largest radius beyond contact.
+/// Skin of the neighbor lists, as a share of the largest radius.
 const SKIN_SHARE: Real = 0.25;
-/// Pressure that the growing grains may exert on each other (Pa).
+/// Pressure of the grains at which growth ends (Pa).
 const GROWTH_PRESSURE: Real = 1e3;
 
-/// What a case is made of and cannot be read off the system.
+/// Parameters of a case that the system does not hold.
 #[derive(Clone, Debug)]
 pub(super) struct Parts {
-    /// Vertices of the outer membrane; the inner one's follow.
+    /// Number of vertices of the outer membrane, which come before those of the inner one.
     pub(super) n_outer: usize,
-    /// What the grains grow to (m).
+    /// Final radii of the grains (m).
     pub(super) final_radii: Vec<Real>,
-    /// How they grow.
+    /// Parameters of growth.
     pub(super) recipe: Recipe,
-    /// Common factor at which they are scattered.
+    /// Common factor of the radii at the start of growth.
     pub(super) first_scale: Real,
 }
 
-/// The system of `case` at its start: grains scattered thinly, the outer membrane held stretched.
-pub(super) fn system(scene: &Scene, case: &Case) -> Result<(System, Parts), StartError> {
+/// The system of `case` at its start: small scattered grains, and the outer membrane held
+/// stretched.
+pub(super) fn system(
+    scene: &HollowSphereScene,
+    case: &Case,
+) -> Result<(System, Parts), StartError> {
     let outer = Mesh::icosphere(scene.membrane.radius, scene.membrane.frequency)?;
     let n_outer = outer.n_vertices();
-    let inner_radius = scene.object.radius + scene.inner_clearance;
-    let inner = Mesh::icosphere(inner_radius, scene.inner_frequency)?;
+    let inner_radius = scene.object.radius + scene.inner.clearance;
+    let inner = Mesh::icosphere(inner_radius, scene.inner.frequency)?;
     let material = MembraneMaterial::of(&scene.membrane);
     let mut outer = MembraneModel::new(outer, material);
     outer.scale_rest_lengths(scene.membrane.fill_stretch);
@@ -69,7 +73,7 @@ pub(super) fn system(scene: &Scene, case: &Case) -> Result<(System, Parts), Star
     let density = scene.grains.material.density * case.mass_factor;
     let small: Vec<Real> = final_radii.iter().map(|r| first * r).collect();
     let mut random = Random::new(seed, Stream::Position);
-    // One final diameter away from the membranes: the growing grains reach them later.
+    // One final diameter away from the membranes, which growing grains reach later.
     let margin = 2.0 * grains.radius_max;
     let positions = scatter(&small, None, &mut random, |random| room.place(margin, random))?;
     let masses = final_radii.iter().map(|&r| sphere_volume(r) * density).collect();
@@ -82,19 +86,19 @@ pub(super) fn system(scene: &Scene, case: &Case) -> Result<(System, Parts), Star
     Ok((system, Parts { n_outer, final_radii, recipe, first_scale: first }))
 }
 
-/// Which wall holds the membranes' vertices while the grains are placed, and afterwards.
+/// Holds the membranes by the frame, or releases them.
 pub(super) fn hold(model: &mut Model, is_held: bool) {
     model.membrane.holders.fill(if is_held { CARRIER_ID } else { FREE });
 }
 
-/// Growth from the start.
+/// Growth at its start.
 pub(super) fn growth(parts: &Parts) -> Growth {
     Growth::new(parts.recipe, parts.final_radii.clone(), parts.first_scale)
 }
 
 /// Grains between both membranes, which a frame holds, with the object in the middle.
 fn assembled(
-    scene: &Scene,
+    scene: &HollowSphereScene,
     case: &Case,
     [outer, inner]: [MembraneModel; 2],
     grains: Grains,
@@ -120,12 +124,13 @@ fn assembled(
         law: laws.object,
         contact_radius: scene.object.radius,
         bounding_radius: scene.object.radius,
+        of_grains: None,
     };
     builder.body(object, BodyMotion { pose: Pose::identity(), twist: Twist::zero() });
     Ok(builder.build()?)
 }
 
-/// What touches what.
+/// The contact laws.
 struct Laws {
     material: Material,
     grains: PairLaw,
@@ -134,7 +139,7 @@ struct Laws {
 }
 
 impl Laws {
-    fn new(scene: &Scene, case: &Case) -> Self {
+    fn new(scene: &HollowSphereScene, case: &Case) -> Self {
         let material = Material {
             youngs_modulus: case.modulus,
             density: scene.grains.material.density * case.mass_factor,
@@ -163,16 +168,16 @@ impl Laws {
     }
 }
 
-/// A share of the longest stable substep (s) of both membranes as one. Under full vacuum a grain
-/// carries the pressure on its square of membrane, a sample that on its share of the membrane, as in
-/// the gripper.
-fn substep(scene: &Scene, laws: &Laws, mut membrane: MembraneModel) -> Real {
+/// The substep: a share of the critical step of both membranes (s). Under full vacuum a grain
+/// carries the pressure on its square of the membrane, and a sample that on its share of the
+/// membrane, as in the gripper.
+fn substep(scene: &HollowSphereScene, laws: &Laws, mut membrane: MembraneModel) -> Real {
     let vacuum = scene.protocol.vacuum;
     let area = membrane.mesh.vertex_areas().into_iter().fold(0.0, Real::max);
     let radius = scene.grains.radius_max;
     let pressed = stiffness_at_vertex(&membrane, &laws.membrane, radius, vacuum)
         + laws.object.stiffness(scene.object.radius, vacuum * area);
-    // Vertices that are held do not count, and none is when it matters.
+    // Held vertices do not count for the critical step, and none is held under vacuum.
     membrane.holders.fill(FREE);
     let smallest = scene.grains.radius_min;
     scene.protocol.safety * critical_step(smallest, &laws.material, &membrane, pressed)

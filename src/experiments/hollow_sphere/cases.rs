@@ -1,20 +1,20 @@
-//! The cases: one packing of one kind of grain each.
+//! The cases: one packing of one kind of grains each.
 
-use super::scene::Scene;
+use super::scene::HollowSphereScene;
 use crate::base::Real;
 
-/// One packing.
+/// One case.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Case {
-    /// Its name.
+    /// Name of the case.
     pub(super) name: String,
     /// Young's modulus of the grains (Pa).
     pub(super) modulus: Real,
-    /// How much heavier than real the grains are.
+    /// Factor on the mass of the grains.
     pub(super) mass_factor: Real,
-    /// What is different from the plain sweep.
+    /// What differs from the plain sweep.
     pub(super) kind: Kind,
-    /// Which packing, from 0.
+    /// Index of the packing.
     pub(super) filling: usize,
 }
 
@@ -23,16 +23,16 @@ pub(super) struct Case {
 pub(super) enum Kind {
     /// The sweep of the source.
     Plain,
-    /// No grain feels friction.
+    /// Grains without friction.
     Frictionless,
-    /// Hard grains have their true mass.
+    /// Grains of their true mass.
     Unscaled,
-    /// In its contacts with grains the sheet is as hard as they are.
+    /// In contacts with grains the membrane is as stiff as they are.
     StiffContacts,
 }
 
 impl Kind {
-    /// Begin of the names of its cases.
+    /// Prefix of the names of its cases.
     fn prefix(self) -> &'static str {
         match self {
             Self::Plain => "",
@@ -42,19 +42,29 @@ impl Kind {
         }
     }
 
-    /// What is said of it after the modulus.
-    pub(super) fn in_words(self) -> &'static str {
+    /// Its description, to follow the modulus.
+    pub(super) fn description(self) -> &'static str {
         match self {
             Self::Plain => "",
             Self::Frictionless => " without friction",
             Self::Unscaled => " with true mass",
-            Self::StiffContacts => " on a sheet with contacts as hard",
+            Self::StiffContacts => " with equally stiff membrane contacts",
+        }
+    }
+
+    /// Suffix of the names of its quantities.
+    pub(super) fn suffix(self) -> &'static str {
+        match self {
+            Self::Plain => "",
+            Self::Frictionless => "_without_friction",
+            Self::Unscaled => "_with_true_mass",
+            Self::StiffContacts => "_on_a_sheet_with_contacts_as_hard",
         }
     }
 }
 
 /// All cases of a scene.
-pub(super) fn of(scene: &Scene) -> Vec<Case> {
+pub(super) fn cases(scene: &HollowSphereScene) -> Vec<Case> {
     let mut cases = Vec::new();
     let sweep = &scene.sweep;
     let kinds = [
@@ -67,11 +77,11 @@ pub(super) fn of(scene: &Scene) -> Vec<Case> {
         for &modulus in moduli {
             let heavier = (modulus / scene.protocol.mass_scaled_above).max(1.0);
             let mass_factor = if kind == Kind::Unscaled { 1.0 } else { heavier };
-            // What is only a check needs no repetition.
+            // A check needs no repetition.
             let is_check = matches!(kind, Kind::Unscaled | Kind::StiffContacts);
             let n_fillings = if is_check { 1 } else { scene.n_fillings };
             cases.extend((0..n_fillings).map(|filling| Case {
-                name: format!("{}{}_packing_{}", kind.prefix(), in_words(modulus), filling + 1),
+                name: format!("{}{}_packing_{}", kind.prefix(), modulus_text(modulus), filling + 1),
                 modulus,
                 mass_factor,
                 kind,
@@ -82,7 +92,7 @@ pub(super) fn of(scene: &Scene) -> Vec<Case> {
     cases
 }
 
-/// A modulus as part of a file's name.
-pub(super) fn in_words(modulus: Real) -> String {
+/// A modulus as part of a file name.
+pub(super) fn modulus_text(modulus: Real) -> String {
     if modulus < 1e9 { format!("{}MPa", modulus / 1e6) } else { format!("{}GPa", modulus / 1e9) }
 }

@@ -1,15 +1,20 @@
-//! The hollow sphere: an object inside a shell of grains between two membranes, the model of a
-//! gripper of Götz (2024), sections 4.3 and 4.4.
+//! The hollow sphere (Götz 2024, sections 4.3 and 4.4): an object inside a shell of grains between
+//! two membranes, as a model of a gripper.
 
 mod build; // the system
-mod cases; // the list of packings
+mod cases; // the list of cases
 mod evaluate; // verdicts from the records
+mod measure; // measurements on a packing
+mod plots; // plots for the report
 mod run; // one case
 mod scene; // scene keys
 
-use super::{Experiment, Plan, Run, SceneText, StartError, findings::Findings, record::Record};
-use crate::scene::{SceneError, text::fill};
-use scene::Scene;
+use super::{
+    Experiment, Plan, Run, SceneText, StartError, find_case, findings::Findings, record::Record,
+};
+use crate::scene::{SceneError, text::read};
+use cases::cases;
+use scene::HollowSphereScene;
 
 /// The experiment.
 pub struct HollowSphere;
@@ -20,7 +25,7 @@ impl Experiment for HollowSphere {
     }
 
     fn about(&self) -> &'static str {
-        "pressure of an evacuated shell of grains on the object inside (Götz 2024, 4.3, 4.4)"
+        "pressure of an evacuated shell of grains on an object inside (Götz 2024, 4.3, 4.4)"
     }
 
     fn scene(&self) -> (&'static str, &'static str) {
@@ -31,31 +36,28 @@ impl Experiment for HollowSphere {
     }
 
     fn read(&self, scene: &SceneText<'_>) -> Result<Box<dyn Plan>, SceneError> {
-        Ok(Box::new(Shells { scene: fill(&scene.layers(false), Scene::blank())? }))
+        Ok(Box::new(HollowSpherePlan { scene: read(&scene.layers(false))? }))
     }
 }
 
-/// All packings of a scene.
-struct Shells {
-    scene: Scene,
+/// The cases of a scene.
+struct HollowSpherePlan {
+    scene: HollowSphereScene,
 }
 
-impl Plan for Shells {
+impl Plan for HollowSpherePlan {
     fn cases(&self) -> Vec<String> {
-        cases::of(&self.scene).into_iter().map(|case| case.name).collect()
+        cases(&self.scene).into_iter().map(|case| case.name).collect()
     }
 
     fn start(&self, case: &str) -> Result<Box<dyn Run>, StartError> {
-        let known = cases::of(&self.scene);
-        match known.iter().find(|it| it.name == case) {
-            Some(case) => Ok(Box::new(run::Shell::new(&self.scene, case)?)),
-            None => Err(StartError::NoSuchCase { name: case.to_owned(), known: self.cases() }),
-        }
+        let case = find_case(cases(&self.scene), case, |case| case.name.clone())?;
+        Ok(Box::new(run::HollowSphereRun::new(&self.scene, &case)?))
     }
 
     fn expected_s(&self, case: &str) -> Option<f64> {
-        // Substeps go with the levels, and harder grains take more of them.
-        cases::of(&self.scene).iter().find(|it| it.name == case).map(|case| {
+        // The number of substeps grows with the time of all levels and with the stiffness.
+        cases(&self.scene).iter().find(|it| it.name == case).map(|case| {
             let stiffness = (case.modulus / case.mass_factor / 1e8).sqrt().max(0.6);
             let time = self.scene.protocol.total_time();
             110.0 * stiffness * time

@@ -1,11 +1,12 @@
-//! One packing on its way: grow, close, rest, evacuate level by level.
+//! One case: grow, close, rest, evacuate level by level.
 
 use serde::{Deserialize, Serialize};
 
 use super::{
     build::{self, Parts},
     cases::Case,
-    scene::{Protocol, Scene},
+    measure::object_pressure,
+    scene::{HollowSphereScene, Protocol},
 };
 use crate::{
     base::{
@@ -27,50 +28,55 @@ use crate::{
 
 /// Substeps of a slice.
 const SLICE: usize = 100;
-/// Share of the whole that growing is counted as.
+/// Share of the work that growth counts for.
 const GROWTH_SHARE: Real = 0.15;
 /// Share of a level, at its end, over which the pressure on the object is averaged.
 const MEAN_SHARE: Real = 0.25;
 /// Share of a level in which the vacuum rises.
 const RISE_SHARE: Real = 0.5;
 
-/// Where a run is.
+/// A phase of the run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-enum Stage {
+enum Phase {
+    /// Grains grow between the held membranes.
     Growing,
+    /// The outer membrane shrinks to its own size.
     Closing,
+    /// The packing rests without vacuum.
     Resting,
-    /// The vacuum rises to a level, from 1, and stays.
+    /// The vacuum rises to a level, from 1, and stays there.
     Evacuating(usize),
+    /// The run is over.
     Done,
 }
 
-/// All that changes, besides the state.
+/// Everything needed to resume, in addition to the state.
 #[derive(Clone, Serialize, Deserialize)]
-struct Progressed {
-    stage: Stage,
-    /// Substeps in this stage.
-    n_in_stage: usize,
+struct RunState {
+    phase: Phase,
+    /// Substeps in this phase.
+    n_in_phase: usize,
     growth: grow::Progress,
-    /// Sum and number of the object's pressures in the present mean (Pa).
+    /// Sum of the pressures on the object in the current mean (Pa).
     sum: Real,
+    /// Number of pressures in that sum.
     n_sum: usize,
     record: Record,
 }
 
-/// A packing on its way.
-pub(super) struct Shell {
-    scene: Scene,
+/// A running case.
+pub(super) struct HollowSphereRun {
+    scene: HollowSphereScene,
     case: Case,
     parts: Parts,
     system: System,
     growth: Growth,
-    now: Progressed,
+    progress: RunState,
 }
 
-impl Shell {
-    /// At its start.
-    pub(super) fn new(scene: &Scene, case: &Case) -> Result<Self, StartError> {
+impl HollowSphereRun {
+    /// The case at its start.
+    pub(super) fn new(scene: &HollowSphereScene, case: &Case) -> Result<Self, StartError> {
         let (system, parts) = build::system(scene, case)?;
         let growth = build::growth(&parts);
         let mut record = Record {
@@ -82,156 +88,145 @@ impl Shell {
         record.set("youngs_modulus", case.modulus, "Pa");
         record.set("mass_factor", case.mass_factor, "1");
         record.set("substep", system.model.substep, "s");
-        let now = Progressed {
-            stage: Stage::Growing,
-            n_in_stage: 0,
+        let progress = RunState {
+            phase: Phase::Growing,
+            n_in_phase: 0,
             growth: growth.progress(),
             sum: 0.0,
             n_sum: 0,
             record,
         };
-        Ok(Self { scene: scene.clone(), case: case.clone(), parts, system, growth, now })
+        Ok(Self { scene: scene.clone(), case: case.clone(), parts, system, growth, progress })
     }
 
-    /// Substeps of the present stage; growth has no fixed number.
+    /// Number of substeps of the current phase; growth has no fixed number.
     fn n_substeps(&self) -> usize {
         let it = &self.scene.protocol;
-        let time = match self.now.stage {
-            Stage::Growing | Stage::Done => return usize::MAX,
-            Stage::Closing => it.close_time,
-            Stage::Resting => it.rest_time,
-            Stage::Evacuating(_) => it.level_time,
+        let time = match self.progress.phase {
+            Phase::Growing | Phase::Done => return usize::MAX,
+            Phase::Closing => it.close_time,
+            Phase::Resting => it.rest_time,
+            Phase::Evacuating(_) => it.level_time,
         };
         count(time / self.system.model.substep)
     }
 
-    /// One substep of the present stage; true at its end.
+    /// One substep of the current phase; returns true at its end.
     fn step(&mut self) -> bool {
-        self.now.n_in_stage += 1;
-        let (k, n) = (self.now.n_in_stage, self.n_substeps());
-        match self.now.stage {
-            Stage::Growing => {
+        self.progress.n_in_phase += 1;
+        let (k, n) = (self.progress.n_in_phase, self.n_substeps());
+        match self.progress.phase {
+            Phase::Growing => {
                 let grown = self.growth.step(&mut self.system);
-                self.now.growth = self.growth.progress();
+                self.progress.growth = self.growth.progress();
                 return grown != Grown::Growing;
             }
-            Stage::Closing => {
+            Phase::Closing => {
                 let stretch = self.scene.membrane.fill_stretch;
                 let scale = stretch + (1.0 - stretch) * real(k) / real(n);
                 let outer = 0..self.parts.n_outer;
                 self.system.model.membrane.scale_rest_lengths_of(outer, scale);
             }
-            Stage::Evacuating(level) => {
-                let risen = (real(k) / (RISE_SHARE * real(n))).min(1.0);
+            Phase::Evacuating(level) => {
+                let rise = (real(k) / (RISE_SHARE * real(n))).min(1.0);
                 self.system.controls.gauge_setpoint =
-                    -gauge(&self.scene.protocol, real(level) - 1.0 + risen);
+                    -gauge(&self.scene.protocol, real(level) - 1.0 + rise);
             }
-            Stage::Resting | Stage::Done => {}
+            Phase::Resting | Phase::Done => {}
         }
         self.system.step();
-        if matches!(self.now.stage, Stage::Evacuating(_) | Stage::Resting)
+        if matches!(self.progress.phase, Phase::Evacuating(_) | Phase::Resting)
             && real(n - k) < MEAN_SHARE * real(n)
         {
-            self.now.sum += self.object_pressure();
-            self.now.n_sum += 1;
+            self.progress.sum += object_pressure(&self.system, self.scene.object.radius);
+            self.progress.n_sum += 1;
         }
         k >= n
     }
 
-    /// Goes over to the next stage.
-    fn turn(&mut self) {
-        let (name, n) = (self.stage_name(), self.now.n_in_stage as u64);
-        self.now.record.count(name, n);
-        match self.now.stage {
-            Stage::Growing => self.now.stage = Stage::Closing,
-            Stage::Closing => self.now.stage = Stage::Resting,
-            Stage::Resting => {
-                self.note(0);
-                self.now.stage = Stage::Evacuating(1);
+    /// Enters the next phase.
+    fn enter_next(&mut self) {
+        let (name, n) = (self.phase_name(), self.progress.n_in_phase as u64);
+        self.progress.record.count(name, n);
+        match self.progress.phase {
+            Phase::Growing => self.progress.phase = Phase::Closing,
+            Phase::Closing => self.progress.phase = Phase::Resting,
+            Phase::Resting => {
+                self.record_row(0);
+                self.progress.phase = Phase::Evacuating(1);
             }
-            Stage::Evacuating(level) => {
-                self.note(level);
-                self.now.stage = Stage::Evacuating(level + 1);
+            Phase::Evacuating(level) => {
+                self.record_row(level);
+                self.progress.phase = Phase::Evacuating(level + 1);
                 if level == self.scene.protocol.n_levels {
-                    self.now.stage = Stage::Done;
-                    self.now.record.digest = saved_run::digest(&self.system.state);
+                    self.progress.phase = Phase::Done;
+                    self.progress.record.digest = saved_run::digest(&self.system.state);
                 }
             }
-            Stage::Done => {}
+            Phase::Done => {}
         }
-        self.now.n_in_stage = 0;
+        self.progress.n_in_phase = 0;
         self.hold();
     }
 
     fn hold(&mut self) {
-        build::hold(&mut self.system.model, self.now.stage == Stage::Growing);
+        build::hold(&mut self.system.model, self.progress.phase == Phase::Growing);
     }
 
-    fn stage_name(&self) -> &'static str {
-        match self.now.stage {
-            Stage::Growing => "growing",
-            Stage::Closing => "closing",
-            Stage::Resting => "resting",
-            Stage::Evacuating(_) => "evacuating",
-            Stage::Done => "done",
+    fn phase_name(&self) -> &'static str {
+        match self.progress.phase {
+            Phase::Growing => "growing",
+            Phase::Closing => "closing",
+            Phase::Resting => "resting",
+            Phase::Evacuating(_) => "evacuating",
+            Phase::Done => "done",
         }
     }
 
-    /// Pressure of the membrane on the object: the sum of its radial forces over the surface (Pa).
-    fn object_pressure(&self) -> Real {
-        let radial: Real = (self.system.scratch.sample_forces.iter())
-            .filter(|sample| sample.flags.touches())
-            .map(|sample| sample.force.dot(&sample.point.normalize()))
-            .sum();
-        radial / (4.0 * std::f64::consts::PI * self.scene.object.radius.powi(2))
-    }
-
-    /// A row of the record at the end of a level.
-    fn note(&mut self, level: usize) {
+    /// Records a row at the end of a level.
+    fn record_row(&mut self, level: usize) {
         let System { model, state, scratch, .. } = &self.system;
         let packing = measure::packing(state, scratch);
         let radii = state.membrane.positions[..self.parts.n_outer].iter().map(|p| p.norm());
         let unbalanced = unbalanced_force(model, state, scratch);
         let row = [
             gauge(&self.scene.protocol, real(level)),
-            self.now.sum / real(self.now.n_sum.max(1)),
+            self.progress.sum / real(self.progress.n_sum.max(1)),
             measure::grain_volume(state) / measure::enclosed_volume(model, state),
             packing.coordination_number,
             radii.sum::<Real>() / real(self.parts.n_outer),
             packing.overlap_max / (2.0 * model.radius_mean),
             unbalanced,
         ];
-        let record = &mut self.now.record;
-        for (column, value) in record.columns.iter_mut().zip(row) {
-            column.values.push(value);
-        }
+        let record = &mut self.progress.record;
+        record.push_row(&row);
         let validity = &mut record.validity;
         validity.overlap_over_diameter_max = validity.overlap_over_diameter_max.max(row[5]);
-        // Before there is a vacuum hardly a force is there to be balanced.
+        // Without vacuum there is hardly any force to be balanced.
         if level > 0 {
             validity.unbalanced_force = validity.unbalanced_force.max(unbalanced);
         }
-        (self.now.sum, self.now.n_sum) = (0.0, 0);
+        (self.progress.sum, self.progress.n_sum) = (0.0, 0);
     }
 
     fn share(&self) -> Real {
         let it = &self.scene.protocol;
-        let all = it.total_time();
-        let before = match self.now.stage {
-            Stage::Growing => return GROWTH_SHARE * self.now.growth.scale.powi(3),
-            Stage::Closing => 0.0,
-            Stage::Resting => it.close_time,
-            Stage::Evacuating(level) => {
+        let total = it.total_time();
+        let before = match self.progress.phase {
+            Phase::Growing => return GROWTH_SHARE * self.progress.growth.scale.powi(3),
+            Phase::Closing => 0.0,
+            Phase::Resting => it.close_time,
+            Phase::Evacuating(level) => {
                 it.close_time + it.rest_time + (real(level) - 1.0) * it.level_time
             }
-            Stage::Done => all,
+            Phase::Done => total,
         };
-        let here = real(self.now.n_in_stage) * self.system.model.substep;
-        GROWTH_SHARE + (1.0 - GROWTH_SHARE) * ((before + here) / all).min(1.0)
+        let here = real(self.progress.n_in_phase) * self.system.model.substep;
+        GROWTH_SHARE + (1.0 - GROWTH_SHARE) * ((before + here) / total).min(1.0)
     }
 }
 
-/// Names and units of the record's columns.
+/// Columns of the record.
 const COLUMNS: [(&str, &str); 7] = [
     ("vacuum", "Pa"),
     ("object_pressure", "Pa"),
@@ -242,37 +237,37 @@ const COLUMNS: [(&str, &str); 7] = [
     ("unbalanced_force", "1"),
 ];
 
-impl Run for Shell {
+impl Run for HollowSphereRun {
     fn advance(&mut self) -> Result<Progress, Diverged> {
-        let stage = self.stage_name();
+        let phase = self.phase_name();
         for _ in 0..SLICE {
-            if self.now.stage == Stage::Done {
+            if self.progress.phase == Phase::Done {
                 break;
             }
             if self.step() {
-                self.turn();
+                self.enter_next();
                 break;
             }
         }
-        self.system.check(self.now.n_in_stage as u64)?;
-        Ok(Progress { stage, share: self.share(), is_done: self.now.stage == Stage::Done })
+        self.system.check(self.progress.n_in_phase as u64)?;
+        Ok(Progress { phase, share: self.share(), is_done: self.progress.phase == Phase::Done })
     }
 
     fn save(&self) -> Vec<u8> {
-        saved_run::pack(&self.case.name, &self.now, [&self.system.state])
+        saved_run::pack(&self.case.name, &self.progress, [&self.system.state])
     }
 
     fn resume(&mut self, bytes: &[u8]) -> Result<(), ResumeError> {
-        let (now, [state]): (Progressed, _) = saved_run::unpack(&self.case.name, bytes)?;
-        saved_run::of_one_scene(&state, &self.system.state)?;
+        let (progress, [state]): (RunState, _) = saved_run::unpack(&self.case.name, bytes)?;
+        saved_run::check_scene(&state, &self.system.state)?;
         self.system.scratch = Scratch::new(&self.system.model);
         self.system.controls.gauge_setpoint = state.gauge;
         self.system.state = state;
         self.growth =
-            Growth::resumed(self.parts.recipe, self.parts.final_radii.clone(), now.growth);
-        self.now = now;
+            Growth::resumed(self.parts.recipe, self.parts.final_radii.clone(), progress.growth);
+        self.progress = progress;
         self.hold();
-        if !matches!(self.now.stage, Stage::Growing | Stage::Closing) {
+        if !matches!(self.progress.phase, Phase::Growing | Phase::Closing) {
             let outer = 0..self.parts.n_outer;
             self.system.model.membrane.scale_rest_lengths_of(outer, 1.0);
         }
@@ -280,7 +275,7 @@ impl Run for Shell {
     }
 
     fn record(&self) -> Record {
-        self.now.record.clone()
+        self.progress.record.clone()
     }
 }
 

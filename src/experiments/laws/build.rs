@@ -17,11 +17,11 @@ use crate::{
 pub(super) const G: Real = 9.81;
 
 /// Some grains with a wall or a membrane.
-pub(super) struct Bench {
+pub(super) struct TestSystem {
     pub(super) system: System,
 }
 
-/// Two surfaces with Coulomb friction alone.
+/// Two surfaces with Coulomb friction only.
 pub(super) const fn elastic(friction: Real) -> Surface {
     Surface { friction, dissipation_time: 0.0, tangential_damping: 0.0 }
 }
@@ -31,7 +31,7 @@ pub(super) fn mass(radius: Real, density: Real) -> Real {
     4.0 / 3.0 * std::f64::consts::PI * radius.powi(3) * density
 }
 
-impl Bench {
+impl TestSystem {
     /// Grains of `material` over a rigid plane at z = 0.
     pub(super) fn on_plane(material: &Material, surface: Surface, dt: Real) -> Self {
         let mut builder = SystemBuilder::of_material(material, surface);
@@ -74,7 +74,7 @@ impl Bench {
         &self.system.state.grains
     }
 
-    /// The grains, to be moved.
+    /// The grains, mutable.
     pub(super) fn grains_mut(&mut self) -> &mut Grains {
         &mut self.system.state.grains
     }
@@ -123,52 +123,53 @@ impl Bench {
         (0..grains.len()).map(of_grain).sum()
     }
 
-    /// Steps until the bodies, which just touch and approach, have parted again.
-    pub(super) fn collide(&mut self) -> Met {
-        let mut met = Met { overlap_max: 0.0, force_max: 0.0, force_min: 0.0, duration: 0.0 };
+    /// Steps until the bodies, which touch and approach at the start, have separated.
+    pub(super) fn collide(&mut self) -> CollisionExtremes {
+        let mut extremes =
+            CollisionExtremes { overlap_max: 0.0, force_max: 0.0, force_min: 0.0, duration: 0.0 };
         for step in 1..100_000_000 {
             self.step();
             let (overlap, force) = (self.overlap(), self.normal_force());
-            met.overlap_max = met.overlap_max.max(overlap);
-            met.force_max = met.force_max.max(force);
-            met.force_min = met.force_min.min(force);
+            extremes.overlap_max = extremes.overlap_max.max(overlap);
+            extremes.force_max = extremes.force_max.max(force);
+            extremes.force_min = extremes.force_min.min(force);
             if overlap <= 0.0 {
-                met.duration = real(step) * self.system.model.substep;
+                extremes.duration = real(step) * self.system.model.substep;
                 break;
             }
         }
-        met
+        extremes
     }
 }
 
-/// What was seen of a collision.
+/// Extremes of a collision.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Met {
-    /// (m)
+pub(super) struct CollisionExtremes {
+    /// Largest overlap (m).
     pub(super) overlap_max: Real,
-    /// (N)
+    /// Largest normal force (N).
     pub(super) force_max: Real,
-    /// (N)
+    /// Smallest normal force (N).
     pub(super) force_min: Real,
-    /// (s)
+    /// Duration (s).
     pub(super) duration: Real,
 }
 
 /// A sphere that flies onto a rigid plane.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Flight {
-    /// (m)
+    /// Radius (m).
     pub(super) radius: Real,
     pub(super) material: Material,
     pub(super) surface: Surface,
-    /// Down is −z (m/s).
+    /// Velocity before the impact (m/s); down is −z.
     pub(super) velocity: Vec3,
-    /// (rad/s)
+    /// Angular velocity before the impact (rad/s).
     pub(super) spin: Vec3,
 }
 
 impl Flight {
-    /// The collision by its numbers.
+    /// The numbers of the collision.
     pub(super) fn collision(&self) -> Collision {
         Collision {
             modulus: PairLaw::against_rigid(&self.material, self.surface).modulus,
@@ -178,31 +179,35 @@ impl Flight {
         }
     }
 
-    /// Flies until it has left the plane, with so many steps per elastic contact.
-    pub(super) fn land(&self, steps_per_contact: usize, record: &mut Record) -> (Bench, Met) {
+    /// Simulates the impact, with `steps_per_contact` in the duration of the elastic contact.
+    pub(super) fn land(
+        &self,
+        steps_per_contact: usize,
+        record: &mut Record,
+    ) -> (TestSystem, CollisionExtremes) {
         let dt = self.collision().duration() / real(steps_per_contact);
-        let mut bench = Bench::on_plane(&self.material, self.surface, dt);
-        bench.add_grain(Vec3::z() * self.radius, self.radius, self.material.density);
-        bench.grains_mut().velocities[0] = self.velocity;
-        bench.grains_mut().angular_velocities[0] = self.spin;
-        let met = bench.collide();
-        note_overlap(record, met.overlap_max / (2.0 * self.radius));
-        (bench, met)
+        let mut test = TestSystem::on_plane(&self.material, self.surface, dt);
+        test.add_grain(Vec3::z() * self.radius, self.radius, self.material.density);
+        test.grains_mut().velocities[0] = self.velocity;
+        test.grains_mut().angular_velocities[0] = self.spin;
+        let extremes = test.collide();
+        note_overlap(record, extremes.overlap_max / (2.0 * self.radius));
+        (test, extremes)
     }
 }
 
-/// Two spheres of one material that fly towards each other along x.
+/// Two spheres of one material that fly toward each other along x.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Encounter {
-    /// (m)
+    /// Radii (m).
     pub(super) radii: [Real; 2],
     pub(super) material: Material,
-    /// Of each (kg/m³).
+    /// Densities (kg/m³).
     pub(super) densities: [Real; 2],
     pub(super) surface: Surface,
-    /// Of each along x (m/s).
+    /// Speeds along x (m/s).
     pub(super) speeds: [Real; 2],
-    /// Of each (rad/s).
+    /// Angular velocities (rad/s).
     pub(super) spins: [Vec3; 2],
 }
 
@@ -224,7 +229,7 @@ impl Encounter {
         }
     }
 
-    /// The collision by its numbers.
+    /// The numbers of the collision.
     pub(super) fn collision(&self) -> Collision {
         let half = |[a, b]: [Real; 2]| a * b / (a + b);
         let masses = [0, 1].map(|i| mass(self.radii[i], self.densities[i]));
@@ -236,24 +241,28 @@ impl Encounter {
         }
     }
 
-    /// Meets and parts, with so many steps per elastic contact.
-    pub(super) fn meet(&self, steps_per_contact: usize, record: &mut Record) -> (Bench, Met) {
+    /// Simulates the collision, with `steps_per_contact` in the duration of the elastic contact.
+    pub(super) fn meet(
+        &self,
+        steps_per_contact: usize,
+        record: &mut Record,
+    ) -> (TestSystem, CollisionExtremes) {
         let dt = self.collision().duration() / real(steps_per_contact);
-        let mut bench = Bench::on_plane(&self.material, self.surface, dt);
+        let mut test = TestSystem::on_plane(&self.material, self.surface, dt);
         let high = Vec3::z() * (10.0 * (self.radii[0] + self.radii[1]));
         for (i, x) in [-self.radii[0], self.radii[1]].into_iter().enumerate() {
-            bench.add_grain(high + Vec3::x() * x, self.radii[i], self.densities[i]);
-            bench.grains_mut().velocities[i] = Vec3::x() * self.speeds[i];
-            bench.grains_mut().angular_velocities[i] = self.spins[i];
+            test.add_grain(high + Vec3::x() * x, self.radii[i], self.densities[i]);
+            test.grains_mut().velocities[i] = Vec3::x() * self.speeds[i];
+            test.grains_mut().angular_velocities[i] = self.spins[i];
         }
-        let met = bench.collide();
-        note_overlap(record, met.overlap_max / (self.radii[0] + self.radii[1]));
-        (bench, met)
+        let extremes = test.collide();
+        note_overlap(record, extremes.overlap_max / (self.radii[0] + self.radii[1]));
+        (test, extremes)
     }
 
-    /// Restitution of a meeting that is over.
-    pub(super) fn restitution(&self, bench: &Bench) -> Real {
-        let velocities = &bench.grains().velocities;
+    /// Restitution after the collision.
+    pub(super) fn restitution(&self, test: &TestSystem) -> Real {
+        let velocities = &test.grains().velocities;
         (velocities[1].x - velocities[0].x) / self.collision().speed
     }
 }

@@ -1,35 +1,33 @@
 //! The eight benchmarks of Chung & Ooi (2011) for one and two spheres.
 //!
-//! Their tests 3, 4 and 6 to 8 want a constant coefficient of restitution. The law here has none: its
-//! dissipation time is chosen so that the theory of `oracles::impact` gives that restitution at that
-//! speed. Where a contact slides, the result depends on the restitution alone, not on the law.
+//! Their tests 3, 4 and 6 to 8 assume a constant coefficient of restitution. The law here has none:
+//! its dissipation time is chosen so that the theory of `oracles::impact` gives that restitution at
+//! that speed. Where a contact slides, the result depends on the restitution alone, not on the law.
 
 use super::{
-    Law, Line,
+    Law, RowSpec,
     build::{Encounter, Flight, elastic},
-    judge, push,
-    scene::Scene,
-    worst,
+    measure::{push, worst},
+    scene::LawsScene,
 };
 use crate::{
     base::{Real, Vec3},
     experiments::{
-        findings::{Curve, Expected, Findings, Kind, Plot, Series},
+        findings::{Expected, Kind, Plot, Series},
         oracles::{
             impact::{Collision, sliding_rebound},
             micro_slip,
         },
         record::Record,
     },
-    scene::Material,
 };
 
 pub(super) struct ChungOoi;
 
 /// Restitutions of test 3.
 const RESTITUTIONS: [Real; 5] = [0.2, 0.4, 0.6, 0.8, 0.98];
-/// Test 4 with aluminium oxide: angle (deg) and e_t of a secant spring of 2/3 · 8 G* √(R* ξ), integrated
-/// independently.
+/// Test 4 with aluminium oxide: angle (deg) and e_t of a secant spring of 2/3 · 8 G* √(R* ξ),
+/// integrated independently.
 const TEST_4: [[Real; 2]; 9] = [
     [5.0, 0.684],
     [10.0, 0.577],
@@ -43,15 +41,15 @@ const TEST_4: [[Real; 2]; 9] = [
 ];
 /// Tangential over μ times normal speed in test 5.
 const RATIOS: [Real; 9] = [0.5, 1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 20.0];
-/// Spins of test 6 (rad/s). A rigid sphere slides throughout from 4.2 rad/s on; with a spring, which
-/// sticks for a moment, it takes somewhat more.
+/// Spins of test 6 (rad/s). A rigid sphere slides throughout from 4.2 rad/s on; with a spring,
+/// which sticks for a moment, it takes somewhat more.
 const SPINS: [Real; 7] = [0.175, 1.0, 2.5, 4.5, 8.0, 15.0, 22.9];
 
-/// Spin from which on the closed form is expected to hold (rad/s).
+/// Smallest spin at which the closed form is expected to hold (rad/s).
 const SLIDES: Real = 6.0;
 
-/// Tests 1 to 8 of one pair of materials each; the points of the case.
-const POINTS: [fn(&Scene, &mut Record); 8] =
+/// The points of the case: tests 1 to 8, each for one pair of materials.
+const POINTS: [fn(&LawsScene, &mut Record); 8] =
     [test_1, test_2, test_3, test_4, test_5, test_6, test_7, test_8];
 
 impl Law for ChungOoi {
@@ -59,38 +57,42 @@ impl Law for ChungOoi {
         "chung_ooi"
     }
 
-    fn n_points(&self, _: &Scene) -> usize {
+    fn n_points(&self, _: &LawsScene) -> usize {
         POINTS.len()
     }
 
-    fn measure(&self, scene: &Scene, point: usize, record: &mut Record) {
+    fn measure(&self, scene: &LawsScene, point: usize, record: &mut Record) {
         POINTS[point](scene, record);
     }
 
-    fn evaluate(&self, _: &Scene, record: &Record, findings: &mut Findings) {
-        judge(ROWS, record, findings);
-        findings
-            .curves
-            .push(Curve { name: "laws_chung_ooi".to_owned(), columns: record.columns.clone() });
-        findings.plots.push(plot(record));
+    fn rows(&self) -> &'static [RowSpec] {
+        ROWS
+    }
+
+    fn table(&self) -> Option<&'static str> {
+        Some("laws_chung_ooi")
+    }
+
+    fn plot(&self, _: &LawsScene, record: &Record) -> Option<Plot> {
+        Some(plot(record))
     }
 }
 
 /// Head-on, elastic, two equal spheres of 10 mm at ±10 m/s.
-fn test_1(scene: &Scene, record: &mut Record) {
+fn test_1(scene: &LawsScene, record: &mut Record) {
     for (name, overlap, force, duration) in
         [("glass", 274.1e-6, 10.697e3, 40.34e-6), ("limestone", 368.3e-6, 7.108e3, 54.20e-6)]
     {
         let encounter = Encounter::equal(0.01, scene.material(name), elastic(0.35), 20.0);
-        let (_, met) = encounter.meet(scene.steps_per_contact, record);
-        worst(record, "U3.test_1", met.overlap_max / overlap - 1.0);
-        worst(record, "U3.test_1", met.force_max / force - 1.0);
-        worst(record, "U3.test_1", met.duration / duration - 1.0);
+        let (_, extremes) = encounter.meet(scene.steps_per_contact, record);
+        worst(record, "U3.test_1", extremes.overlap_max / overlap - 1.0);
+        worst(record, "U3.test_1", extremes.force_max / force - 1.0);
+        worst(record, "U3.test_1", extremes.duration / duration - 1.0);
     }
 }
 
 /// Head-on, elastic, a sphere of 100 mm on a rigid plane at 0.2 m/s.
-fn test_2(scene: &Scene, record: &mut Record) {
+fn test_2(scene: &LawsScene, record: &mut Record) {
     for (name, overlap, force, duration) in [
         ("aluminium_alloy", 49.72e-6, 11.370e3, 0.7317e-3),
         ("magnesium_alloy", 52.12e-6, 7.233e3, 0.7671e-3),
@@ -102,17 +104,17 @@ fn test_2(scene: &Scene, record: &mut Record) {
             velocity: Vec3::z() * -0.2,
             spin: Vec3::zeros(),
         };
-        let (_, met) = flight.land(scene.steps_per_contact, record);
-        worst(record, "U3.test_2", met.overlap_max / overlap - 1.0);
-        worst(record, "U3.test_2", met.force_max / force - 1.0);
-        worst(record, "U3.test_2", met.duration / duration - 1.0);
+        let (_, extremes) = flight.land(scene.steps_per_contact, record);
+        worst(record, "U3.test_2", extremes.overlap_max / overlap - 1.0);
+        worst(record, "U3.test_2", extremes.force_max / force - 1.0);
+        worst(record, "U3.test_2", extremes.duration / duration - 1.0);
     }
 }
 
 /// Head-on with restitution, 2.5 mm at 3.9 m/s on a rigid plane.
-fn test_3(scene: &Scene, record: &mut Record) {
+fn test_3(scene: &LawsScene, record: &mut Record) {
     for name in ["aluminium_oxide", "cast_iron"] {
-        for wanted in RESTITUTIONS {
+        for prescribed in RESTITUTIONS {
             let mut flight = Flight {
                 radius: 2.5e-3,
                 material: scene.material(name),
@@ -120,15 +122,15 @@ fn test_3(scene: &Scene, record: &mut Record) {
                 velocity: Vec3::z() * -3.9,
                 spin: Vec3::zeros(),
             };
-            flight.surface.dissipation_time = dissipation_time(&flight.collision(), wanted);
-            let (bench, _) = flight.land(scene.steps_per_contact, record);
-            worst(record, "U3.test_3", bench.grains().velocities[0].z / 3.9 - wanted);
+            flight.surface.dissipation_time = dissipation_time(&flight.collision(), prescribed);
+            let (test, _) = flight.land(scene.steps_per_contact, record);
+            worst(record, "U3.test_3", test.grains().velocities[0].z / 3.9 - prescribed);
         }
     }
 }
 
 /// Oblique, 2.5 mm at 3.9 m/s, μ = 0.092, e = 0.98.
-fn test_4(scene: &Scene, record: &mut Record) {
+fn test_4(scene: &LawsScene, record: &mut Record) {
     for [degrees, expected] in TEST_4 {
         let angle = degrees.to_radians();
         let found = test_4_at(scene, "aluminium_oxide", angle, record);
@@ -148,7 +150,7 @@ fn test_4(scene: &Scene, record: &mut Record) {
     }
 }
 
-fn test_4_at(scene: &Scene, name: &str, angle: Real, record: &mut Record) -> Real {
+fn test_4_at(scene: &LawsScene, name: &str, angle: Real, record: &mut Record) -> Real {
     let mut flight = Flight {
         radius: 2.5e-3,
         material: scene.material(name),
@@ -157,12 +159,12 @@ fn test_4_at(scene: &Scene, name: &str, angle: Real, record: &mut Record) -> Rea
         spin: Vec3::zeros(),
     };
     flight.surface.dissipation_time = dissipation_time(&flight.collision(), 0.98);
-    let (bench, _) = flight.land(scene.steps_per_contact, record);
-    bench.grains().velocities[0].x / flight.velocity.x
+    let (test, _) = flight.land(scene.steps_per_contact, record);
+    test.grains().velocities[0].x / flight.velocity.x
 }
 
 /// Oblique, elastic, 10 µm at a normal speed of 5 m/s, μ = 0.3.
-fn test_5(scene: &Scene, record: &mut Record) {
+fn test_5(scene: &LawsScene, record: &mut Record) {
     for (name, id) in [("steel", "U3.test_5_steel"), ("polyethylene", "U3.test_5_polyethylene")] {
         for ratio in RATIOS {
             let flight = Flight {
@@ -172,9 +174,9 @@ fn test_5(scene: &Scene, record: &mut Record) {
                 velocity: Vec3::new(ratio * 0.3 * 5.0, 0.0, -5.0),
                 spin: Vec3::zeros(),
             };
-            let (bench, _) = flight.land(scene.steps_per_contact, record);
-            // Their sign: the spin of a sphere that rolls forward is negative.
-            let spin = -bench.grains().angular_velocities[0].y * flight.radius / (0.3 * 5.0);
+            let (test, _) = flight.land(scene.steps_per_contact, record);
+            // Sign convention of the source: the spin of a sphere that rolls forward is negative.
+            let spin = -test.grains().angular_velocities[0].y * flight.radius / (0.3 * 5.0);
             if ratio >= 7.0 {
                 worst(record, id, spin / -5.0 - 1.0);
             }
@@ -187,7 +189,7 @@ fn test_5(scene: &Scene, record: &mut Record) {
 }
 
 /// A spinning sphere of 100 mm falls on a rigid plane at 0.2 m/s, μ = 0.4, e = 0.5.
-fn test_6(scene: &Scene, record: &mut Record) {
+fn test_6(scene: &LawsScene, record: &mut Record) {
     for name in ["aluminium_alloy", "copper"] {
         for spin in SPINS {
             let mut flight = Flight {
@@ -198,9 +200,9 @@ fn test_6(scene: &Scene, record: &mut Record) {
                 spin: Vec3::y() * spin,
             };
             flight.surface.dissipation_time = dissipation_time(&flight.collision(), 0.5);
-            let (bench, _) = flight.land(scene.steps_per_contact, record);
-            let gained = bench.grains().velocities[0].x;
-            let lost = spin - bench.grains().angular_velocities[0].y;
+            let (test, _) = flight.land(scene.steps_per_contact, record);
+            let gained = test.grains().velocities[0].x;
+            let lost = spin - test.grains().angular_velocities[0].y;
             if spin > SLIDES {
                 worst(record, "U3.test_6", gained / 0.12 - 1.0);
                 worst(record, "U3.test_6", lost / 3.0 - 1.0);
@@ -209,29 +211,29 @@ fn test_6(scene: &Scene, record: &mut Record) {
     }
 }
 
-/// Two equal spheres of 100 mm at ±0.2 m/s that spin against each other, or alike.
-fn test_7(scene: &Scene, record: &mut Record) {
+/// Two equal spheres of 100 mm at ±0.2 m/s that spin in opposite directions, or in the same.
+fn test_7(scene: &LawsScene, record: &mut Record) {
     for name in ["aluminium_alloy", "copper"] {
         for spin in [1.0, 8.0, 22.9] {
             let mut encounter = Encounter::equal(0.1, scene.material(name), elastic(0.4), 0.4);
             encounter.surface.dissipation_time = dissipation_time(&encounter.collision(), 0.5);
             encounter.spins = [Vec3::z() * spin, Vec3::z() * -spin];
-            let (bench, _) = encounter.meet(scene.steps_per_contact, record);
+            let (test, _) = encounter.meet(scene.steps_per_contact, record);
             for i in 0..2 {
-                let changed = bench.grains().angular_velocities[i] - encounter.spins[i];
+                let changed = test.grains().angular_velocities[i] - encounter.spins[i];
                 worst(record, "U3.test_7_no_slip", changed.norm() / spin);
-                worst(record, "U3.test_7_no_slip", bench.grains().velocities[i].yz().norm() / 0.2);
+                worst(record, "U3.test_7_no_slip", test.grains().velocities[i].yz().norm() / 0.2);
             }
             if spin > SLIDES {
                 encounter.spins = [Vec3::z() * spin; 2];
-                let (bench, _) = encounter.meet(scene.steps_per_contact, record);
+                let (test, _) = encounter.meet(scene.steps_per_contact, record);
                 for i in 0..2 {
                     worst(
                         record,
                         "U3.test_7_slip",
-                        (spin - bench.grains().angular_velocities[i].z) / 3.0 - 1.0,
+                        (spin - test.grains().angular_velocities[i].z) / 3.0 - 1.0,
                     );
-                    let sideways = bench.grains().velocities[i].y.abs();
+                    let sideways = test.grains().velocities[i].y.abs();
                     worst(record, "U3.test_7_slip", sideways / 0.12 - 1.0);
                 }
             }
@@ -240,7 +242,7 @@ fn test_7(scene: &Scene, record: &mut Record) {
 }
 
 /// A spinning sphere of 100 mm hits one five times as large and a thousand times as dense, at rest.
-fn test_8(scene: &Scene, record: &mut Record) {
+fn test_8(scene: &LawsScene, record: &mut Record) {
     for name in ["aluminium_alloy", "nylon"] {
         let material = scene.material(name);
         for spin in [8.0, 22.9] {
@@ -250,8 +252,8 @@ fn test_8(scene: &Scene, record: &mut Record) {
             encounter.speeds = [0.2, 0.0];
             encounter.spins = [Vec3::z() * spin, Vec3::zeros()];
             encounter.surface.dissipation_time = dissipation_time(&encounter.collision(), 0.5);
-            let (bench, _) = encounter.meet(scene.steps_per_contact, record);
-            let grains = bench.grains();
+            let (test, _) = encounter.meet(scene.steps_per_contact, record);
+            let grains = test.grains();
             worst(record, "U3.test_8", (spin - grains.angular_velocities[0].z) / 3.0 - 1.0);
             worst(record, "U3.test_8", grains.velocities[0].y.abs() / 0.12 - 1.0);
         }
@@ -262,19 +264,11 @@ fn dissipation_time(collision: &Collision, restitution: Real) -> Real {
     collision.dissipation_time_for(restitution)
 }
 
-impl Scene {
-    /// A material of the benchmarks.
-    fn material(&self, name: &str) -> Material {
-        let place = super::scene::MATERIALS.iter().position(|it| *it == name);
-        self.chung_ooi[place.expect("the benchmarks name materials of the list")]
-    }
-}
-
 const HERTZ: &str = "Hertz, with the benchmark's numbers (Chung & Ooi 2011)";
 const SLIDING: &str = "rigid-body impact: v_t' = μ (1 + e) v_n = 0.12 m/s, ω − ω' = 3.0 rad/s";
 const STEP: &str = "0.5 %: time step, and the last digits of the benchmark";
 
-const ROWS: &[Line] = &[
+const ROWS: &[RowSpec] = &[
     (
         "U3.test_1",
         "largest relative error of overlap, force and duration: two elastic spheres",
@@ -291,63 +285,69 @@ const ROWS: &[Line] = &[
     ),
     (
         "U3.test_3",
-        "largest error of v'/v for wanted restitutions of 0.2 to 0.98",
-        "the wanted restitution, with the dissipation time that has it by theory",
+        "largest error of v'/v for prescribed restitutions from 0.2 to 0.98",
+        "the prescribed restitution, with the dissipation time that gives it in theory",
         Expected::at_most(1e-2),
-        "0.01: time step at strong damping, and the theory's rational form, which is known to be right          up to v* = 1.2, e ≥ 0.4. The 0.001 asked for holds for laws with a constant restitution; this          law has none",
+        "0.01: time step at strong damping, and the rational form of the theory, which is \
+        accurate up to v* = 1.2, e ≥ 0.4. The tolerance 0.001 suits laws with a constant \
+        restitution, which this law does not have",
     ),
     (
         "U3.test_4",
         "largest relative error of e_t over angles, aluminium oxide",
         "independent integration of a secant spring of 2/3 · 8 G* √(R* ξ), e = 0.98",
         Expected::at_most(1e-2),
-        "1 %: time step, three digits, another damping law with the same e. The curve that circulates          for this test belongs to a spring without the 2/3 and is no oracle below 25°",
+        "1 %: time step, three digits, another damping law with the same e. The commonly quoted \
+        curve for this test belongs to a spring without the factor 2/3 and is no oracle below 25°",
     ),
     (
         "U3.test_4_micro_slip",
-        "largest relative distance of e_t from the exact solution with micro-slip, aluminium oxide",
+        "largest relative deviation of e_t from the exact solution with micro-slip, aluminium \
+        oxide",
         "method of dimensionality reduction, e = 1",
         Expected::at_most(0.12),
-        "12 %: the single spring; it is 10 % below the exact solution at 10°, and would be 29 % above          it without the factor 2/3",
+        "12 %: the single spring; it is 10 % below the exact solution at 10°, and would be 29 % \
+        above it without the factor 2/3",
     ),
     (
         "U3.test_4_sliding",
-        "largest relative error of e_t where it slides throughout, both materials",
+        "largest relative error of e_t where the contact slides throughout, both materials",
         "e_t = 1 − μ (1 + e)/tan θ for tan θ ≥ 7/2 μ (1 + e)",
         Expected::at_most(1e-2),
         "1 %: time step and restitution",
     ),
     (
         "U3.test_5_steel",
-        "largest relative error of R ω'/(μ v_n) where it slides throughout, steel",
+        "largest relative error of R ω'/(μ v_n) where the contact slides throughout, steel",
         "rigid-body impact: −5/2 (1 + e) = −5",
         Expected::at_most(1e-2),
-        "1 %: the lever is R − ξ/2, with ξ/R up to 0.7 %",
+        "1 %: the lever arm is R − ξ/2, with ξ/R up to 0.7 %",
     ),
     (
         "U3.test_5_polyethylene",
-        "largest relative error of R ω'/(μ v_n) where it slides throughout, polyethylene",
+        "largest relative error of R ω'/(μ v_n) where the contact slides throughout, polyethylene",
         "rigid-body impact: −5/2 (1 + e) = −5",
         Expected::at_most(1.5e-2),
-        "1.5 %: the lever is R − ξ/2, and ξ/R reaches 2.7 % in this soft sphere",
+        "1.5 %: the lever arm is R − ξ/2, and ξ/R reaches 2.7 % in this soft sphere",
     ),
     (
         "U3.test_6",
-        "largest relative error of v_t' and of the lost spin where it slides throughout",
+        "largest relative error of v_t' and of the lost spin where the contact slides throughout",
         SLIDING,
         Expected::at_most(1e-2),
         "1 %: time step at a restitution of 0.5",
     ),
     (
         "U3.test_7_no_slip",
-        "largest relative change of spins and sideways velocity of spheres that spin without slip",
-        "nothing may change",
+        "largest relative change of spins and lateral velocity of spheres that spin without slip",
+        "nothing changes",
         Expected::at_most(1e-9),
         "rounding over the steps of a collision",
     ),
     (
         "U3.test_7_slip",
-        "largest relative error of sideways velocity and lost spin of spheres that spin alike",
+        "largest relative error of lateral velocity and lost spin of spheres that spin in the \
+        same direction",
         SLIDING,
         Expected::at_most(1e-2),
         "1 %: time step at a restitution of 0.5",
@@ -357,47 +357,29 @@ const ROWS: &[Line] = &[
         "largest relative error of v_t' and of the lost spin on a large, dense sphere",
         SLIDING,
         Expected::at_most(1.5e-2),
-        "1.5 %: time step; nylon overlaps by 0.2 % of R, and the large sphere gives way by 1/125000",
+        "1.5 %: time step; nylon overlaps by 0.2 % of R, and the large sphere recoils by 1/125000",
     ),
 ];
 
 fn plot(record: &Record) -> Plot {
-    let column = |name: &str| record.column(name).unwrap_or(&[]);
-    let over_angle = |name: &str, kind, label: &str| Series {
-        label: label.to_owned(),
-        kind,
-        points: column("test_4_angle").iter().zip(column(name)).map(|(&x, &y)| [x, y]).collect(),
-        deviations: Vec::new(),
-    };
-    Plot {
-        title: "Chung & Ooi (2011), test 4: aluminium oxide on a plane".to_owned(),
-        source_says: "the curve that circulates falls from 0.948 at 5° to 0.616 at 20° and rises to 1;                       below 25° it belongs to a law without the factor 2/3"
-            .to_owned(),
-        x_label: "angle from the normal [deg]".to_owned(),
-        y_label: "tangential restitution e_t [-]".to_owned(),
-        log_x: false,
-        log_y: false,
-        series: vec![
-            over_angle("test_4_e_t", Kind::Points, "measured"),
-            over_angle("test_4_e_t_micro_slip", Kind::Analytic, "exact, with micro-slip"),
-            Series {
-                label: "independent integration of the law".to_owned(),
-                kind: Kind::Source,
-                points: TEST_4.to_vec(),
-                deviations: Vec::new(),
-            },
-            Series {
-                label: "circulating curve".to_owned(),
-                kind: Kind::Source,
-                points: CIRCULATING.to_vec(),
-                deviations: Vec::new(),
-            },
+    let exact = record.points("test_4_angle", "test_4_e_t_micro_slip");
+    let law = "independent integration of the law";
+    Plot::new(
+        "Chung & Ooi (2011), test 4: aluminium oxide on a plane",
+        "the commonly quoted curve falls from 0.948 at 5° to 0.616 at 20° and rises to 1; below \
+        25° it belongs to a law without the factor 2/3",
+        ["angle from the normal [deg]", "tangential restitution e_t [-]"],
+        vec![
+            Series::new("measured", Kind::Points, record.points("test_4_angle", "test_4_e_t")),
+            Series::new("exact solution with micro-slip", Kind::Analytic, exact),
+            Series::new(law, Kind::Source, TEST_4.to_vec()),
+            Series::new("commonly quoted curve", Kind::Source, COMMONLY_QUOTED.to_vec()),
         ],
-    }
+    )
 }
 
-/// Test 4 as the re-implementations quote it.
-const CIRCULATING: [[Real; 2]; 9] = [
+/// Test 4 as re-implementations commonly quote it.
+const COMMONLY_QUOTED: [[Real; 2]; 9] = [
     [5.0, 0.948],
     [10.0, 0.687],
     [15.0, 0.624],

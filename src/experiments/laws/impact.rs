@@ -2,16 +2,15 @@
 //! viscoelastic law over speed and modulus (Götz 2024, eqs. 4–6).
 
 use super::{
-    Law, Line,
+    Law, RowSpec,
     build::{Encounter, elastic},
-    judge, push,
-    scene::Scene,
-    worst,
+    measure::{push, worst},
+    scene::LawsScene,
 };
 use crate::{
     base::{Real, real::real},
     experiments::{
-        findings::{Curve, Expected, Findings, Kind, Plot, Series},
+        findings::{Expected, Kind, Plot, Series},
         record::Record,
     },
     physics::law::Surface,
@@ -38,11 +37,11 @@ impl Law for Impact {
         "impact"
     }
 
-    fn n_points(&self, scene: &Scene) -> usize {
+    fn n_points(&self, scene: &LawsScene) -> usize {
         3 * scene.restitution.n_speeds + TABLE.len() + 2
     }
 
-    fn measure(&self, scene: &Scene, point: usize, record: &mut Record) {
+    fn measure(&self, scene: &LawsScene, point: usize, record: &mut Record) {
         let n_swept = 3 * scene.restitution.n_speeds;
         if point < n_swept {
             sweep(scene, point, record);
@@ -60,33 +59,38 @@ impl Law for Impact {
         }
     }
 
-    fn evaluate(&self, scene: &Scene, record: &Record, findings: &mut Findings) {
-        judge(ROWS, &compare_sweep(scene, record), findings);
-        let names = ["modulus", "speed", "restitution", "restitution_theory"];
-        let columns = record.columns.iter().filter(|it| names.contains(&it.name.as_str()));
-        findings.curves.push(Curve {
-            name: "laws_restitution".to_owned(),
-            columns: columns.cloned().collect(),
-        });
-        findings.plots.push(plot(scene, record));
+    fn complete(&self, scene: &LawsScene, record: &mut Record) {
+        compare_sweep(scene, record);
+    }
+
+    fn rows(&self) -> &'static [RowSpec] {
+        ROWS
+    }
+
+    fn table(&self) -> Option<&'static str> {
+        Some("laws_restitution")
+    }
+
+    fn plot(&self, scene: &LawsScene, record: &Record) -> Option<Plot> {
+        Some(plot(scene, record))
     }
 }
 
-fn surface(scene: &Scene, dissipation_time: Real) -> Surface {
+fn surface(scene: &LawsScene, dissipation_time: Real) -> Surface {
     Surface { friction: 0.0, dissipation_time, ..scene.grain.surface }
 }
 
-fn restitution(scene: &Scene, set: [Real; 4], record: &mut Record) -> Real {
+fn restitution(scene: &LawsScene, set: [Real; 4], record: &mut Record) -> Real {
     let [modulus, radius, time, speed] = set;
     let material = Material { youngs_modulus: modulus, ..scene.grain.material };
     let encounter = Encounter::equal(radius, material, surface(scene, time), speed);
-    let (bench, met) = encounter.meet(scene.steps_per_contact, record);
-    worst(record, "C1.repulsive", met.force_min.min(0.0));
-    encounter.restitution(&bench)
+    let (test, extremes) = encounter.meet(scene.steps_per_contact, record);
+    worst(record, "C1.repulsive", extremes.force_min.min(0.0));
+    encounter.restitution(&test)
 }
 
 /// One modulus and one speed.
-fn sweep(scene: &Scene, point: usize, record: &mut Record) {
+fn sweep(scene: &LawsScene, point: usize, record: &mut Record) {
     let swept = &scene.restitution;
     let (m, s) = (point / swept.n_speeds, point % swept.n_speeds);
     let share = real(s) / real(swept.n_speeds - 1);
@@ -101,56 +105,53 @@ fn sweep(scene: &Scene, point: usize, record: &mut Record) {
     push(record, "restitution_theory", "1", encounter.collision().restitution(time));
 }
 
-fn elastic_impact(scene: &Scene, record: &mut Record) {
+fn elastic_impact(scene: &LawsScene, record: &mut Record) {
     let encounter = Encounter::equal(scene.grain.radius, scene.grain.material, elastic(0.0), 1.0);
     let oracle = encounter.collision();
-    let (bench, met) = encounter.meet(scene.steps_per_contact, record);
-    record.set("U1.overlap", met.overlap_max / oracle.overlap_max(), "1");
-    record.set("U1.force", met.force_max / oracle.force_max(), "1");
-    record.set("U1.duration", met.duration / oracle.duration(), "1");
-    record.set("U1.restitution", encounter.restitution(&bench), "1");
+    let (test, extremes) = encounter.meet(scene.steps_per_contact, record);
+    record.set("U1.overlap", extremes.overlap_max / oracle.overlap_max(), "1");
+    record.set("U1.force", extremes.force_max / oracle.force_max(), "1");
+    record.set("U1.duration", extremes.duration / oracle.duration(), "1");
+    record.set("U1.restitution", encounter.restitution(&test), "1");
 }
 
-/// How far the swept restitutions are from theory, and whether they fall with speed and modulus.
-fn compare_sweep(scene: &Scene, record: &Record) -> Record {
-    let mut found = record.clone();
-    let column = |name: &str| record.column(name).unwrap_or(&[]);
-    let (measured, theory) = (column("restitution"), column("restitution_theory"));
-    for (a, b) in measured.iter().zip(theory) {
-        worst(&mut found, "U2.pade", a - b);
+/// Compares the swept restitutions with theory, and checks that they fall with speed and modulus.
+fn compare_sweep(scene: &LawsScene, record: &mut Record) {
+    for [measured, theory] in record.points("restitution", "restitution_theory") {
+        worst(record, "U2.pade", measured - theory);
     }
+    let measured = record.column("restitution").unwrap_or_default();
     let n = scene.restitution.n_speeds;
     if measured.len() == 3 * n {
         let rises = |less: usize, more: usize| measured[more] >= measured[less];
         let over_speed = (0..3 * n).filter(|k| k % n != 0 && rises(k - 1, *k)).count();
         let over_modulus = (n..3 * n).filter(|&k| rises(k - n, k)).count();
-        found.set("C1.falls_with_speed", real(over_speed), "1");
-        found.set("C1.falls_with_modulus", real(over_modulus), "1");
+        record.set("C1.falls_with_speed", real(over_speed), "1");
+        record.set("C1.falls_with_modulus", real(over_modulus), "1");
     }
-    found
 }
 
 const HERTZ: &str = "Hertz: (5 m v²/4k)^(2/5), k ξ^(3/2), 2.943275 ξ/v; Götz (2024) eq. 4";
 const STEP: &str = "0.5 %: time step; at 500 steps per contact the duration is known to 0.2 %";
 
-const ROWS: &[Line] = &[
+const ROWS: &[RowSpec] = &[
     (
         "U1.overlap",
-        "largest overlap of an elastic head-on impact, over Hertz",
+        "largest overlap of an elastic head-on impact divided by that of Hertz",
         HERTZ,
         Expected::within(1.0, 5e-3),
         STEP,
     ),
     (
         "U1.force",
-        "largest force of an elastic head-on impact, over Hertz",
+        "largest force of an elastic head-on impact divided by that of Hertz",
         HERTZ,
         Expected::within(1.0, 5e-3),
         STEP,
     ),
     (
         "U1.duration",
-        "duration of an elastic head-on impact, over Hertz",
+        "duration of an elastic head-on impact divided by that of Hertz",
         HERTZ,
         Expected::within(1.0, 5e-3),
         STEP,
@@ -164,14 +165,14 @@ const ROWS: &[Line] = &[
     ),
     (
         "U2.pade",
-        "largest distance of the restitution from its theory, over speeds and moduli",
+        "largest deviation of the restitution from theory over all speeds and moduli",
         "rational form of Müller & Pöschel (2011) for the law with F_n ≥ 0; Götz (2024) eq. 6",
         Expected::at_most(2e-3),
-        "2e-3: time step, first order in the damping; the form itself is right to 2e-4",
+        "2e-3: time step, first order in the damping; the form itself is accurate to 2e-4",
     ),
     (
         "U2.table",
-        "largest distance of the restitution from eight integrated collisions",
+        "largest deviation of the restitution from eight integrated collisions",
         "Runge–Kutta integration of the law, ν = 0.245, 2000 kg/m³",
         Expected::at_most(2e-3),
         "2e-3: time step of 500 steps per contact",
@@ -179,35 +180,34 @@ const ROWS: &[Line] = &[
     (
         "C1.beam_grain_restitution",
         "restitution of the largest grain of the beam at 2 m/s",
-        "Götz & Pöschel (2023), section 3.1: 0.875; only with A in microseconds",
+        "Götz & Pöschel (2023), section 3.1: 0.875, which requires A in microseconds",
         Expected::within(0.875, 0.2e-2 * 0.875),
         "0.2 %: the last digit is 0.06 %, the time step 0.1 %",
     ),
     (
         "C1.falls_with_speed",
-        "steps of speed at which the restitution does not fall",
+        "number of steps in speed at which the restitution does not fall",
         "viscoelastic law, Götz (2024) chapter 2",
         Expected::at_most(0.0),
-        "counted",
+        "a count",
     ),
     (
         "C1.falls_with_modulus",
-        "steps of modulus at which the restitution does not fall",
+        "number of steps in modulus at which the restitution does not fall",
         "viscoelastic law, Götz (2024) chapter 2",
         Expected::at_most(0.0),
-        "counted",
+        "a count",
     ),
     (
         "C1.repulsive",
         "largest attractive normal force [N] in all collisions",
         "Götz (2024) eq. 6: F_n is at least zero",
         Expected::at_most(0.0),
-        "exact: the law takes the larger of zero and the sum",
+        "exact: the law takes the maximum of zero and the sum",
     ),
 ];
 
-fn plot(scene: &Scene, record: &Record) -> Plot {
-    let column = |name: &str| record.column(name).unwrap_or(&[]);
+fn plot(scene: &LawsScene, record: &Record) -> Plot {
     let n = scene.restitution.n_speeds;
     let mut series = Vec::new();
     for (m, modulus) in scene.restitution.moduli.iter().enumerate() {
@@ -215,24 +215,16 @@ fn plot(scene: &Scene, record: &Record) -> Plot {
             ("restitution", Kind::Points, "measured"),
             ("restitution_theory", Kind::Analytic, "theory"),
         ] {
-            let values = column("speed").iter().zip(column(name));
-            series.push(Series {
-                label: format!("{label}, {} MPa", modulus / 1e6),
-                kind,
-                points: values.skip(m * n).take(n).map(|(&x, &y)| [x, y]).collect(),
-                deviations: Vec::new(),
-            });
+            let points = record.points("speed", name).into_iter().skip(m * n).take(n).collect();
+            series.push(Series::new(&format!("{label}, {} MPa", modulus / 1e6), kind, points));
         }
     }
-    Plot {
-        title: "Restitution over closing speed".to_owned(),
-        source_says: "Götz (2024), chapter 2: falls with speed and modulus; 0.875 for the beam's \
-                      grain at 2 m/s (Götz & Pöschel 2023)"
-            .to_owned(),
-        x_label: "closing speed [m/s]".to_owned(),
-        y_label: "coefficient of restitution [-]".to_owned(),
-        log_x: true,
-        log_y: false,
+    Plot::new(
+        "Restitution over closing speed",
+        "Götz (2024), chapter 2: falls with speed and modulus; 0.875 for the beam's grain at 2 m/s \
+         (Götz & Pöschel 2023)",
+        ["closing speed [m/s]", "coefficient of restitution [-]"],
         series,
-    }
+    )
+    .with_logs([true, false])
 }

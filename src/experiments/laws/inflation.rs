@@ -1,18 +1,22 @@
-//! The sheet under air: Laplace's law for sphere, cylinder and taut disc, no resultant on a closed
-//! surface, and the work of the pressure (Götz 2024, eqs. 30, 31).
+//! The membrane under pressure: Laplace's law for sphere, cylinder and taut disk, zero resultant on
+//! a closed surface, and the work of the pressure (Götz 2024, eqs. 30, 31).
 //!
 //! ```text
 //! sphere    ΔR/R = ε,  ε = s (1 + ε)²,   s = p R (1 − ν)/(2 E d)
 //! cylinder  ε_θ = p R/(E d) (1 − ν/2),  ε_z = p R/(E d) (1/2 − ν)
-//! disc      w = p a²/(4 T),             T = √3 k ε of edges stretched by ε
+//! disk      w = p a²/(4 T),             T = √3 k ε of edges stretched by ε
 //! ```
 //!
-//! The sphere's factor (1 + ε)² is Laplace at the present radius, with springs that are linear in it:
-//! the last 0.7 % at a strain of 0.36 %.
+//! The factor (1 + ε)² of the sphere is Laplace's law at the current radius, with springs that are
+//! linear in it: the last 0.7 % at a strain of 0.36 %.
 
 use std::collections::BTreeSet;
 
-use super::{Law, Line, judge, push, scene::Scene, worst};
+use super::{
+    Law, RowSpec,
+    measure::{push, worst},
+    scene::LawsScene,
+};
 use crate::{
     base::{
         Real, Vec3,
@@ -20,7 +24,7 @@ use crate::{
         real::real,
     },
     experiments::{
-        findings::{Curve, Expected, Findings, Kind, Plot, Series},
+        findings::{Expected, Kind, Plot, Series},
         record::Record,
     },
     physics::membrane::{
@@ -29,11 +33,11 @@ use crate::{
     },
 };
 
-/// Force on a vertex over the air's load on it that counts as none.
+/// Force on a vertex, relative to the air's load on it, that counts as zero.
 const REST: Real = 1e-4;
-/// Substeps between two looks at the kinetic energy.
+/// Substeps between two measurements of the kinetic energy.
 const STOP_EVERY: usize = 20;
-/// Substeps after which a sheet that still moves is taken as it is; the scene's take some thousands.
+/// Largest number of substeps; the membranes of the scene need some thousands.
 const N_STEPS_MAX: usize = 100_000;
 
 pub(super) struct Inflation;
@@ -43,42 +47,46 @@ impl Law for Inflation {
         "inflation"
     }
 
-    fn n_points(&self, scene: &Scene) -> usize {
+    fn n_points(&self, scene: &LawsScene) -> usize {
         scene.laplace.n_pressures + 3
     }
 
-    fn measure(&self, scene: &Scene, point: usize, record: &mut Record) {
+    fn measure(&self, scene: &LawsScene, point: usize, record: &mut Record) {
         let n = scene.laplace.n_pressures;
         if point < n {
             sphere(scene, real(point + 1) / real(n), record);
         } else if point == n {
             cylinder(scene, record);
         } else if point == n + 1 {
-            disc(scene, record);
+            disk(scene, record);
         } else {
             closed_surface(scene, record);
         }
     }
 
-    fn evaluate(&self, _: &Scene, record: &Record, findings: &mut Findings) {
-        judge(ROWS, record, findings);
-        findings
-            .curves
-            .push(Curve { name: "laws_laplace".to_owned(), columns: record.columns.clone() });
-        findings.plots.push(plot(record));
+    fn rows(&self) -> &'static [RowSpec] {
+        ROWS
+    }
+
+    fn table(&self) -> Option<&'static str> {
+        Some("laws_laplace")
+    }
+
+    fn plot(&self, _: &LawsScene, record: &Record) -> Option<Plot> {
+        Some(plot(record))
     }
 }
 
-/// The scene's sheet without bending, well damped.
-fn bag(scene: &Scene) -> MembraneMaterial {
+/// The scene's membrane without bending, well damped.
+fn stretch_only(scene: &LawsScene) -> MembraneMaterial {
     let sheet = scene.membrane.sheet;
     MembraneMaterial { bending_stiffness: 0.0, bending_damping: 0.0, spring_damping: 0.5, ..sheet }
 }
 
 /// Lets the free vertices come to rest under `pressure` (Pa) and the `pull` on each vertex (N).
 ///
-/// Kinetic damping (Cundall 1976): all are stopped behind each peak of the kinetic energy, until what
-/// is left of the forces counts for nothing against the air's.
+/// Kinetic damping (Cundall 1976): all vertices are stopped after each peak of the kinetic energy,
+/// until the remaining forces are negligible compared with the air's.
 fn settle(
     model: &MembraneModel,
     state: &mut MembraneState,
@@ -104,7 +112,8 @@ fn settle(
         if unbalanced < REST * load {
             return;
         }
-        // Looked at now and then: quick modes have their own peaks, which are not those of slow ones.
+        // Not in every substep: fast modes have peaks of their own, which differ from those of slow
+        // modes.
         if step % STOP_EVERY == 0 {
             if energy < last {
                 state.velocities.fill(Vec3::zeros());
@@ -115,10 +124,10 @@ fn settle(
     }
 }
 
-fn sphere(scene: &Scene, share: Real, record: &mut Record) {
+fn sphere(scene: &LawsScene, share: Real, record: &mut Record) {
     let radius = scene.membrane.radius;
     let mesh = Mesh::icosphere(radius, scene.laplace.frequency).expect("a frequency above zero");
-    let model = MembraneModel::new(mesh, bag(scene));
+    let model = MembraneModel::new(mesh, stretch_only(scene));
     let mut state = MembraneState::at_rest(&model.mesh);
     let overpressure = share * scene.laplace.pressure_max;
     let pull = vec![Vec3::zeros(); model.masses.len()];
@@ -134,15 +143,15 @@ fn sphere(scene: &Scene, share: Real, record: &mut Record) {
     worst(record, "U13.sphere", found / oracle - 1.0);
 }
 
-/// A tube of rows of triangles; its ends carry what a lid would put on them.
-fn cylinder(scene: &Scene, record: &mut Record) {
+/// A tube of rows of triangles; its ends carry the load of a lid.
+fn cylinder(scene: &LawsScene, record: &mut Record) {
     let (radius, n_around, n_rows) = (scene.membrane.radius, 48, 24);
     let (model, height) = tube(scene, n_around, n_rows);
     let overpressure = scene.laplace.pressure_max;
     let lid = overpressure * std::f64::consts::PI * radius * radius / real(n_around);
-    let place = |row: usize| height * (real(row) - 0.5 * real(n_rows));
+    let row_height = |row: usize| height * (real(row) - 0.5 * real(n_rows));
     let in_row =
-        |v: usize, row: usize| (model.mesh.positions[v].z - place(row)).abs() < 0.5 * height;
+        |v: usize, row: usize| (model.mesh.positions[v].z - row_height(row)).abs() < 0.5 * height;
     let pull: Vec<Vec3> = (0..model.masses.len())
         .map(|v| {
             let end = f64::from(u8::from(in_row(v, n_rows))) - f64::from(u8::from(in_row(v, 0)));
@@ -165,32 +174,32 @@ fn cylinder(scene: &Scene, record: &mut Record) {
 }
 
 /// The tube, and the height of its rows (m).
-fn tube(scene: &Scene, n_around: usize, n_rows: usize) -> (MembraneModel, Real) {
+fn tube(scene: &LawsScene, n_around: usize, n_rows: usize) -> (MembraneModel, Real) {
     let radius = scene.membrane.radius;
     let half_turn = std::f64::consts::PI / real(n_around);
     let edge = 2.0 * radius * half_turn.sin();
-    // Rows are turned by half an edge: the height that makes all edges equal.
+    // Rows are shifted by half an edge; this height makes all edges equal.
     let sagitta = radius * (1.0 - half_turn.cos());
     let height = (0.75 * edge * edge - sagitta * sagitta).sqrt();
     let mesh = Mesh::tube(radius, height * real(n_rows), n_around, n_rows + 1);
-    (MembraneModel::new(mesh.expect("a tube is a surface"), bag(scene)), height)
+    (MembraneModel::new(mesh.expect("a tube is a surface"), stretch_only(scene)), height)
 }
 
-/// Rings of the disc's mesh.
+/// Rings of the disk's mesh.
 const N_RINGS: usize = 24;
-/// How far its edges are stretched over their length at rest.
+/// Stretch of its edges relative to their rest length.
 const TAUT: Real = 0.05;
-/// How far the middle is to rise over the disc's radius: the slope adds a thousandth to the stretch.
+/// Rise of the middle relative to the disk's radius; the slope adds a thousandth to the stretch.
 const RISE: Real = 0.01;
 
-/// A flat sheet that is stretched and held around a circle bulges as a paraboloid.
-fn disc(scene: &Scene, record: &mut Record) {
+/// A flat membrane that is stretched and held on a circle bulges as a paraboloid.
+fn disk(scene: &LawsScene, record: &mut Record) {
     let mesh = Mesh::hexagonal_patch(scene.membrane.edge, N_RINGS).expect("it has rings");
-    let mut model = MembraneModel::new(mesh, bag(scene));
+    let mut model = MembraneModel::new(mesh, stretch_only(scene));
     model.scale_rest_lengths(1.0 / (1.0 + TAUT));
     let inside = 0.75_f64.sqrt() * real(N_RINGS) * scene.membrane.edge;
     let is_free = |p: &Vec3| p.norm() < inside;
-    // The circle lies where the sheet is held: at the held vertices next to free ones.
+    // The radius of the circle is that of the held vertices next to free ones.
     let at = |v: u32| &model.mesh.positions[v as usize];
     let bordering = model.mesh.edges.iter().filter(|[a, b]| is_free(at(*a)) != is_free(at(*b)));
     let held: BTreeSet<u32> = bordering.map(|&[a, b]| if is_free(at(a)) { b } else { a }).collect();
@@ -206,11 +215,11 @@ fn disc(scene: &Scene, record: &mut Record) {
     record.set("U13.disc", middle / (RISE * radius), "1");
 }
 
-/// Force, torque and power of the air on a sphere with dents that is off the origin and moves.
-fn closed_surface(scene: &Scene, record: &mut Record) {
+/// Force, torque and power of the air on a dented, moving sphere away from the origin.
+fn closed_surface(scene: &LawsScene, record: &mut Record) {
     let radius = scene.membrane.radius;
     let mesh = Mesh::icosphere(radius, scene.laplace.frequency).expect("a frequency above zero");
-    let slack = MembraneMaterial { youngs_modulus: 0.0, ..bag(scene) };
+    let slack = MembraneMaterial { youngs_modulus: 0.0, ..stretch_only(scene) };
     let model = MembraneModel::new(mesh, slack);
     let mut random = Random::new(1, Stream::Position);
     let mut draw = |size: Real| Vec3::from_fn(|_, _| random.between(-size, size));
@@ -235,66 +244,67 @@ fn closed_surface(scene: &Scene, record: &mut Record) {
     };
     let rate = (volume_at(1e-5) - volume_at(-1e-5)) / 2e-5;
     record.set("C5.power", power / (gauge * rate), "1");
-    let inwards = loads
+    let inward = loads
         .iter()
         .zip(&state.positions)
         .all(|(f, r)| f.dot(&(r - Vec3::new(0.3, -0.2, 0.5))) < 0.0);
-    record.set("C5.sign", if inwards { 1.0 } else { 0.0 }, "1");
+    record.set("C5.sign", if inward { 1.0 } else { 0.0 }, "1");
 }
 
-const ROWS: &[Line] = &[
+const ROWS: &[RowSpec] = &[
     (
         "U13.sphere",
-        "largest relative error of ΔR/R of a sphere under inner pressure",
-        "Laplace at the present radius: ε = s (1 + ε)², s = p R (1 − ν)/(2 E d)",
+        "largest relative error of ΔR/R of a sphere under internal pressure",
+        "Laplace at the current radius: ε = s (1 + ε)², s = p R (1 − ν)/(2 E d)",
         Expected::at_most(0.01),
         "1 %: edges of an icosphere differ by 15 %",
     ),
     (
         "U13.cylinder_hoop",
-        "hoop strain of a closed cylinder over its theory",
+        "hoop strain of a closed cylinder divided by theory",
         "p R/(E d) (1 − ν/2)",
         Expected::within(1.0, 0.02),
-        "2 %: strains of 0.9 % at the highest pressure enlarge the radius that carries it",
+        "2 %: strains of 0.9 % at the highest pressure enlarge the radius",
     ),
     (
         "U13.cylinder_axial",
-        "axial strain of a closed cylinder over its theory",
+        "axial strain of a closed cylinder divided by theory",
         "p R/(E d) (1/2 − ν)",
         Expected::within(1.0, 0.05),
         "5 %: it is the small difference of two strains five times as large",
     ),
     (
         "U13.disc",
-        "rise of a taut disc in the middle over its theory",
+        "rise of a taut disk in the middle divided by theory",
         "p a²/(4 T)",
         Expected::within(1.0, 0.02),
-        "2 %: where a lattice is held around a circle is known to a third of an edge of 1/20 radius",
+        "2 %: the radius at which a lattice is held on a circle is known to a third of an edge of \
+        1/20 radius",
     ),
     (
         "C5.force",
-        "net force of the air on a closed surface, over the sum of all loads",
+        "net force of the air on a closed surface divided by the sum of all loads",
         "closed surface, uniform pressure; Götz (2024) eq. 30",
         Expected::at_most(1e-12),
         "rounding of some thousand terms",
     ),
     (
         "C5.torque",
-        "net torque of the air on a closed surface, over loads times radius",
+        "net torque of the air on a closed surface divided by loads times radius",
         "closed surface, uniform pressure; Götz (2024) eq. 31",
         Expected::at_most(1e-10),
-        "rounding of some thousand terms, with an arm of 15 radii",
+        "rounding of some thousand terms, with a lever arm of 15 radii",
     ),
     (
         "C5.power",
-        "power of the air's load over gauge pressure times rate of volume",
+        "power of the air's load divided by gauge pressure times rate of volume",
         "virtual work",
         Expected::within(1.0, 1e-6),
         "central difference of a cubic",
     ),
     (
         "C5.sign",
-        "1 if vacuum pushes every vertex inwards",
+        "1 if vacuum pushes every vertex inward",
         "gauge pressure is negative under vacuum",
         Expected::within(1.0, 0.0),
         "exact",
@@ -302,23 +312,14 @@ const ROWS: &[Line] = &[
 ];
 
 fn plot(record: &Record) -> Plot {
-    let column = |name: &str| record.column(name).unwrap_or(&[]);
-    let over_pressure = |name: &str, kind, label: &str| Series {
-        label: label.to_owned(),
-        kind,
-        points: column("pressure").iter().zip(column(name)).map(|(&x, &y)| [x, y]).collect(),
-        deviations: Vec::new(),
-    };
-    Plot {
-        title: "A sphere under inner pressure".to_owned(),
-        source_says: "no figure; Götz (2024) eqs. 14 and 30 make a sheet under pressure".to_owned(),
-        x_label: "gauge pressure [Pa]".to_owned(),
-        y_label: "strain ΔR/R [-]".to_owned(),
-        log_x: false,
-        log_y: false,
-        series: vec![
-            over_pressure("strain", Kind::Points, "measured"),
-            over_pressure("strain_laplace", Kind::Analytic, "Laplace"),
+    let laplace = record.points("pressure", "strain_laplace");
+    Plot::new(
+        "A sphere under internal pressure",
+        "no figure; Götz (2024) eqs. 14 and 30 give a membrane under pressure",
+        ["gauge pressure [Pa]", "strain ΔR/R [-]"],
+        vec![
+            Series::new("measured", Kind::Points, record.points("pressure", "strain")),
+            Series::new("Laplace", Kind::Analytic, laplace),
         ],
-    }
+    )
 }

@@ -1,17 +1,16 @@
-//! A grain that hits a rigid plane at an angle: the tangential law (Götz 2024, eqs. 7–11) against
-//! the exact solution with micro-slip and against rigid-body impact.
+//! A grain that hits a rigid plane at an angle: the tangential law (Götz 2024, eqs. 7–11) compared
+//! with the exact solution with micro-slip and with rigid-body impact.
 
 use super::{
-    Law, Line,
+    Law, RowSpec,
     build::{Flight, elastic},
-    judge, push,
-    scene::Scene,
-    worst,
+    measure::{push, worst},
+    scene::LawsScene,
 };
 use crate::{
     base::{Real, Vec3},
     experiments::{
-        findings::{Curve, Expected, Findings, Kind, Plot, Series},
+        findings::{Expected, Kind, Plot, Series},
         oracles::{impact::sliding_rebound, micro_slip},
         record::Record,
     },
@@ -20,8 +19,8 @@ use crate::{
 
 pub(super) struct Oblique;
 
-/// Angle (deg), e_t and R ω'/v of this law: integrated independently for ν = 0.245, μ = 0.25, A = 0,
-/// γ_t = 0.
+/// Angle (deg), e_t and R ω'/v of this law: integrated independently for ν = 0.245, μ = 0.25, A =
+/// 0, γ_t = 0.
 const TABLE: [[Real; 3]; 9] = [
     [5.0, 0.7474, 0.0550],
     [10.0, 0.7121, 0.1250],
@@ -39,44 +38,47 @@ impl Law for Oblique {
         "oblique"
     }
 
-    fn n_points(&self, scene: &Scene) -> usize {
+    fn n_points(&self, scene: &LawsScene) -> usize {
         n_angles(scene) + TABLE.len() + 1
     }
 
-    fn measure(&self, scene: &Scene, point: usize, record: &mut Record) {
+    fn measure(&self, scene: &LawsScene, point: usize, record: &mut Record) {
         let n = n_angles(scene);
         if point < n {
-            swept(scene, crate::base::real::real(point + 1), record);
+            sweep(scene, crate::base::real::real(point + 1), record);
         } else if let Some([degrees, e_t, spin]) = TABLE.get(point - n) {
-            let found = fly(scene, degrees.to_radians(), 0.0, record);
+            let found = impact(scene, degrees.to_radians(), 0.0, record);
             worst(record, "U4.table", found[0] / e_t - 1.0);
             worst(record, "U4.spin", (found[1] - spin) / 0.7564);
         } else {
             let angle = Real::to_radians(5.0);
-            let free = fly(scene, angle, 0.0, record)[0];
-            let damped = fly(scene, angle, scene.grain.surface.tangential_damping, record)[0];
+            let free = impact(scene, angle, 0.0, record)[0];
+            let damped = impact(scene, angle, scene.grain.surface.tangential_damping, record)[0];
             let from_rolling = |e_t: Real| (e_t - 5.0 / 7.0).abs();
             record.set("U4.damped", from_rolling(damped) / from_rolling(free), "1");
         }
     }
 
-    fn evaluate(&self, scene: &Scene, record: &Record, findings: &mut Findings) {
-        judge(ROWS, record, findings);
-        findings.curves.push(Curve {
-            name: "laws_oblique_impact".to_owned(),
-            columns: record.columns.clone(),
-        });
-        findings.plots.push(plot(scene, record));
+    fn rows(&self) -> &'static [RowSpec] {
+        ROWS
+    }
+
+    fn table(&self) -> Option<&'static str> {
+        Some("laws_oblique_impact")
+    }
+
+    fn plot(&self, scene: &LawsScene, record: &Record) -> Option<Plot> {
+        Some(plot(scene, record))
     }
 }
 
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 7 and 1500")]
-fn n_angles(scene: &Scene) -> usize {
+fn n_angles(scene: &LawsScene) -> usize {
     (Real::to_radians(89.9) / scene.oblique.angle_step) as usize
 }
 
-/// e_t, R ω'/v and the share of the energy that is left.
-fn fly(scene: &Scene, angle: Real, damping: Real, record: &mut Record) -> [Real; 3] {
+/// e_t, R ω'/v and the remaining share of the energy.
+fn impact(scene: &LawsScene, angle: Real, damping: Real, record: &mut Record) -> [Real; 3] {
     let (grain, speed) = (&scene.grain, scene.oblique.speed);
     let mut surface = elastic(grain.surface.friction);
     surface.tangential_damping = damping;
@@ -87,18 +89,18 @@ fn fly(scene: &Scene, angle: Real, damping: Real, record: &mut Record) -> [Real;
         velocity: Vec3::new(angle.sin(), 0.0, -angle.cos()) * speed,
         spin: Vec3::zeros(),
     };
-    let (bench, _) = flight.land(scene.steps_per_contact, record);
-    let before = 0.5 * bench.grains().masses[0] * speed * speed;
+    let (test, _) = flight.land(scene.steps_per_contact, record);
+    let before = 0.5 * test.grains().masses[0] * speed * speed;
     [
-        bench.grains().velocities[0].x / flight.velocity.x,
-        bench.grains().angular_velocities[0].y * grain.radius / speed,
-        bench.kinetic_energy() / before,
+        test.grains().velocities[0].x / flight.velocity.x,
+        test.grains().angular_velocities[0].y * grain.radius / speed,
+        test.kinetic_energy() / before,
     ]
 }
 
-fn swept(scene: &Scene, step: Real, record: &mut Record) {
+fn sweep(scene: &LawsScene, step: Real, record: &mut Record) {
     let angle = step * scene.oblique.angle_step;
-    let [e_t, spin, energy] = fly(scene, angle, 0.0, record);
+    let [e_t, spin, energy] = impact(scene, angle, 0.0, record);
     let ratio = micro_slip::stiffness_ratio(scene.grain.material.poisson_ratio);
     let exact = micro_slip::rebound(ratio, scene.grain.surface.friction, angle);
     push(record, "angle", "deg", angle.to_degrees());
@@ -113,87 +115,69 @@ fn swept(scene: &Scene, step: Real, record: &mut Record) {
     }
 }
 
-const ROWS: &[Line] = &[
+const ROWS: &[RowSpec] = &[
     (
         "U4.table",
-        "largest relative distance of e_t from nine integrated impacts, 5° to 80°",
+        "largest relative deviation of e_t from nine integrated impacts, 5° to 80°",
         "independent integration of Götz (2024) eqs. 7–11 with the factor 2/3 and k_t = 8 G* √(R* ξ)",
         Expected::at_most(0.01),
-        "1 %: time step, and the lever R − ξ/2 where the table has R",
+        "1 %: time step, and the lever arm R − ξ/2 where the table has R",
     ),
     (
         "U4.spin",
-        "largest distance of the spin from the same impacts, over the largest spin",
+        "largest deviation of the spin from the same impacts, divided by the largest spin",
         "independent integration of Götz (2024) eqs. 7–11",
         Expected::at_most(0.01),
-        "1 %: as for e_t; of the largest one, since the small ones are differences",
+        "1 %: as for e_t; relative to the largest spin, since small ones are differences",
     ),
     (
         "U4.sliding",
-        "largest relative distance of e_t from rigid-body impact, where it slides throughout",
+        "largest relative deviation of e_t from rigid-body impact where the contact slides \
+        throughout",
         "e_t = 1 − 2 μ/tan θ for tan θ ≥ 7 μ",
         Expected::at_most(0.01),
-        "1 %: overlap and lever; the friction force itself is exact",
+        "1 %: overlap and lever arm; the friction force itself is exact",
     ),
     (
         "U4.micro_slip",
-        "largest relative distance of e_t from the exact solution with micro-slip",
+        "largest relative deviation of e_t from the exact solution with micro-slip",
         "Hertz, Cattaneo, Mindlin by the method of dimensionality reduction",
         Expected::at_most(0.12),
-        "12 %: what one spring of 2/3 of Mindlin's stiffness leaves out; the independent integration \
-         of the law is 10 % off at 20°, where it is worst",
+        "12 %: the error of a single spring with 2/3 of Mindlin's stiffness; an independent \
+        integration of the law is off by 10 % at 20°, the worst angle",
     ),
     (
         "U4.damped",
-        "distance of e_t from 5/7 at 5° with tangential damping, over that without",
-        "damping takes the recoil of the spring: e_t moves towards rolling, 5/7",
+        "deviation of e_t from 5/7 at 5° with tangential damping, divided by that without",
+        "damping reduces the recoil of the spring: e_t approaches rolling, 5/7",
         Expected::at_most(1.0),
-        "below 1 is all that is known",
+        "only the bound 1 is known",
     ),
     (
         "U6.friction_takes_energy",
-        "largest energy after an elastic impact with friction, over that before",
+        "largest energy after an elastic impact with friction divided by that before",
         "conservation of energy",
         Expected::at_most(1.0 + 1e-3),
         "1e-3: time step of the elastic part",
     ),
 ];
 
-fn plot(scene: &Scene, record: &Record) -> Plot {
-    let column = |name: &str| record.column(name).unwrap_or(&[]);
-    let angles = column("angle");
-    let over_angle = |name: &str, kind, label: &str| Series {
-        label: label.to_owned(),
-        kind,
-        points: angles.iter().zip(column(name)).map(|(&x, &y)| [x, y]).collect(),
-        deviations: Vec::new(),
-    };
+fn plot(scene: &LawsScene, record: &Record) -> Plot {
     let friction = scene.grain.surface.friction;
-    let rigid = angles.iter().filter_map(|&angle| {
+    let rigid = record.column("angle").unwrap_or_default().iter().filter_map(|&angle| {
         Some([angle, sliding_rebound(friction, 1.0, angle.to_radians())?.tangential])
     });
-    Plot {
-        title: "Oblique impact on a plane".to_owned(),
-        source_says: "no figure; Götz (2024) eqs. 7–11 give the law".to_owned(),
-        x_label: "angle from the normal [deg]".to_owned(),
-        y_label: "tangential restitution e_t [-]".to_owned(),
-        log_x: false,
-        log_y: false,
-        series: vec![
-            over_angle("e_t", Kind::Points, "measured"),
-            over_angle("e_t_micro_slip", Kind::Analytic, "exact, with micro-slip"),
-            Series {
-                label: "rigid body that slides throughout".to_owned(),
-                kind: Kind::Analytic,
-                points: rigid.collect(),
-                deviations: Vec::new(),
-            },
-            Series {
-                label: "independent integration of the law".to_owned(),
-                kind: Kind::Source,
-                points: TABLE.iter().map(|row| [row[0], row[1]]).collect(),
-                deviations: Vec::new(),
-            },
+    let integrated = TABLE.iter().map(|row| [row[0], row[1]]).collect();
+    let exact = record.points("angle", "e_t_micro_slip");
+    Plot::new(
+        "Oblique impact on a plane",
+        "no figure; Götz (2024) eqs. 7–11 give the law",
+        ["angle from the normal [deg]", "tangential restitution e_t [-]"],
+        vec![
+            Series::new("measured", Kind::Points, record.points("angle", "e_t")),
+            Series::new("exact solution with micro-slip", Kind::Analytic, exact),
+            Series::new("rigid body that slides throughout", Kind::Analytic, rigid.collect()),
+            Series::new("independent integration of the law", Kind::Source, integrated),
         ],
-    }
+    )
 }

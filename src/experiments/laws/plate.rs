@@ -1,5 +1,5 @@
-//! The sheet bent: the lattice of hinges as an elastic plate, and strips that are clamped at one end
-//! (Götz 2024, eqs. 17–25).
+//! Bending of the membrane: the lattice of hinges as an elastic plate, and strips clamped at one
+//! end (Götz 2024, eqs. 17–25).
 //!
 //! ```text
 //! D = k_el/4,  ν_b = −1/3
@@ -8,17 +8,14 @@
 //! tip under force F: F L³/(3 E I);  ω_1 = 3.516 √(E I/(ρ d b)) / L²
 //! ```
 //!
-//! A strip is not clamped exactly at a row of vertices, and it has no hinges along its free edges. So
-//! E I comes from the difference between two lengths, and its growth with the width from the
+//! A strip is not clamped exactly at a row of vertices, and it has no hinges along its free edges.
+//! So E I comes from the difference between two lengths, and its growth with the width from the
 //! difference between two widths.
 
-use super::{Law, Line, judge, scene::Scene};
+use super::{Law, RowSpec, scene::LawsScene};
 use crate::{
     base::{Real, Vec3, real::real},
-    experiments::{
-        findings::{Expected, Findings},
-        record::Record,
-    },
+    experiments::{findings::Expected, record::Record},
     physics::membrane::{
         MembraneMaterial, MembraneModel, MembraneScratch, MembraneState, forces, mesh::Mesh,
     },
@@ -40,46 +37,50 @@ impl Law for Plate {
         "plate"
     }
 
-    fn n_points(&self, _: &Scene) -> usize {
+    fn n_points(&self, _: &LawsScene) -> usize {
         4
     }
 
-    fn measure(&self, scene: &Scene, point: usize, record: &mut Record) {
+    fn measure(&self, scene: &LawsScene, point: usize, record: &mut Record) {
         match point {
             0 => curvatures(scene, record),
             1 => {
-                let [thin, thick] = [8, 16].map(|b| bending_stiffness(scene, [64, 96], b));
-                record.set("U12.narrow_strip", (thick - thin) / (8.0 * edge_stiffness(scene)), "1");
+                let [narrow, wide] = [8, 16].map(|b| bending_stiffness(scene, [64, 96], b));
+                record.set(
+                    "U12.narrow_strip",
+                    (wide - narrow) / (8.0 * edge_stiffness(scene)),
+                    "1",
+                );
             }
             2 => {
-                let [thin, thick] = [32, 48].map(|b| bending_stiffness(scene, [8, 12], b));
-                record.set("U12.wide_strip", (thick - thin) / (16.0 * edge_stiffness(scene)), "1");
+                let [narrow, wide] = [32, 48].map(|b| bending_stiffness(scene, [8, 12], b));
+                record.set("U12.wide_strip", (wide - narrow) / (16.0 * edge_stiffness(scene)), "1");
             }
-            _ => ring(scene, record),
+            _ => natural_frequency(scene, record),
         }
     }
 
-    fn evaluate(&self, _: &Scene, record: &Record, findings: &mut Findings) {
-        judge(ROWS, record, findings);
+    fn rows(&self) -> &'static [RowSpec] {
+        ROWS
     }
 }
 
 /// D times the spacing of rows across a strip (N m²).
-fn edge_stiffness(scene: &Scene) -> Real {
+fn edge_stiffness(scene: &LawsScene) -> Real {
     let row = 0.75_f64.sqrt() * scene.membrane.edge;
     0.25 * scene.membrane.sheet.bending_stiffness * row
 }
 
-/// The scene's sheet without springs: bending alone.
-fn limp(scene: &Scene) -> MembraneMaterial {
+/// The scene's membrane without springs: bending alone.
+fn bending_only(scene: &LawsScene) -> MembraneMaterial {
     MembraneMaterial { youngs_modulus: 0.0, bending_damping: 0.0, ..scene.membrane.sheet }
 }
 
 /// Energy of a patch bent to a given curvature.
-fn curvatures(scene: &Scene, record: &mut Record) {
+fn curvatures(scene: &LawsScene, record: &mut Record) {
     let (edge, curvature) = (scene.membrane.edge, 1e-4);
     let mesh = Mesh::hexagonal_patch(edge, 12).expect("there are rings");
-    let model = MembraneModel::new(mesh, limp(scene));
+    let model = MembraneModel::new(mesh, bending_only(scene));
     let area = real(model.mesh.hinges.len()) * edge * edge * 0.75_f64.sqrt() / 3.0;
     let stiffness = 0.25 * scene.membrane.sheet.bending_stiffness;
     let mut scratch = MembraneScratch::new(&model);
@@ -97,7 +98,7 @@ fn curvatures(scene: &Scene, record: &mut Record) {
     record.set("U12.plate", worst, "1");
 }
 
-/// A strip in z = 0 along x, its first rows held: linear in small heights.
+/// A strip in z = 0 along x with its first rows held; linear for small heights.
 struct Strip {
     model: MembraneModel,
     scratch: MembraneScratch,
@@ -105,12 +106,13 @@ struct Strip {
     is_tip: Vec<bool>,
 }
 
-/// Heights at which forces are taken: small against the edge, large against rounding.
+/// Heights at which forces are evaluated, relative to the thickness: small compared with the edge,
+/// large compared with rounding.
 const SMALL: Real = 1e-6;
 
 impl Strip {
     /// `n_long` edges along x and `n_wide` rows across.
-    fn new(scene: &Scene, n_long: usize, n_wide: usize) -> Self {
+    fn new(scene: &LawsScene, n_long: usize, n_wide: usize) -> Self {
         let edge = scene.membrane.edge;
         let columns = n_long + 1;
         let mut positions = Vec::new();
@@ -140,7 +142,7 @@ impl Strip {
         let is_free = positions.iter().map(|p| p.x > 1.25 * edge).collect();
         let is_tip = positions.iter().map(|p| p.x > end).collect();
         let mesh = Mesh::new(positions, triangles).expect("a strip is a surface");
-        let model = MembraneModel::new(mesh, limp(scene));
+        let model = MembraneModel::new(mesh, bending_only(scene));
         Self { scratch: MembraneScratch::new(&model), model, is_free, is_tip }
     }
 
@@ -160,33 +162,33 @@ impl Strip {
         self.scratch.forces.iter().zip(&self.is_free).map(held).collect()
     }
 
-    /// Heights under upward `load` (N), by conjugate gradients.
+    /// Heights under an upward `load` (N), by conjugate gradients.
     fn deflection(&mut self, load: &[Real]) -> Vec<Real> {
         let dot = |a: &[Real], b: &[Real]| a.iter().zip(b).map(|(a, b)| a * b).sum::<Real>();
         let mut z = vec![0.0; load.len()];
-        let mut rest: Vec<Real> = load.to_vec();
-        let mut way = rest.clone();
-        let (first, mut square) = (dot(&rest, &rest), dot(&rest, &rest));
+        let mut residual: Vec<Real> = load.to_vec();
+        let mut direction = residual.clone();
+        let (first, mut square) = (dot(&residual, &residual), dot(&residual, &residual));
         for _ in 0..20 * load.len() {
             if square < 1e-18 * first {
                 break;
             }
-            let held = self.stiffness(&way);
-            let step = square / dot(&way, &held);
+            let held = self.stiffness(&direction);
+            let step = square / dot(&direction, &held);
             for i in 0..z.len() {
-                z[i] += step * way[i];
-                rest[i] -= step * held[i];
+                z[i] += step * direction[i];
+                residual[i] -= step * held[i];
             }
-            let next = dot(&rest, &rest);
-            for (way, rest) in way.iter_mut().zip(&rest) {
-                *way = rest + next / square * *way;
+            let next = dot(&residual, &residual);
+            for (direction, residual) in direction.iter_mut().zip(&residual) {
+                *direction = residual + next / square * *direction;
             }
             square = next;
         }
         z
     }
 
-    /// Mean height of the tip under a force of 1 N spread over it.
+    /// Mean height of the tip under a force of 1 N distributed over it.
     fn tip_under_unit_force(&mut self) -> Real {
         let n = real(self.is_tip.iter().filter(|&&it| it).count());
         let load: Vec<Real> =
@@ -196,16 +198,16 @@ impl Strip {
     }
 }
 
-/// E I (N m²) of a strip from its tips at two lengths: the cube root of F L³/(3 E I) grows by
-/// (F/(3 E I))^(1/3) per length, wherever the strip is clamped.
-fn bending_stiffness(scene: &Scene, lengths: [usize; 2], n_wide: usize) -> Real {
+/// E I (N m²) of a strip from the deflection of its tip at two lengths: the cube root of F L³/(3 E
+/// I) grows by (F/(3 E I))^(1/3) per length, independent of the clamped position.
+fn bending_stiffness(scene: &LawsScene, lengths: [usize; 2], n_wide: usize) -> Real {
     let [short, long] = lengths.map(|n| Strip::new(scene, n, n_wide).tip_under_unit_force().cbrt());
     let grown = real(lengths[1] - lengths[0]) * scene.membrane.edge;
     ((long - short) / grown).powi(-3) / 3.0
 }
 
-/// First natural frequency of a narrow strip, from its own stiffness and length as measured.
-fn ring(scene: &Scene, record: &mut Record) {
+/// First natural frequency of a narrow strip, from its measured stiffness and length.
+fn natural_frequency(scene: &LawsScene, record: &mut Record) {
     let (n_long, n_wide) = (64, 8);
     let mut strip = Strip::new(scene, n_long, n_wide);
     let masses = strip.model.masses.clone();
@@ -224,7 +226,7 @@ fn ring(scene: &Scene, record: &mut Record) {
         let largest = next.iter().fold(0.0, |a: Real, b| a.max(b.abs()));
         mode = next.iter().map(|z| z / largest).collect();
     }
-    // The length at which the tip of this strip bends as F L³/(3 E I) says.
+    // The effective length: that of F L³/(3 E I) for the measured deflection of the tip.
     let stiffness = bending_stiffness(scene, [n_long, n_long + 32], n_wide);
     let length = (3.0 * stiffness * strip.tip_under_unit_force()).cbrt();
     let per_length = masses.iter().sum::<Real>() / (real(n_long) * scene.membrane.edge);
@@ -232,7 +234,7 @@ fn ring(scene: &Scene, record: &mut Record) {
     record.set("U12.frequency", square.sqrt() / oracle, "1");
 }
 
-const ROWS: &[Line] = &[
+const ROWS: &[RowSpec] = &[
     (
         "U12.plate",
         "largest relative error of the bending energy: cylinders, sphere, saddles",
@@ -242,21 +244,21 @@ const ROWS: &[Line] = &[
     ),
     (
         "U12.narrow_strip",
-        "growth of E I with the width of a narrow clamped strip, over D",
+        "growth of E I with the width of a narrow clamped strip, divided by D",
         "beam with free edges: 1 − ν_b² = 8/9",
         Expected::within(8.0 / 9.0, 0.02 * 8.0 / 9.0),
-        "2 %: lengths of 64 and 96 edges at widths of 7 and 14 are not yet infinitely slender",
+        "2 %: lengths of 64 and 96 edges at widths of 7 and 14 are not infinitely slender",
     ),
     (
         "U12.wide_strip",
-        "growth of E I with the width of a wide clamped strip, over D",
-        "plate that cannot bend across: 1",
+        "growth of E I with the width of a wide clamped strip, divided by D",
+        "plate that cannot bend transversely: 1",
         Expected::within(1.0, 0.02),
-        "2 %: lengths of 8 and 12 edges; the free edges fall out of the difference",
+        "2 %: lengths of 8 and 12 edges; the free edges cancel in the difference",
     ),
     (
         "U12.frequency",
-        "first natural frequency of a clamped strip, over that of a beam of its stiffness",
+        "first natural frequency of a clamped strip divided by that of a beam with its stiffness",
         "Euler and Bernoulli: ω_1 = 3.516 √(E I/(ρ d b)) / L²",
         Expected::within(1.0, 0.01),
         "1 %: the length of a lattice strip is known to a fraction of an edge out of 64",

@@ -1,13 +1,10 @@
-//! The sheet in its plane: the lattice of springs as an elastic sheet, and a pair that rings down
-//! (Götz 2024, eqs. 12–16).
+//! The membrane in its plane: the lattice of springs as an elastic sheet, and the decay of an
+//! oscillation (Götz 2024, eqs. 12–16).
 
-use super::{Law, Line, judge, scene::Scene, worst};
+use super::{Law, RowSpec, measure::worst, scene::LawsScene};
 use crate::{
     base::{Mat3, Real, Vec3, real::real},
-    experiments::{
-        findings::{Expected, Findings},
-        record::Record,
-    },
+    experiments::{findings::Expected, record::Record},
     physics::membrane::{
         MembraneMaterial, MembraneModel, MembraneScratch, MembraneState, forces,
         mesh::Mesh,
@@ -20,7 +17,7 @@ pub(super) struct Stretching;
 
 /// Rings of the patches.
 const RINGS: [usize; 3] = [3, 6, 12];
-/// Directions of the pull (rad).
+/// Directions of the strain (rad).
 const DIRECTIONS: [Real; 5] = [0.0, 0.2, 0.5, 1.0, 1.4];
 const STRAIN: Real = 1e-6;
 
@@ -29,24 +26,24 @@ impl Law for Stretching {
         "stretching"
     }
 
-    fn n_points(&self, _: &Scene) -> usize {
+    fn n_points(&self, _: &LawsScene) -> usize {
         RINGS.len() + 1
     }
 
-    fn measure(&self, scene: &Scene, point: usize, record: &mut Record) {
+    fn measure(&self, scene: &LawsScene, point: usize, record: &mut Record) {
         match RINGS.get(point) {
             Some(&rings) => patch(scene, rings, record),
             None => ring_down(scene, record),
         }
     }
 
-    fn evaluate(&self, _: &Scene, record: &Record, findings: &mut Findings) {
-        judge(ROWS, record, findings);
+    fn rows(&self) -> &'static [RowSpec] {
+        ROWS
     }
 }
 
-/// A flat hexagon of the scene's sheet without bending.
-fn patch(scene: &Scene, rings: usize, record: &mut Record) {
+/// A flat hexagon of the scene's membrane without bending.
+fn patch(scene: &LawsScene, rings: usize, record: &mut Record) {
     let sheet =
         MembraneMaterial { bending_stiffness: 0.0, bending_damping: 0.0, ..scene.membrane.sheet };
     let mesh = Mesh::hexagonal_patch(scene.membrane.edge, rings).expect("there are rings");
@@ -85,8 +82,9 @@ fn stress(model: &MembraneModel, shape: &Mat3) -> Mat3 {
     -virial / pressure::area(&model.mesh, &model.mesh.positions)
 }
 
-/// Two vertices of the sheet, let go apart: the loss of amplitude in a period.
-fn ring_down(scene: &Scene, record: &mut Record) {
+/// Two vertices of the membrane released from a stretched state: the decay of amplitude in a
+/// period.
+fn ring_down(scene: &LawsScene, record: &mut Record) {
     let MembraneMaterial { youngs_modulus, thickness, density, .. } = scene.membrane.sheet;
     let (edge, gamma) = (scene.membrane.edge, 0.15);
     let mass = density * thickness * edge * edge * 0.75_f64.sqrt();
@@ -104,10 +102,10 @@ fn ring_down(scene: &Scene, record: &mut Record) {
     record.set("C2.ring_down", stretch / (0.01 * edge), "1");
 }
 
-const ROUNDING: &str = "1e-5: second order in a strain of 1e-6, rounding of lengths over it; three mesh \
-                        sizes, five directions";
+const ROUNDING: &str = "1e-5: second order in a strain of 1e-6, rounding of lengths relative to \
+                       it; three mesh sizes, five directions";
 
-const ROWS: &[Line] = &[
+const ROWS: &[RowSpec] = &[
     (
         "C2.modulus",
         "largest relative error of the modulus of a patch, over mesh sizes and directions",
@@ -131,7 +129,7 @@ const ROWS: &[Line] = &[
     ),
     (
         "U10.tension",
-        "largest relative error of the tension under equal stretch in all directions",
+        "largest relative error of the tension under equibiaxial stretch",
         "lattice: √3 k ε",
         Expected::at_most(1e-5),
         ROUNDING,

@@ -1,9 +1,9 @@
-//! The experiment `laws`: every row holds, and a case that was saved goes on with the same bits.
-#![expect(clippy::print_stderr, reason = "what was measured is shown with the result")]
+//! The experiment `laws`: every row passes, and a resumed case continues with the same bits.
+#![expect(clippy::print_stderr, reason = "measured values are shown with the result")]
 
 use super::super::{EXPERIMENTS, Plan, SceneText, Size, record::Record};
 
-/// The plan of the scene that comes with the program.
+/// The plan of the built-in scene.
 fn plan() -> Box<dyn Plan> {
     let laws = EXPERIMENTS.iter().find(|it| it.name() == "laws").unwrap();
     let (source, text) = laws.scene();
@@ -17,7 +17,7 @@ fn run(plan: &dyn Plan, case: &str) -> Record {
 }
 
 #[test]
-fn the_laws_are_those_of_the_books() {
+fn every_law_matches_its_closed_form() {
     let plan = plan();
     let mut records = Vec::new();
     for case in plan.cases() {
@@ -29,7 +29,7 @@ fn the_laws_are_those_of_the_books() {
         let verdict = if row.pass { "ok " } else { "RED" };
         eprintln!("{verdict} {}: {measured:.6e}, {oracle:.6e} ± {tolerance:.1e}", row.id);
     }
-    // Oracle and reason of each tolerance stand in the rows themselves.
+    // Oracle and reason of each tolerance are in the rows.
     let red: Vec<&str> =
         findings.rows.iter().filter(|row| !row.pass).map(|row| row.id.as_str()).collect();
     assert!(red.is_empty(), "{red:?}");
@@ -37,9 +37,9 @@ fn the_laws_are_those_of_the_books() {
 }
 
 #[test]
-fn a_case_that_was_saved_goes_on_with_the_same_bits() {
+fn a_resumed_case_continues_with_the_same_bits() {
     let plan = plan();
-    let whole = run(&*plan, "inflation");
+    let uninterrupted = run(&*plan, "inflation");
     let mut first = plan.start("inflation").unwrap();
     first.advance().unwrap();
     first.advance().unwrap();
@@ -47,7 +47,10 @@ fn a_case_that_was_saved_goes_on_with_the_same_bits() {
     let mut second = plan.start("inflation").unwrap();
     second.resume(&saved).unwrap();
     while !second.advance().unwrap().is_done {}
-    // Oracle: the run without a break, bit by bit.
-    assert_eq!(second.record(), whole);
-    assert!(plan.start("impact").unwrap().resume(&saved).is_err(), "a save of another case");
+    // Oracle: the uninterrupted run, bit by bit.
+    assert_eq!(second.record(), uninterrupted);
+    assert!(
+        plan.start("impact").unwrap().resume(&saved).is_err(),
+        "a saved run of another case is rejected"
+    );
 }

@@ -1,4 +1,4 @@
-//! Two bodies that collide: Hertz's elastic impact, restitution of the viscoelastic law, and
+//! Collision of two bodies: Hertz's elastic impact, restitution of the viscoelastic law, and
 //! oblique impacts that slide throughout.
 //!
 //! ```text
@@ -10,21 +10,21 @@
 //!
 //! slides throughout if tan θ ≥ 7/2 μ (1 + e):  e_t = 1 − μ (1 + e)/tan θ,  R ω' = 5/2 μ (1 + e) v_n
 //!
-//! ξ, T       overlap, duration of the impact                 (m), (s)
-//! E*, R*, m* effective modulus, radius, mass                 (Pa), (m), (kg)
-//! A          dissipation time                                (s)
-//! θ          angle of incidence from the normal              (rad)
+//! ξ, T       overlap, duration of the impact                 [m], [s]
+//! E*, R*, m* effective modulus, radius, mass                 [Pa], [m], [kg]
+//! A          dissipation time                                [s]
+//! θ          angle of incidence from the normal              [rad]
 //! e, e_t     restitution of the normal, of the tangential velocity of the centre
-//! ω'         spin after the impact of a body that had none   (rad/s)
+//! ω'         spin after the impact of a body that had none   [rad/s]
 //! ```
 //!
-//! Sources: Hertz (1881); Müller & Pöschel (2011) for the rational form with the end condition F ≥ 0
-//! (against an integration of the law it is right to 10⁻⁵ below v* = 0.5 and to 2·10⁻⁴ at 1.2);
+//! Sources: Hertz (1881); Müller & Pöschel (2011) for the rational form with the end condition F ≥
+//! 0 (against an integration of the law it is right to 10⁻⁵ below v* = 0.5 and to 2·10⁻⁴ at 1.2);
 //! rigid-body impact with Coulomb's friction for the last line.
 
 use crate::base::Real;
 
-/// A pair of bodies about to collide.
+/// Two bodies before a collision.
 #[derive(Clone, Copy, Debug)]
 pub struct Collision {
     /// Effective Young's modulus E* (Pa).
@@ -88,7 +88,7 @@ pub fn restitution(scaled_speed: Real) -> Real {
         / polynomial(&[1.0, 1.072_32, 1.727_65, 1.378_42, 1.194_49, 0.467_273, 0.235_585])
 }
 
-/// Of an impact: tangential restitution, and spin times radius over the speed of incidence.
+/// Result of an impact: tangential restitution, and spin times radius over the speed of incidence.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rebound {
     /// e_t.
@@ -110,7 +110,7 @@ pub fn sliding_rebound(friction: Real, normal_restitution: Real, angle: Real) ->
 mod tests {
     use super::*;
 
-    /// Equal grains of the sources: ν = 0.245, ρ = 2000 kg/m³.
+    /// Equal grains of the source: ν = 0.245, ρ = 2000 kg/m³.
     fn equal(modulus: Real, radius: Real, speed: Real) -> Collision {
         let mass = 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3) * 2000.0;
         let modulus = modulus / (2.0 * (1.0 - 0.245 * 0.245));
@@ -118,7 +118,7 @@ mod tests {
     }
 
     #[test]
-    fn the_rational_form_has_the_tabled_restitution() {
+    fn the_rational_form_gives_the_tabulated_restitution() {
         // Oracle: Runge–Kutta integration of the law. Tolerance: quoted error of the rational form,
         // 10⁻⁵ below v* = 0.5, and 2·10⁻⁴ at 1.2, with the last digit of the table.
         for (modulus, radius, a, speed, expected, tolerance) in [
@@ -136,8 +136,8 @@ mod tests {
 
     #[test]
     fn small_dissipation_follows_the_series() {
-        // Oracle: Ramírez et al. (1999), ε ≈ 1 − 1.153449 x² + 0.798267 x⁴ with x² = A κ^(2/5) v^(1/5).
-        // κ = (3/2)^(5/2) k/m*, so x² is β v^(1/5) = v*². Tolerance: the next term, x⁶.
+        // Oracle: Ramírez et al. (1999), ε ≈ 1 − 1.153449 x² + 0.798267 x⁴ with x² = A κ^(2/5)
+        // v^(1/5). κ = (3/2)^(5/2) k/m*, so x² is β v^(1/5) = v*². Tolerance: the next term, x⁶.
         for x in [0.05, 0.1, 0.2] {
             let x: Real = x;
             let series = 1.0 - 1.153_449 * x.powi(2) + 0.798_267 * x.powi(4);

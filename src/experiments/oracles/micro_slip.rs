@@ -12,7 +12,7 @@
 //!
 //! Only G*/E*, μ and the angle of incidence matter. The contact law of the simulation replaces the
 //! springs by a single one of 2/3 of Mindlin's stiffness, which is exact while the slip is
-//! proportional to the overlap; this solution shows what that leaves out. Source: Popov & Heß
+//! proportional to the overlap; this solution shows the error of that. Source: Popov & Heß
 //! (2013); equivalent to Maw, Barber & Fawcett (1976). Valid for ξ ≪ R, without damping.
 
 use super::impact::Rebound;
@@ -73,7 +73,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_tabled_rebounds_come_out() {
+    fn the_tabulated_rebounds_are_reproduced() {
         // Oracle: an independent integration of the same model: for ν = 0.245, μ = 0.25, and for
         // aluminium oxide, ν = 0.23, μ = 0.092. Tolerance 2·10⁻³: springs and steps of either.
         for (nu, friction, degrees, expected) in [
@@ -92,8 +92,9 @@ mod tests {
     }
 
     #[test]
-    fn where_it_slides_throughout_it_is_a_rigid_body() {
-        // Oracle: rigid-body impact, e = 1. Tolerance 10⁻³: springs, steps, and the end of contact.
+    fn impacts_that_slide_throughout_are_those_of_a_rigid_body() {
+        // Oracle: rigid-body impact, e = 1. Tolerance: 10⁻³, from springs, steps, and the end of
+        // contact.
         for degrees in [65.0, 75.0, 85.0] {
             let angle = Real::to_radians(degrees);
             let found = rebound(stiffness_ratio(0.245), 0.25, angle);

@@ -1,8 +1,8 @@
-//! Closed forms and exact reference solutions that measurements are set beside.
+//! Closed forms and exact reference solutions to compare measurements with.
 //!
-//! Nothing here knows the simulation: these are formulas and small integrations of their own.
+//! They are independent of the simulation: formulas and small integrations of their own.
 
 pub mod impact; // two bodies that collide
 pub mod micro_slip; // oblique impact without the law's simplification
-pub mod pinch; // what a rigid glove holds
+pub mod pinch; // holding force of a rigid glove
 pub mod shell; // an elastic shell around an object

@@ -1,17 +1,17 @@
-//! What friction and shape of a rigid glove under uniform pressure hold of a sphere.
+//! Holding force of a rigid glove that presses on a sphere with uniform pressure.
 //!
 //! ```text
 //! F_h = 2π R² p [ μ (θ_c/2 − sin 2θ_c /4) − sin² θ_c /2 ]
 //!
-//! F_h  force with which the sphere can be pulled, negative if it is pushed out   (N)
-//! θ_c  polar angle up to which the glove touches, from the pole it came from     (rad)
-//! R    radius of the sphere                                                      (m)
-//! p    normal pressure on it                                                     (Pa)
-//! μ    friction, everywhere at its limit                                         (-)
+//! F_h  force with which the sphere can be pulled, negative if it is pushed out   [N]
+//! θ_c  polar angle up to which the glove touches, from the pole it came from     [rad]
+//! R    radius of the sphere                                                      [m]
+//! p    normal pressure on it                                                     [Pa]
+//! μ    friction, everywhere at its limit                                         [-]
 //! ```
 //!
 //! It is the integral of (μ sin θ − cos θ) p over the sphere up to θ_c. Valid where the pressure is
-//! uniform and all of the contact slides; neither suction nor bending of the glove is in it.
+//! uniform and the whole contact slides; suction and bending of the glove are neglected.
 
 use std::f64::consts::PI;
 
@@ -28,7 +28,7 @@ pub fn pinch_holding_force(
     2.0 * PI * radius * radius * pressure * bracket(friction, contact_angle)
 }
 
-/// The contact angle (rad) from which on a glove holds.
+/// The smallest contact angle (rad) at which a glove holds.
 pub fn pinch_threshold(friction: Real) -> Real {
     let (mut fails, mut holds) = (1e-6, PI);
     for _ in 0..60 {
@@ -52,7 +52,7 @@ mod tests {
     use crate::base::Vec3;
 
     #[test]
-    fn thresholds_and_brackets_are_those_of_the_table() {
+    fn thresholds_and_values_match_the_table() {
         // Oracle: roots and values of the formula, computed by hand. Tolerance: their last digit.
         for (friction, degrees) in
             [(0.25, 125.4), (0.5, 100.5), (0.8, 79.5), (1.0, 69.1), (1.2, 60.8)]
@@ -67,9 +67,9 @@ mod tests {
     }
 
     #[test]
-    fn a_glove_of_facets_holds_as_much() {
+    fn a_glove_of_facets_has_the_same_holding_force() {
         // Oracle: forces summed facet by facet over a prescribed glove that moves up, away from the
-        // sphere. Each facet presses along its normal and rubs along its slip. Tolerance: 2·10⁻⁴,
+        // sphere. Each facet has normal pressure and friction against its slip. Tolerance: 2·10⁻⁴,
         // facets of 1° are flat.
         let (radius, pressure) = (0.01, 9e4);
         for (friction, degrees) in [(1.2, 50), (1.2, 61), (1.2, 120), (0.25, 90), (0.5, 180)] {
@@ -89,12 +89,12 @@ mod tests {
 
     /// Force on the sphere per pressure and squared radius.
     fn on_facet(friction: Real, ring: i32, sector: i32) -> Vec3 {
-        let place = |ring: i32, sector: i32| {
+        let point = |ring: i32, sector: i32| {
             let (theta, phi) = (Real::from(ring).to_radians(), Real::from(sector).to_radians());
             Vec3::new(theta.sin() * phi.cos(), theta.sin() * phi.sin(), theta.cos())
         };
-        let (a, b) = (place(ring, sector), place(ring + 1, sector));
-        let (c, d) = (place(ring + 1, sector + 1), place(ring, sector + 1));
+        let (a, b) = (point(ring, sector), point(ring + 1, sector));
+        let (c, d) = (point(ring + 1, sector + 1), point(ring, sector + 1));
         let area = 0.5 * (c - a).cross(&(d - b));
         let normal = area.normalize();
         let slip = Vec3::z() - normal * normal.z;

@@ -7,14 +7,14 @@
 //! as printed:                              q/p = (2−s³) (2ν−1) / (2 (1−2ν) + s³ (1+ν))
 //! elastic object, u(a) = −q a (1−2ν_o)/E_o
 //!
-//! q    pressure on the object: −σ_rr(a) less the p that the inner membrane carries   (Pa)
-//! p    vacuum between the membranes, positive                                       (Pa)
-//! a, b radii of object and gripper                                                  (m)
-//! E, ν modulus and Poisson's ratio of the shell; with index o, of the object        (Pa), (-)
+//! q    pressure on the object: −σ_rr(a) minus the p that the inner membrane carries  [Pa]
+//! p    vacuum between the membranes, positive                                       [Pa]
+//! a, b radii of object and gripper                                                  [m]
+//! E, ν modulus and Poisson's ratio of the shell; with index o, of the object        [Pa], [-]
 //! ```
 //!
-//! Source: Lamé's hollow sphere; Götz (2024) eq. 33 prints (2 − s³) where the derivation gives
-//! (2 − 2 s³): its value is negative for s < 2^(1/3), where that of a thin shell must be 0. Valid for
+//! Source: Lamé's hollow sphere; Götz (2024) eq. 33 prints (2 − s³) where the derivation gives (2 −
+//! 2 s³): its value is negative for s < 2^(1/3), where that of a thin shell must be 0. Valid for
 //! small strains of a homogeneous, isotropic shell.
 
 use crate::base::Real;
@@ -32,10 +32,10 @@ pub struct ObjectPressure {
 /// s = b/a.
 pub fn shell_object_pressure(poisson_ratio: Real, radius_ratio: Real) -> ObjectPressure {
     let (nu, cube) = (poisson_ratio, radius_ratio.powi(3));
-    let below = 2.0 * (1.0 - 2.0 * nu) + cube * (1.0 + nu);
+    let denominator = 2.0 * (1.0 - 2.0 * nu) + cube * (1.0 + nu);
     ObjectPressure {
-        corrected: 2.0 * (1.0 - 2.0 * nu) * (cube - 1.0) / below,
-        printed: (2.0 - cube) * (2.0 * nu - 1.0) / below,
+        corrected: 2.0 * (1.0 - 2.0 * nu) * (cube - 1.0) / denominator,
+        printed: (2.0 - cube) * (2.0 * nu - 1.0) / denominator,
     }
 }
 
@@ -60,7 +60,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_corrected_line_has_its_tabled_values() {
+    fn the_corrected_formula_gives_the_tabulated_values() {
         // Oracle: the formula's values at s = 4, computed by hand. Tolerance: their last digit.
         for (nu, value) in
             [(0.0, 1.909), (0.1, 1.400), (0.2, 0.969), (0.245, 0.796), (0.3, 0.600), (0.4, 0.280)]
@@ -69,17 +69,14 @@ mod tests {
             assert!((found - value).abs() < 5.1e-4, "{nu}: {found}");
         }
         assert!((shell_object_pressure(0.245, 4.0).printed - 0.392).abs() < 5e-4);
-        // Oracle: a shell without thickness, and one that is incompressible, press on nothing.
+        // Oracle: an infinitely thin shell and an incompressible one exert no pressure.
         assert!(shell_object_pressure(0.3, 1.0).corrected.abs() < 1e-15);
         assert!(shell_object_pressure(0.5, 4.0).corrected.abs() < 1e-15);
-        assert!(
-            shell_object_pressure(0.3, 1.2).printed < 0.0,
-            "what is wrong with the printed one"
-        );
+        assert!(shell_object_pressure(0.3, 1.2).printed < 0.0, "the error of the printed formula");
     }
 
     #[test]
-    fn lames_solution_by_finite_differences_gives_the_same() {
+    fn a_finite_difference_solution_gives_the_same() {
         // Oracle: u'' + 2u'/r − 2u/r² = 0 solved on 2000 points. Tolerance 2·10⁻⁴: first-order
         // stresses at both ends would be 10⁻³, one-sided second-order ones are below 10⁻⁵.
         for (nu, s, softness, nu_object) in
@@ -98,8 +95,8 @@ mod tests {
         }
     }
 
-    /// Shoots from the inner surface: the displacement there is −q y, and q and the slope there
-    /// follow from two trial solutions, as everything is linear. a = E = p = 1.
+    /// Shooting from the inner surface: the displacement there is −q y, and q and the slope there
+    /// follow from two trial solutions, since the problem is linear. a = E = p = 1.
     fn by_finite_differences(nu: Real, s: Real, y: Real) -> Real {
         let lame = 1.0 / ((1.0 + nu) * (1.0 - 2.0 * nu));
         let stress = |r: Real, u: Real, slope: Real| lame * ((1.0 - nu) * slope + 2.0 * nu * u / r);

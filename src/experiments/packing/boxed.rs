@@ -1,15 +1,15 @@
-//! Grains in a periodic box: they grow until they jam, change their size step by step, and rest.
+//! Grains in a periodic box: they grow until they jam, then change their size in steps with rests.
 //!
 //! ```text
-//! grow to p_first      then, while p < p_last:    all diameters + c ⟨ξ/d⟩, rest, look
-//! without friction:    grow to p_high, and while p > p_low:   all diameters − c ⟨ξ/d⟩, rest, look
-//! moduli:              at each pressure the small changes of `moduli`
+//! grow to p_first      then, while p < p_last:    all diameters + c ⟨ξ/d⟩, rest, record
+//! without friction:    grow to p_high, and while p > p_low:   all diameters − c ⟨ξ/d⟩, rest, record
+//! moduli:              at each pressure the small strains of `moduli`
 //! ```
 //!
-//! To enlarge all grains by a share is to compress the box by that share, since the law has no length
-//! of its own. Friction stays on all the time, so that packings with friction jam
-//! where grains first hold each other. Without friction the way back is taken: it is reversible, and
-//! p(φ) follows Hertz.
+//! Enlarging all grains by a factor is equivalent to compressing the box by it, since the contact
+//! law has no intrinsic length. Friction stays on, so packings with friction jam where grains first
+//! hold each other. Without friction the packing is decompressed: that is reversible, and p(φ)
+//! follows Hertz.
 
 use serde::{Deserialize, Serialize};
 
@@ -18,10 +18,10 @@ use super::{
         Progress, ResumeError, Run, StartError,
         record::{Column, Record},
     },
-    Case,
-    build::{self, SLICE, Settling, Unrest},
-    moduli::Probe,
-    scene::Scene,
+    build::{self, Residuals, SLICE, Settling},
+    cases::Case,
+    measure::Probe,
+    scene::PackingScene,
 };
 use crate::experiments::saved_run;
 use crate::{
@@ -48,18 +48,18 @@ use crate::{
 
 /// Solid fraction of the final radii in the box.
 const FINAL_FRACTION: Real = 0.64;
-/// Growth of all diameters in ten relaxation times that counts as none: small steps with rests follow.
+/// Growth of all diameters in ten relaxation times below which growth has ended.
 const STUCK: Real = 1e-3;
-/// Share of the last pressure at which it counts as reached.
+/// Share of a pressure at which it counts as reached.
 const REACHED: Real = 0.97;
-/// Share of the first pressure below which grains do not hold each other.
+/// Share of the first pressure below which the packing is loose.
 const LOOSE: Real = 0.1;
 /// Width of a bin of g(r), in mean diameters.
 const BIN: Real = 0.02;
 /// Bins of g(r): to four diameters.
 const N_BINS: usize = 200;
 
-/// Columns of the record, one row for each state at rest.
+/// Columns of the record, with one row for each state at rest.
 const COLUMNS: [(&str, &str); 10] = [
     ("solid_fraction", "1"),
     ("pressure", "Pa"),
@@ -73,24 +73,24 @@ const COLUMNS: [(&str, &str); 10] = [
     ("kinetic_over_elastic", "1"),
 ];
 
-/// What is being done.
+/// A phase of the run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-enum Stage {
+enum Phase {
     Growing,
-    /// Sizes or the box change by a step in every substep; then they rest.
+    /// Sizes or the box change by `step` in every substep; then the grains rest.
     Ramping {
-        what: Changes,
+        what: Change,
         time_left: Real,
         step: Real,
     },
-    /// Sizes stay, until nothing moves.
+    /// Sizes are constant until nothing moves.
     Resting(Settling),
     Done,
 }
 
-/// What changes.
+/// What changes in a ramp.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) enum Changes {
+pub(super) enum Change {
     /// All diameters, by a common factor.
     Sizes,
     /// The box: longer along x, and shorter along y by the same factor.
@@ -98,7 +98,7 @@ pub(super) enum Changes {
 }
 
 /// A state at rest.
-pub(super) struct Seen {
+pub(super) struct RestState {
     pub(super) pressure: Real,
     /// σ_xx − σ_yy (Pa).
     pub(super) difference: Real,
@@ -108,35 +108,35 @@ pub(super) struct Seen {
     pub(super) coordination: Real,
 }
 
-/// Where the case stands.
+/// Everything needed to resume, in addition to the state.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub(super) struct Place {
-    stage: Stage,
+pub(super) struct RunState {
+    phase: Phase,
     growth: grow::Progress,
     scale: Real,
-    /// Factor by which the box is longer along x than it was.
+    /// Factor by which the box is longer along x than at the start.
     stretch: Real,
-    /// The measurement that is being made.
+    /// The current measurement of a modulus.
     pub(super) probe: Option<Probe>,
-    /// Pressures at which moduli have been measured.
+    /// Number of pressures at which moduli have been measured.
     pub(super) n_probed: usize,
     pub(super) record: Record,
 }
 
-/// A case in the periodic box.
-pub(super) struct Boxed {
-    pub(super) scene: Scene,
+/// A running case in the periodic box.
+pub(super) struct BoxRun {
+    pub(super) scene: PackingScene,
     case: Case,
     final_radii: Vec<Real>,
     volume: Real,
     growth: Growth,
     system: System,
-    pub(super) place: Place,
+    pub(super) progress: RunState,
 }
 
-impl Boxed {
-    /// Scattered grains.
-    pub(super) fn new(scene: &Scene, case: Case) -> Result<Self, StartError> {
+impl BoxRun {
+    /// The case with scattered grains.
+    pub(super) fn new(scene: &PackingScene, case: Case) -> Result<Self, StartError> {
         let is_mono = !matches!(case, Case::Poly);
         let is_smooth = friction(scene, case) == 0.0;
         let grains = &scene.grains;
@@ -149,8 +149,8 @@ impl Boxed {
         let scale = first_scale(&final_radii, scene.compression.thin, volume);
         let small: Vec<Real> = final_radii.iter().map(|r| scale * r).collect();
         let mut random = Random::new(scene.seed, Stream::Position);
-        let places = scatter(&small, room.period(), &mut random, |it| room.place(0.0, it))?;
-        let grains = build::grains(scene, places, &final_radii, scale);
+        let positions = scatter(&small, room.period(), &mut random, |it| room.place(0.0, it))?;
+        let grains = build::grains(scene, positions, &final_radii, scale);
         let friction = friction(scene, case);
         let law = build::grain_law(&scene.grains, friction);
         let (mean, largest) = (scene.grains.radius_mean(), scene.grains.radius_max);
@@ -164,8 +164,8 @@ impl Boxed {
         let mut record = Record { case: case.name(), seed: scene.seed, ..Record::default() };
         record.columns = COLUMNS.iter().map(|(name, unit)| Column::new(name, unit)).collect();
         record.set("friction", friction, "1");
-        let place = Place {
-            stage: Stage::Growing,
+        let progress = RunState {
+            phase: Phase::Growing,
             growth: growth.progress(),
             scale,
             stretch: 1.0,
@@ -174,109 +174,109 @@ impl Boxed {
             record,
         };
         let (scene, case) = (scene.clone(), case);
-        Ok(Self { scene, case, final_radii, volume, growth, system, place })
+        Ok(Self { scene, case, final_radii, volume, growth, system, progress })
     }
 
-    /// One substep of the present stage.
+    /// One substep of the current phase.
     fn step(&mut self) {
-        match self.place.stage {
-            Stage::Growing => {
+        match self.progress.phase {
+            Phase::Growing => {
                 let grown = self.growth.step(&mut self.system);
-                self.place.growth = self.growth.progress();
-                self.place.scale = self.place.growth.scale;
-                self.place.record.count("growing", 1);
+                self.progress.growth = self.growth.progress();
+                self.progress.scale = self.progress.growth.scale;
+                self.progress.record.count("growing", 1);
                 if grown != Grown::Growing {
                     self.begin();
                 }
             }
-            Stage::Ramping { what, time_left, step } => {
+            Phase::Ramping { what, time_left, step } => {
                 match what {
-                    Changes::Sizes => {
-                        self.place.scale += step;
-                        grow::resize(&mut self.system, &self.final_radii, self.place.scale);
+                    Change::Sizes => {
+                        self.progress.scale += step;
+                        grow::resize(&mut self.system, &self.final_radii, self.progress.scale);
                     }
-                    Changes::Shape => self.stretch(step),
+                    Change::Shape => self.stretch(step),
                 }
                 self.system.step();
                 let time_left = time_left - self.system.model.substep;
-                self.place.stage = if time_left > 0.0 {
-                    Stage::Ramping { what, time_left, step }
+                self.progress.phase = if time_left > 0.0 {
+                    Phase::Ramping { what, time_left, step }
                 } else {
-                    Stage::Resting(Settling::default())
+                    Phase::Resting(Settling::default())
                 };
-                self.place.record.count("ramping", 1);
+                self.progress.record.count("ramping", 1);
             }
-            Stage::Resting(mut settling) => {
+            Phase::Resting(mut settling) => {
                 let is_time = settling.step(&mut self.system);
-                self.place.stage = Stage::Resting(settling);
-                self.place.record.count("resting", 1);
+                self.progress.phase = Phase::Resting(settling);
+                self.progress.record.count("resting", 1);
                 if is_time {
-                    self.look(settling);
+                    self.check_rest(settling);
                 }
                 return;
             }
-            Stage::Done => return,
+            Phase::Done => return,
         }
         build::drag(&mut self.system, self.scene.compression.drag_time);
     }
 
-    /// Grown grains rest. Without friction they are let go a little first: under the full pressure
-    /// they would creep for long.
+    /// Lets the grown grains rest. Without friction they are decompressed slightly first: under the
+    /// full pressure they would creep for a long time.
     fn begin(&mut self) {
-        self.place.stage = Stage::Resting(Settling::default());
+        self.progress.phase = Phase::Resting(Settling::default());
         if friction(&self.scene, self.case) == 0.0 {
             let overlap = grow::mean_overlap(&self.system);
             let shrinks = -self.scene.compression.share * overlap;
-            self.ramp(Changes::Sizes, shrinks, self.place.growth.pressure);
+            self.ramp(Change::Sizes, shrinks, self.progress.growth.pressure);
         }
     }
 
-    /// Records a state at rest and goes on to the next.
-    fn look(&mut self, mut settling: Settling) {
-        let unrest = settling.unrest(&self.system);
-        self.place.stage = Stage::Resting(settling);
+    /// Records a state at rest and starts the next change.
+    fn check_rest(&mut self, mut settling: Settling) {
+        let residuals = settling.residuals(&self.system);
+        self.progress.phase = Phase::Resting(settling);
         let compression = self.scene.compression.clone();
         let is_smooth = friction(&self.scene, self.case) == 0.0;
         let System { model, state, scratch, .. } = &self.system;
         let pressure = normal_pressure(state, scratch, self.volume);
         if !is_smooth && pressure < LOOSE * compression.pressure_first {
-            // Growth ended in motion, and at rest the grains do not hold each other yet.
+            // Growth ended in motion; at rest the grains do not hold each other yet.
             let more = compression.share * self.first_overlap();
-            return self.ramp(Changes::Sizes, more, Real::INFINITY);
+            return self.ramp(Change::Sizes, more, Real::INFINITY);
         }
         let n_max = compression.rest_time_max / model.substep;
-        if !unrest.is_rest() && !build::is_over(settling.n_done, n_max) {
+        if !residuals.is_rest() && !build::is_over(settling.n_done, n_max) {
             return;
         }
-        let seen = self.write(&unrest);
-        if let Some(probe) = self.place.probe.take() {
-            self.probed(probe, &seen);
+        let rest = self.record_row(&residuals);
+        if let Some(probe) = self.progress.probe.take() {
+            self.end_probe(probe, &rest);
         }
-        let Seen { pressure, overlap, .. } = seen;
-        if self.place.probe.is_some() {
+        let RestState { pressure, overlap, .. } = rest;
+        if self.progress.probe.is_some() {
             return;
         }
-        let next = next_pressure(&self.scene, self.case, self.place.n_probed);
+        let next = next_pressure(&self.scene, self.case, self.progress.n_probed);
         let Some(next) = next else { return self.finish() };
         if is_smooth && pressure > compression.pressure_low {
-            self.ramp(Changes::Sizes, -compression.share * overlap, pressure);
+            self.ramp(Change::Sizes, -compression.share * overlap, pressure);
         } else if !is_smooth && pressure < REACHED * next {
-            // By Hertz the next pressure needs this share of the overlap more.
+            // By Hertz' law the next pressure needs this additional share of the overlap.
             let share = compression.share.min((next / pressure).powf(2.0 / 3.0) - 1.0);
-            self.ramp(Changes::Sizes, share * overlap.max(self.first_overlap()), pressure);
+            self.ramp(Change::Sizes, share * overlap.max(self.first_overlap()), pressure);
         } else if self.case == Case::Moduli {
-            self.probe(&seen);
+            self.start_probe(&rest);
         } else {
             self.finish();
         }
     }
 
-    /// Makes the box longer along x and narrower along y, and moves all grains with it. Springs of
-    /// friction, which know motion by velocities, are told of this one.
+    /// Makes the box longer along x and narrower along y, and moves all grains with it. Friction
+    /// springs, which integrate velocities, are updated for this motion.
     fn stretch(&mut self, step: Real) {
-        let by = 1.0 + step / self.place.stretch;
+        let by = 1.0 + step / self.progress.stretch;
         let System { model, state, scratch, .. } = &mut self.system;
-        let before = period(self.volume, self.place.stretch);
+        let before = period(self.volume, self.progress.stretch);
         let springs = state.springs.pairs.iter_mut().zip(&state.pair_ids);
         for ((spring, [i, j]), flags) in springs.zip(&scratch.pair_flags) {
             if flags.touches() {
@@ -291,36 +291,36 @@ impl Boxed {
             position.x *= by;
             position.y /= by;
         }
-        self.place.stretch += step;
-        model.period = Some(period(self.volume, self.place.stretch));
+        self.progress.stretch += step;
+        model.period = Some(period(self.volume, self.progress.stretch));
     }
 
-    /// Mean overlap over diameter at the first pressure, by Hertz and within a factor of two.
+    /// Estimated mean overlap over diameter at the first pressure, within a factor of two.
     fn first_overlap(&self) -> Real {
         let stiffness = self.system.model.grain_law.modulus;
         (self.scene.compression.pressure_first / stiffness).powf(2.0 / 3.0)
     }
 
-    /// Makes all grains, which are now under `pressure` (Pa), or the box larger by the share `growth`,
-    /// steadily.
-    pub(super) fn ramp(&mut self, what: Changes, growth: Real, pressure: Real) {
+    /// Starts a ramp: all grains, which are under `pressure` (Pa), or the box grow by the share
+    /// `growth`.
+    pub(super) fn ramp(&mut self, what: Change, growth: Real, pressure: Real) {
         let (compression, grains) = (&self.scene.compression, &self.scene.grains);
         let rate = growth / compression.ramp_time;
         let diameter = 2.0 * grains.radius_mean();
         let number = rest::inertial_number(rate, diameter, grains.material.density, pressure);
-        let seen = &mut self.place.record.validity.inertial_number_max;
-        *seen = seen.max(number);
+        let largest = &mut self.progress.record.validity.inertial_number_max;
+        *largest = largest.max(number);
         let n = (compression.ramp_time / compression.substep).ceil();
         let from = match what {
-            Changes::Sizes => self.place.scale,
-            Changes::Shape => self.place.stretch,
+            Change::Sizes => self.progress.scale,
+            Change::Shape => self.progress.stretch,
         };
         let (step, time_left) = (from * growth / n, compression.ramp_time);
-        self.place.stage = Stage::Ramping { what, time_left, step };
+        self.progress.phase = Phase::Ramping { what, time_left, step };
     }
 
-    /// Adds a row.
-    fn write(&mut self, unrest: &Unrest) -> Seen {
+    /// Records a row.
+    fn record_row(&mut self, residuals: &Residuals) -> RestState {
         let System { model, state, scratch, .. } = &self.system;
         let sigma = stress::contact_stress(model, state, scratch, self.volume);
         let pressure = sigma.trace() / 3.0;
@@ -329,8 +329,8 @@ impl Boxed {
         let coordination = coordination(state, scratch, n_needed);
         let packing = packing(state, scratch);
         let overlap = grow::mean_overlap(&self.system);
-        let overlap_max = packing.overlap_max / (2.0 * self.place.scale * model.radius_mean);
-        let seen = Seen {
+        let overlap_max = packing.overlap_max / (2.0 * self.progress.scale * model.radius_mean);
+        let rest = RestState {
             pressure,
             difference: sigma[(0, 0)] - sigma[(1, 1)],
             overlap,
@@ -338,7 +338,7 @@ impl Boxed {
             coordination: coordination.mean,
         };
         let row = [
-            seen.solid_fraction,
+            rest.solid_fraction,
             pressure,
             coordination.mean,
             coordination.backbone,
@@ -346,22 +346,20 @@ impl Boxed {
             packing.sliding_fraction,
             overlap,
             overlap_max,
-            unrest.unbalanced,
-            unrest.kinetic,
+            residuals.unbalanced,
+            residuals.kinetic,
         ];
-        let record = &mut self.place.record;
-        for (column, value) in record.columns.iter_mut().zip(row) {
-            column.values.push(value);
-        }
+        let record = &mut self.progress.record;
+        record.push_row(&row);
         let validity = &mut record.validity;
         validity.overlap_over_diameter_max = validity.overlap_over_diameter_max.max(overlap_max);
-        validity.unbalanced_force = validity.unbalanced_force.max(unrest.unbalanced);
+        validity.unbalanced_force = validity.unbalanced_force.max(residuals.unbalanced);
         let anisotropy = (sigma - nalgebra::Matrix3::identity() * pressure).norm() / pressure;
         record.set("stress_anisotropy", anisotropy, "1");
-        seen
+        rest
     }
 
-    /// Writes what is only looked at in the last state.
+    /// Records what is only measured in the last state.
     fn finish(&mut self) {
         let System { model, state, .. } = &self.system;
         let Some(period) = model.period else { return };
@@ -376,7 +374,7 @@ impl Boxed {
             &region,
             &bins,
         );
-        let middles = (0..N_BINS).map(|k| bins.middle(k) / (2.0 * mean)).collect();
+        let middles = (0..N_BINS).map(|k| bins.center(k) / (2.0 * mean)).collect();
         let column =
             |name: &str, values| Column { name: name.to_owned(), unit: "1".to_owned(), values };
         let table =
@@ -385,14 +383,14 @@ impl Boxed {
             / real(radii.len()))
         .sqrt();
         let digest = saved_run::digest(state);
-        let record = &mut self.place.record;
+        let record = &mut self.progress.record;
         record.tables.insert("structure".to_owned(), table);
         record.set("radius_spread", spread, "1");
         record.digest = digest;
-        self.place.stage = Stage::Done;
+        self.progress.phase = Phase::Done;
     }
 
-    /// Share of the work that is done, as far as it is known.
+    /// Estimated share of the work that is done.
     fn share(&self) -> Real {
         let compression = &self.scene.compression;
         let (from, to) = if friction(&self.scene, self.case) == 0.0 {
@@ -404,17 +402,17 @@ impl Boxed {
             };
             (compression.pressure_first, last)
         };
-        let pressures = self.place.record.column("pressure").unwrap_or_default();
-        match (self.place.stage, pressures.last()) {
-            (Stage::Done, _) => 1.0,
+        let pressures = self.progress.record.column("pressure").unwrap_or_default();
+        match (self.progress.phase, pressures.last()) {
+            (Phase::Done, _) => 1.0,
             (_, Some(now)) => 0.5 + 0.5 * ((now / from).ln() / (to / from).ln()).clamp(0.0, 0.99),
-            (_, None) => 0.5 * self.place.scale.powi(3).min(0.99),
+            (_, None) => 0.5 * self.progress.scale.powi(3).min(0.99),
         }
     }
 }
 
 /// Friction of `case`.
-fn friction(scene: &Scene, case: Case) -> Real {
+fn friction(scene: &PackingScene, case: Case) -> Real {
     match case {
         Case::Mono { friction } => friction,
         Case::Poly => 0.0,
@@ -423,9 +421,9 @@ fn friction(scene: &Scene, case: Case) -> Real {
     }
 }
 
-/// Where compression with friction rests next, when moduli have been measured `n_probed` times; `None`
-/// at the end (Pa).
-fn next_pressure(scene: &Scene, case: Case, n_probed: usize) -> Option<Real> {
+/// Pressure at which compression with friction rests next, after moduli have been measured
+/// `n_probed` times (Pa); `None` at the end.
+fn next_pressure(scene: &PackingScene, case: Case, n_probed: usize) -> Option<Real> {
     match case {
         Case::Moduli => scene.moduli.pressures.get(n_probed).copied(),
         _ => Some(scene.compression.pressure_last),
@@ -438,50 +436,51 @@ fn period(volume: Real, stretch: Real) -> Vec3 {
 }
 
 /// Growth with the friction of the case.
-fn recipe(scene: &Scene, model: &Model, volume: Real, friction: Real) -> Recipe {
+fn recipe(scene: &PackingScene, model: &Model, volume: Real, friction: Real) -> Recipe {
     let compression = &scene.compression;
     let stop = if friction == 0.0 { compression.pressure_high } else { compression.pressure_first };
     let radius = scene.grains.radius_mean();
     let mass = scene.grains.material.density * sphere_volume(radius);
-    // All grow at the rate of the lower pressure, so that the protocol is one for all.
+    // All cases grow at the rate of the lower pressure, so that they share one protocol.
     let slow = Recipe::new(model, volume, compression.pressure_first, mass, radius);
     Recipe { laws: Laws::of(model), pressure_stop: stop, stuck: STUCK, scale_last: 2.0, ..slow }
 }
 
-impl Run for Boxed {
+impl Run for BoxRun {
     fn advance(&mut self) -> Result<Progress, Diverged> {
-        let stage = match self.place.stage {
-            Stage::Growing => "growing",
-            Stage::Ramping { .. } | Stage::Resting(_) | Stage::Done => "resting",
+        let phase = match self.progress.phase {
+            Phase::Growing => "growing",
+            Phase::Ramping { .. } | Phase::Resting(_) | Phase::Done => "resting",
         };
         for _ in 0..SLICE {
             self.step();
         }
-        self.system.check(self.place.record.n_substeps.values().sum())?;
-        let is_done = self.place.stage == Stage::Done;
-        Ok(Progress { stage, share: self.share(), is_done })
+        self.system.check(self.progress.record.n_substeps.values().sum())?;
+        let is_done = self.progress.phase == Phase::Done;
+        Ok(Progress { phase, share: self.share(), is_done })
     }
 
     fn save(&self) -> Vec<u8> {
-        saved_run::pack(&self.place.record.case, &self.place, [&self.system.state])
+        saved_run::pack(&self.progress.record.case, &self.progress, [&self.system.state])
     }
 
     fn resume(&mut self, bytes: &[u8]) -> Result<(), ResumeError> {
-        let (place, [state]): (Place, _) = saved_run::unpack(&self.place.record.case, bytes)?;
-        saved_run::of_one_scene(&state, &self.system.state)?;
+        let (progress, [state]): (RunState, _) =
+            saved_run::unpack(&self.progress.record.case, bytes)?;
+        saved_run::check_scene(&state, &self.system.state)?;
         let mut model = self.system.model.clone();
         model.radius_max = state.grains.radii.iter().copied().fold(model.radius_max, Real::max);
-        model.period = Some(period(self.volume, place.stretch));
+        model.period = Some(period(self.volume, progress.stretch));
         let controls = self.system.controls.clone();
         let friction = friction(&self.scene, self.case);
         let recipe = recipe(&self.scene, &model, self.volume, friction);
-        self.growth = Growth::resumed(recipe, self.final_radii.clone(), place.growth);
+        self.growth = Growth::resumed(recipe, self.final_radii.clone(), progress.growth);
         self.system = System::new(model, controls, state);
-        self.place = place;
+        self.progress = progress;
         Ok(())
     }
 
     fn record(&self) -> Record {
-        self.place.record.clone()
+        self.progress.record.clone()
     }
 }

@@ -1,9 +1,8 @@
-//! What all packings have in common: their grains, the drag that brings them to rest, and when they
-//! are at rest.
+//! Common parts of all packings: their grains, the drag, kinetic damping and the criterion of rest.
 
 use serde::{Deserialize, Serialize};
 
-use super::scene::{Grains, Scene};
+use super::scene::{Grains, PackingScene};
 use crate::{
     base::{
         Real, Vec3,
@@ -14,24 +13,24 @@ use crate::{
     physics::{System, law::PairLaw, packing::sphere_volume, state},
 };
 
-/// Unbalanced force over mean contact force below which grains are at rest.
+/// Largest unbalanced force over mean contact force of grains at rest.
 pub(super) const UNBALANCED_MAX: Real = 5e-4;
-/// Kinetic over elastic energy below which they are.
+/// Largest kinetic over elastic energy of grains at rest.
 pub(super) const KINETIC_MAX: Real = 1e-6;
-/// Substeps between two looks at the kinetic energy.
+/// Substeps between two measurements of the kinetic energy.
 const STOP_EVERY: u64 = 10;
-/// Substeps between two looks at whether they are at rest.
-const LOOK_EVERY: u64 = 50;
-/// Substeps in a slice of work.
+/// Substeps between two checks of rest.
+const CHECK_EVERY: u64 = 50;
+/// Substeps of a slice.
 pub(super) const SLICE: u64 = 400;
 
-/// Law between grains at this friction.
+/// Contact law between grains with this friction.
 pub(super) fn grain_law(grains: &Grains, friction: Real) -> PairLaw {
     PairLaw::between(&grains.material, &grains.material, grains.surface(friction))
 }
 
 /// Final radii (m): uniform between the limits, or all the mean.
-pub(super) fn final_radii(scene: &Scene, count: usize, is_mono: bool) -> Vec<Real> {
+pub(super) fn final_radii(scene: &PackingScene, count: usize, is_mono: bool) -> Vec<Real> {
     let grains = &scene.grains;
     let mut random = Random::new(scene.seed, Stream::Radius);
     let mut draw = || random.between(grains.radius_min, grains.radius_max);
@@ -40,7 +39,7 @@ pub(super) fn final_radii(scene: &Scene, count: usize, is_mono: bool) -> Vec<Rea
 
 /// Grains at rest at `positions`, `scale` times their final size, with their final masses.
 pub(super) fn grains(
-    scene: &Scene,
+    scene: &PackingScene,
     positions: Vec<Vec3>,
     final_radii: &[Real],
     scale: Real,
@@ -60,19 +59,20 @@ pub(super) fn drag(system: &mut System, drag_time: Real) {
 }
 
 /// Kinetic damping (Cundall 1976): grains and membrane move freely until their kinetic energy has
-/// passed a peak, and are then stopped. Slow modes get to rest several times sooner than under drag.
+/// passed a peak, and are then stopped. Slow modes come to rest several times faster than with
+/// drag.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Settling {
-    /// Substeps so far.
+    /// Number of substeps so far.
     pub(super) n_done: u64,
-    /// Kinetic energy when it was last looked at (J).
+    /// Kinetic energy at its last measurement (J).
     last: Real,
-    /// Largest kinetic energy since rest was last looked for (J).
+    /// Largest kinetic energy since the last check of rest (J).
     highest: Real,
 }
 
 impl Settling {
-    /// One substep; true when it is time to look for rest.
+    /// One substep; returns true when rest should be checked.
     pub(super) fn step(&mut self, system: &mut System) -> bool {
         system.step();
         self.n_done += 1;
@@ -82,20 +82,20 @@ impl Settling {
         let now = kinetic_energy(&system.model, &system.state);
         self.highest = self.highest.max(now);
         self.last = if now < self.last { stop(system) } else { now };
-        self.n_done.is_multiple_of(LOOK_EVERY)
+        self.n_done.is_multiple_of(CHECK_EVERY)
     }
 
-    /// How far from rest it has been since this was last asked.
-    pub(super) fn unrest(&mut self, system: &System) -> Unrest {
+    /// Residuals since the last call.
+    pub(super) fn residuals(&mut self, system: &System) -> Residuals {
         let System { model, state, scratch, .. } = system;
         let elastic = rest::elastic_energy(model, state, scratch);
         let kinetic = self.highest / elastic.max(Real::MIN_POSITIVE);
         self.highest = 0.0;
-        Unrest { unbalanced: rest::unbalanced_force(model, state, scratch), kinetic }
+        Residuals { unbalanced: rest::unbalanced_force(model, state, scratch), kinetic }
     }
 }
 
-/// Stops all motion; the kinetic energy that is left is zero.
+/// Stops all motion; returns the remaining kinetic energy, zero.
 fn stop(system: &mut System) -> Real {
     let grains = &mut system.state.grains;
     grains.velocities.fill(Vec3::zeros());
@@ -104,23 +104,23 @@ fn stop(system: &mut System) -> Real {
     0.0
 }
 
-/// How far from rest a system is.
+/// Unbalanced forces and motion that remain in a system.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Unrest {
+pub(super) struct Residuals {
     /// Mean unbalanced force over mean contact force.
     pub(super) unbalanced: Real,
     /// Kinetic over elastic energy.
     pub(super) kinetic: Real,
 }
 
-impl Unrest {
-    /// True if both are small enough.
+impl Residuals {
+    /// True if the system is at rest.
     pub(super) fn is_rest(&self) -> bool {
         self.unbalanced < UNBALANCED_MAX && self.kinetic < KINETIC_MAX
     }
 }
 
-/// True if `n` substeps are as many as `n_max`.
+/// True if `n` has reached `n_max`.
 pub(super) fn is_over(n: u64, n_max: Real) -> bool {
     n_max <= real(usize::try_from(n).unwrap_or(usize::MAX))
 }

@@ -1,9 +1,9 @@
-//! Grains in a closed membrane under vacuum: the stress in them is the pressure that is put on them.
+//! Grains in a closed membrane under vacuum: their stress equals the applied pressure.
 //!
-//! Grains grow smoothly inside a membrane that is held as a sphere; then it is let go, the air is
-//! drawn out, and all comes to rest. σ_ij = 1/V Σ f_i l_j over all contacts, those with the membrane
-//! included, and V inside the membrane, must be the vacuum's pressure in every direction, but for what
-//! the tension of the membrane takes.
+//! Grains grow inside a membrane that is held as a sphere; then it is released and evacuated, and
+//! everything comes to rest. σ_ij = 1/V Σ f_i l_j over all contacts, including those with the
+//! membrane, with V inside the membrane, must equal the vacuum in every direction, except for the
+//! share that the tension of the membrane carries.
 
 use serde::{Deserialize, Serialize};
 
@@ -13,7 +13,7 @@ use super::{
         record::{Column, Record},
     },
     build::{self, SLICE, Settling},
-    scene::{Confined as Keys, Scene},
+    scene::{Confined as Keys, PackingScene},
 };
 use crate::experiments::saved_run;
 use crate::{
@@ -35,41 +35,41 @@ use crate::{
     scene::Material,
 };
 
-/// Solid fraction of the final radii in the sphere: what smooth grains reach in a small one.
+/// Solid fraction of the final radii in the sphere, as smooth grains reach it in a small one.
 const FINAL_FRACTION: Real = 0.58;
-/// Poisson's number of a hexagonal net of springs.
+/// Poisson's ratio of a hexagonal lattice of springs.
 const NET_POISSON: Real = 1.0 / 3.0;
-/// Time over which the air is drawn out, in drag times.
+/// Time of evacuation, in drag times.
 const DRAW_TIME: Real = 20.0;
 
-/// What is being done.
+/// A phase of the run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-enum Stage {
+enum Phase {
     Growing,
     Resting(Settling),
     Done,
 }
 
 #[derive(Clone, Debug, Serialize, Deserialize)]
-struct Place {
-    stage: Stage,
+struct RunState {
+    phase: Phase,
     growth: grow::Progress,
     record: Record,
 }
 
-/// The case in the membrane.
-pub(super) struct Confined {
-    scene: Scene,
+/// The running case in the membrane.
+pub(super) struct ConfinedRun {
+    scene: PackingScene,
     final_radii: Vec<Real>,
     recipe: Recipe,
     growth: Growth,
     system: System,
-    place: Place,
+    progress: RunState,
 }
 
-impl Confined {
-    /// Scattered grains in the held membrane.
-    pub(super) fn new(scene: &Scene) -> Result<Self, StartError> {
+impl ConfinedRun {
+    /// The case with scattered grains in the held membrane.
+    pub(super) fn new(scene: &PackingScene) -> Result<Self, StartError> {
         let keys = &scene.confined;
         let final_radii = build::final_radii(scene, keys.count, false);
         let solid: Real = final_radii.iter().map(|&r| sphere_volume(r)).sum();
@@ -79,8 +79,8 @@ impl Confined {
         let small: Vec<Real> = final_radii.iter().map(|r| scale * r).collect();
         let margin = scene.grains.radius_max;
         let mut random = Random::new(scene.seed, Stream::Position);
-        let places = scatter(&small, None, &mut random, |it| room.place(margin, it))?;
-        let grains = build::grains(scene, places, &final_radii, scale);
+        let positions = scatter(&small, None, &mut random, |it| room.place(margin, it))?;
+        let grains = build::grains(scene, positions, &final_radii, scale);
         let system = system(scene, radius, grains)?;
         let mean = scene.grains.radius_mean();
         let mass = scene.grains.material.density * sphere_volume(mean);
@@ -93,49 +93,49 @@ impl Confined {
         record.columns = ["pressure", "stress_x", "stress_y", "stress_z"]
             .map(|name| Column::new(name, "Pa"))
             .to_vec();
-        let place = Place { stage: Stage::Growing, growth: growth.progress(), record };
-        Ok(Self { scene: scene.clone(), final_radii, recipe, growth, system, place })
+        let progress = RunState { phase: Phase::Growing, growth: growth.progress(), record };
+        Ok(Self { scene: scene.clone(), final_radii, recipe, growth, system, progress })
     }
 
     fn step(&mut self) {
-        match self.place.stage {
-            Stage::Growing => {
+        match self.progress.phase {
+            Phase::Growing => {
                 let grown = self.growth.step(&mut self.system);
-                self.place.growth = self.growth.progress();
-                self.place.record.count("growing", 1);
+                self.progress.growth = self.growth.progress();
+                self.progress.record.count("growing", 1);
                 if grown != Grown::Growing {
-                    self.let_go();
-                    self.place.stage = Stage::Resting(Settling::default());
+                    self.release();
+                    self.progress.phase = Phase::Resting(Settling::default());
                 }
             }
-            Stage::Resting(mut settling) => {
+            Phase::Resting(mut settling) => {
                 let is_time = settling.step(&mut self.system);
-                self.place.stage = Stage::Resting(settling);
-                self.place.record.count("resting", 1);
+                self.progress.phase = Phase::Resting(settling);
+                self.progress.record.count("resting", 1);
                 if is_time {
-                    self.look(settling);
+                    self.check_rest(settling);
                 }
                 return;
             }
-            Stage::Done => return,
+            Phase::Done => return,
         }
         build::drag(&mut self.system, self.scene.compression.drag_time);
     }
 
-    /// The membrane is free and the pump draws.
-    fn let_go(&mut self) {
+    /// Releases the membrane and evacuates it.
+    fn release(&mut self) {
         self.system.model.membrane.holders.fill(FREE);
         self.system.controls.gauge_setpoint = -self.scene.confined.pressure;
     }
 
-    fn look(&mut self, mut settling: Settling) {
-        let unrest = settling.unrest(&self.system);
-        self.place.stage = Stage::Resting(settling);
+    fn check_rest(&mut self, mut settling: Settling) {
+        let residuals = settling.residuals(&self.system);
+        self.progress.phase = Phase::Resting(settling);
         let compression = &self.scene.compression;
         let System { model, state, scratch, .. } = &self.system;
         let n_max = 2.0 * compression.rest_time_max / model.substep;
-        let is_drawn = state.gauge <= -self.scene.confined.pressure;
-        let is_at_rest = is_drawn && unrest.is_rest();
+        let is_evacuated = state.gauge <= -self.scene.confined.pressure;
+        let is_at_rest = is_evacuated && residuals.is_rest();
         if !is_at_rest && !build::is_over(settling.n_done, n_max) {
             return;
         }
@@ -146,25 +146,23 @@ impl Confined {
         let row = [-state.gauge, sigma[(0, 0)], sigma[(1, 1)], sigma[(2, 2)]];
         let shear = sigma[(0, 1)].hypot(sigma[(1, 2)]).hypot(sigma[(2, 0)]);
         let overlap = packing.overlap_max / (2.0 * model.radius_mean);
-        let record = &mut self.place.record;
-        for (column, value) in record.columns.iter_mut().zip(row) {
-            column.values.push(value);
-        }
+        let record = &mut self.progress.record;
+        record.push_row(&row);
         record.set("mean_stress", sigma.trace() / 3.0, "Pa");
         record.set("shear_stress", shear, "Pa");
         record.set("enclosed_volume", volume, "m^3");
         record.set("coordination", packing.coordination_number, "1");
-        record.set("unbalanced_force", unrest.unbalanced, "1");
-        record.set("kinetic_over_elastic", unrest.kinetic, "1");
+        record.set("unbalanced_force", residuals.unbalanced, "1");
+        record.set("kinetic_over_elastic", residuals.kinetic, "1");
         record.validity.overlap_over_diameter_max = overlap;
-        record.validity.unbalanced_force = unrest.unbalanced;
+        record.validity.unbalanced_force = residuals.unbalanced;
         record.digest = digest;
-        self.place.stage = Stage::Done;
+        self.progress.phase = Phase::Done;
     }
 }
 
 /// Grains and a spherical membrane of `radius` (m) that is held all over.
-fn system(scene: &Scene, radius: Real, grains: Grains) -> Result<System, StartError> {
+fn system(scene: &PackingScene, radius: Real, grains: Grains) -> Result<System, StartError> {
     let (keys, law) = (&scene.confined, build::grain_law(&scene.grains, scene.confined.friction));
     let material = &scene.grains.material;
     let substep = scene.compression.substep;
@@ -192,45 +190,46 @@ fn system(scene: &Scene, radius: Real, grains: Grains) -> Result<System, StartEr
     Ok(builder.build()?)
 }
 
-/// Latex, as dense as the grains in the seeds' tables.
+/// Latex, as dense as the grains in the source's tables.
 fn rubber(keys: &Keys, density: Real) -> Material {
     Material { youngs_modulus: keys.youngs_modulus, poisson_ratio: NET_POISSON, density }
 }
 
-impl Run for Confined {
+impl Run for ConfinedRun {
     fn advance(&mut self) -> Result<Progress, Diverged> {
-        let (stage, share) = match self.place.stage {
-            Stage::Growing => ("growing", 0.5 * self.place.growth.scale.powi(3).min(0.99)),
-            Stage::Resting(_) => ("resting", 0.5),
-            Stage::Done => ("resting", 1.0),
+        let (phase, share) = match self.progress.phase {
+            Phase::Growing => ("growing", 0.5 * self.progress.growth.scale.powi(3).min(0.99)),
+            Phase::Resting(_) => ("resting", 0.5),
+            Phase::Done => ("resting", 1.0),
         };
         for _ in 0..SLICE {
             self.step();
         }
-        self.system.check(self.place.record.n_substeps.values().sum())?;
-        let is_done = self.place.stage == Stage::Done;
-        Ok(Progress { stage, share: if is_done { 1.0 } else { share }, is_done })
+        self.system.check(self.progress.record.n_substeps.values().sum())?;
+        let is_done = self.progress.phase == Phase::Done;
+        Ok(Progress { phase, share: if is_done { 1.0 } else { share }, is_done })
     }
 
     fn save(&self) -> Vec<u8> {
-        saved_run::pack(&self.place.record.case, &self.place, [&self.system.state])
+        saved_run::pack(&self.progress.record.case, &self.progress, [&self.system.state])
     }
 
     fn resume(&mut self, bytes: &[u8]) -> Result<(), ResumeError> {
-        let (place, [state]): (Place, _) = saved_run::unpack(&self.place.record.case, bytes)?;
-        saved_run::of_one_scene(&state, &self.system.state)?;
+        let (progress, [state]): (RunState, _) =
+            saved_run::unpack(&self.progress.record.case, bytes)?;
+        saved_run::check_scene(&state, &self.system.state)?;
         let mut model = self.system.model.clone();
         model.radius_max = state.grains.radii.iter().copied().fold(model.radius_max, Real::max);
-        self.growth = Growth::resumed(self.recipe, self.final_radii.clone(), place.growth);
+        self.growth = Growth::resumed(self.recipe, self.final_radii.clone(), progress.growth);
         self.system = System::new(model, self.system.controls.clone(), state);
-        self.place = place;
-        if self.place.stage != Stage::Growing {
-            self.let_go();
+        self.progress = progress;
+        if self.progress.phase != Phase::Growing {
+            self.release();
         }
         Ok(())
     }
 
     fn record(&self) -> Record {
-        self.place.record.clone()
+        self.progress.record.clone()
     }
 }

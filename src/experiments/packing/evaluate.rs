@@ -1,4 +1,4 @@
-//! What the records show: where each packing jams, with how many contacts, and how that compares.
+//! Evaluation of the packings: where each packing jams, and with how many contacts.
 //!
 //! ```text
 //! φ_J  from φ = φ_J + a p^(2/3) through the three lowest pressures          (Hertz)
@@ -7,56 +7,21 @@
 
 use super::{
     super::{
-        findings::{Curve, Expected, Findings, Quantity, Report, Row},
+        findings::{Curve, Expected, Findings, Quantity, Row, RowText},
         record::Record,
     },
-    Case, fit, moduli, plots,
-    scene::Scene,
+    cases::Case,
+    fit,
+    measure::{Jammed, SILBERT, jammed, states},
+    moduli, plots,
+    scene::PackingScene,
 };
 use crate::base::Real;
 
-/// Pressures from which the state without pressure is extrapolated.
-const N_LOWEST: usize = 3;
-/// The source's upper end of growth: a hundredth of its vacuum (Pa).
+/// Pressure at which growth ends in the source: a hundredth of its vacuum (Pa).
 const SOURCE_STOP: Real = 900.0;
-/// φ_J and z over friction after Silbert (2010), read from memory of its figures.
-pub(super) const SILBERT: [[Real; 3]; 5] =
-    [[0.0, 0.639, 6.0], [0.1, 0.61, 5.2], [0.3, 0.58, 4.6], [1.0, 0.56, 4.0], [10.0, 0.55, 3.9]];
-
-/// Where a packing jams.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Jammed {
-    pub(super) friction: Real,
-    pub(super) phi: Real,
-    pub(super) z: Real,
-}
-
-/// States of a record as (φ, p, z without rattlers), by falling pressure.
-pub(super) fn states(record: &Record) -> Vec<[Real; 3]> {
-    let column = |name| record.column(name).unwrap_or_default();
-    let (phi, pressure) = (column("solid_fraction"), column("pressure"));
-    let z = column("coordination_backbone");
-    let rows = phi.iter().zip(pressure).zip(z);
-    let mut states: Vec<[Real; 3]> = rows.map(|((&phi, &p), &z)| [phi, p, z]).collect();
-    states.sort_by(|a, b| b[1].total_cmp(&a[1]));
-    states
-}
-
-/// The state without pressure.
-pub(super) fn jammed(record: &Record) -> Option<Jammed> {
-    let states = states(record);
-    let lowest = states.get(states.len().checked_sub(N_LOWEST)?..)?;
-    let two_thirds: Vec<[Real; 2]> =
-        lowest.iter().map(|[phi, p, _]| [p.powf(2.0 / 3.0), *phi]).collect();
-    let phi = fit::line(&two_thirds)?.intercept;
-    let roots: Vec<[Real; 2]> =
-        lowest.iter().map(|[at, _, z]| [(at - phi).max(0.0).sqrt(), *z]).collect();
-    let z = fit::line(&roots)?.intercept;
-    Some(Jammed { friction: record.scalar("friction")?, phi, z })
-}
-
-/// All that the records show.
-pub(super) fn findings(scene: &Scene, records: &[Record]) -> Findings {
+/// All findings.
+pub(super) fn findings(scene: &PackingScene, records: &[Record]) -> Findings {
     let mut findings = Findings::default();
     let of = |case: Case| records.iter().find(|it| it.case == case.name());
     curves(records, &mut findings);
@@ -89,10 +54,10 @@ pub(super) fn findings(scene: &Scene, records: &[Record]) -> Findings {
         None => missing("confined", "U22", &mut findings),
     }
     rest_rows(records, &mut findings);
-    findings.plots = plots::all(records, smooth, &over_friction);
+    findings.plots = plots::plots(records, smooth, &over_friction);
     findings.notes.push(
-        "Packings jam by quasi-static isotropic compression of a dilute state with the friction of the \
-         case switched on all the time; φ_J with friction depends on that protocol."
+        "Packings jam by quasi-static isotropic compression of a dilute state with the friction \
+        of the case switched on throughout; φ_J with friction depends on that protocol."
             .to_owned(),
     );
     findings
@@ -102,7 +67,7 @@ fn missing(case: &str, rows: &str, findings: &mut Findings) {
     findings.notes.push(format!("{rows}: no record of {case}"));
 }
 
-/// Every record as tables.
+/// The tables of all records.
 fn curves(records: &[Record], findings: &mut Findings) {
     for record in records {
         let name = record.case.clone();
@@ -114,22 +79,11 @@ fn curves(records: &[Record], findings: &mut Findings) {
     }
 }
 
-pub(super) fn quantity(name: &str, meaning: &str, value: Real, unit: &str) -> Quantity {
-    Quantity {
-        name: name.to_owned(),
-        meaning: meaning.to_owned(),
-        value,
-        deviation: None,
-        n: 1,
-        unit: unit.to_owned(),
-    }
-}
-
-/// U24 and U25: the frictionless packing of equal grains.
+/// U24 and U25: the packing of equal grains without friction.
 fn close_packing(record: &Record, findings: &mut Findings) {
     let Some(at) = jammed(record) else { return missing(&record.case, "U24, U25", findings) };
     findings.rows.push(Row::new(
-        &Report {
+        &RowText {
             id: "U24.phi_j",
             quantity: "solid fraction at which equal smooth spheres jam",
             unit: "1",
@@ -140,12 +94,13 @@ fn close_packing(record: &Record, findings: &mut Findings) {
         at.phi,
     ));
     findings.rows.push(Row::new(
-        &Report {
+        &RowText {
             id: "U25.isostatic",
-            quantity: "contacts per grain without rattlers, extrapolated to no pressure, smooth",
+            quantity: "contacts per grain without rattlers, extrapolated to zero pressure, smooth",
             unit: "1",
             oracle: "isostatic: 6 (Maxwell's count in three dimensions)",
-            reason: "0.15: the line in √(φ − φ_J) through three states; 3 contacts of 2000 grains are 0.003",
+            reason: "0.15: linear fit in √(φ − φ_J) through three states; 3 contacts among 2000 \
+                    grains are 0.003",
         },
         Expected::within(6.0, 0.15),
         at.z,
@@ -154,12 +109,12 @@ fn close_packing(record: &Record, findings: &mut Findings) {
     let points: Vec<[Real; 2]> = states.iter().map(|s| [s[0], s[1]]).collect();
     if let Some((_, exponent)) = fit::onset(&points, 0.004) {
         findings.rows.push(Row::new(
-            &Report {
+            &RowText {
                 id: "U25.pressure_exponent",
-                quantity: "exponent of p over φ − φ_J, onset fitted as well",
+                quantity: "exponent of p over φ − φ_J, with fitted onset",
                 unit: "1",
                 oracle: "Hertz: 3/2 (O'Hern et al. 2003)",
-                reason: "0.1: z rises by a tenth over the range, and p with it",
+                reason: "0.1: z rises by a tenth over the range, and increases p",
             },
             Expected::within(1.5, 0.1),
             exponent,
@@ -171,7 +126,7 @@ fn close_packing(record: &Record, findings: &mut Findings) {
         .collect();
     if let Some(exponent) = fit::exponent(&excess) {
         findings.rows.push(Row::new(
-            &Report {
+            &RowText {
                 id: "U25.contact_exponent",
                 quantity: "exponent of z − 6 over φ − φ_J",
                 unit: "1",
@@ -199,22 +154,22 @@ fn structure(record: &Record, findings: &mut Findings) {
     let (third, second) = (highest(1.66, 1.82), highest(1.9, 2.1));
     let mut row = |id, quantity, oracle, reason, expected, measured| {
         findings.rows.push(Row::new(
-            &Report { id, quantity, unit: "1", oracle, reason },
+            &RowText { id, quantity, unit: "1", oracle, reason },
             expected,
             measured,
         ));
     };
     row(
         "U24.g_peak_at_2d",
-        "place of the second part of the second peak of g(r), in diameters",
-        "2: three grains in a line; Götz (2024), Fig. 25 shows peaks that die away, amorphous",
+        "position of the second part of the second peak of g(r), in diameters",
+        "2: three grains in a line; Götz (2024), Fig. 25 shows decaying peaks, amorphous",
         "0.03: one and a half bins",
         Expected::within(2.0, 0.03),
         second[0],
     );
     row(
         "U24.g_peak_at_sqrt3d",
-        "place of the first part of the second peak of g(r), in diameters",
+        "position of the first part of the second peak of g(r), in diameters",
         "√3: two triangles of grains that share a side",
         "0.06: the part is broad",
         Expected::within(3.0_f64.sqrt(), 0.06),
@@ -222,7 +177,7 @@ fn structure(record: &Record, findings: &mut Findings) {
     );
     row(
         "U24.g_split",
-        "g at √3 d over its lowest value between √3 d and 2 d",
+        "g at √3 d divided by its lowest value between √3 d and 2 d",
         "above 1: the second peak is split",
         "a bound",
         Expected::at_least(1.0),
@@ -231,20 +186,30 @@ fn structure(record: &Record, findings: &mut Findings) {
     row(
         "U24.g_no_lattice",
         "highest g within 0.05 d of √2 d",
-        "at most 1: a lattice has a shell of neighbours there, a random packing nearly its lowest g",
+        "at most 1: a lattice has a shell of neighbors there, a random packing almost its lowest g",
         "a bound",
         Expected::at_most(1.0),
         highest(1.364, 1.464)[1],
     );
 }
 
-/// U26: what friction does.
+/// U26: the effect of friction.
 fn friction_rows(jammed: &[Jammed], findings: &mut Findings) {
     for at in jammed {
         let name = format!("phi_j_friction_{}", at.friction);
-        findings.quantities.push(quantity(&name, "solid fraction without pressure", at.phi, "1"));
+        findings.quantities.push(Quantity::new(
+            &name,
+            "solid fraction at zero pressure",
+            at.phi,
+            "1",
+        ));
         let name = format!("z_friction_{}", at.friction);
-        findings.quantities.push(quantity(&name, "contacts per grain without pressure", at.z, "1"));
+        findings.quantities.push(Quantity::new(
+            &name,
+            "contacts per grain at zero pressure",
+            at.z,
+            "1",
+        ));
     }
     let largest_rise = |of: fn(&Jammed) -> Real| {
         let rises = jammed.windows(2).map(|pair| of(&pair[1]) - of(&pair[0]));
@@ -252,7 +217,7 @@ fn friction_rows(jammed: &[Jammed], findings: &mut Findings) {
     };
     let mut row = |id, quantity, oracle, reason, expected, measured| {
         findings.rows.push(Row::new(
-            &Report { id, quantity, unit: "1", oracle, reason },
+            &RowText { id, quantity, unit: "1", oracle, reason },
             expected,
             measured,
         ));
@@ -284,9 +249,9 @@ fn friction_rows(jammed: &[Jammed], findings: &mut Findings) {
         );
         row(
             "U26.z_loosest",
-            "z at the largest friction, without pressure",
+            "z at the largest friction, extrapolated to zero pressure",
             "4: isostatic with infinite friction",
-            "0.2: Silbert's values scatter by that",
+            "0.2: the scatter of Silbert's values",
             Expected::within(4.0, 0.2),
             loosest.z,
         );
@@ -302,8 +267,8 @@ fn friction_rows(jammed: &[Jammed], findings: &mut Findings) {
     }
 }
 
-/// C6: growth as the source prepares its samples.
-fn growth_rows(scene: &Scene, record: &Record, findings: &mut Findings) {
+/// C6: growth, as the source prepares its samples.
+fn growth_rows(scene: &PackingScene, record: &Record, findings: &mut Findings) {
     let Some(at) = jammed(record) else { return missing(&record.case, "C6", findings) };
     let grains = &scene.grains;
     let uniform =
@@ -314,7 +279,7 @@ fn growth_rows(scene: &Scene, record: &Record, findings: &mut Findings) {
         .map_or(Real::NAN, |(_, overlap)| *overlap);
     let mut row = |id, quantity, oracle, reason, expected, measured| {
         findings.rows.push(Row::new(
-            &Report { id, quantity, unit: "1", oracle, reason },
+            &RowText { id, quantity, unit: "1", oracle, reason },
             expected,
             measured,
         ));
@@ -329,7 +294,7 @@ fn growth_rows(scene: &Scene, record: &Record, findings: &mut Findings) {
     );
     row(
         "C6.isostatic",
-        "contacts per grain without rattlers, extrapolated to no pressure",
+        "contacts per grain without rattlers, extrapolated to zero pressure",
         "isostatic: 6",
         "0.15: as for equal spheres",
         Expected::within(6.0, 0.15),
@@ -337,15 +302,15 @@ fn growth_rows(scene: &Scene, record: &Record, findings: &mut Findings) {
     );
     row(
         "C6.overlap",
-        "largest overlap over diameter where growth ends, below 1e-2 of the vacuum",
-        "at most 1 %: the grains still have their size",
+        "largest overlap divided by diameter where growth ends, below 1e-2 of the vacuum",
+        "at most 1 %: grains keep their size",
         "a bound",
         Expected::at_most(0.01),
         overlap,
     );
     row(
         "C6.radius_spread",
-        "standard deviation of the radii over their mean, after growth",
+        "standard deviation of the radii divided by their mean, after growth",
         "uniform between 2.3 and 2.7 mm: (R_max − R_min)/(√12 R̄), Götz (2024), table 2",
         "5 %: four standard errors of a sample of 2000",
         Expected::within(uniform, 0.05 * uniform),
@@ -353,13 +318,13 @@ fn growth_rows(scene: &Scene, record: &Record, findings: &mut Findings) {
     );
 }
 
-/// U22: stress inside equals pressure outside.
-fn stress_rows(scene: &Scene, record: &Record, findings: &mut Findings) {
+/// U22: the stress inside equals the pressure outside.
+fn stress_rows(scene: &PackingScene, record: &Record, findings: &mut Findings) {
     let pressure = scene.confined.pressure;
     let mean = record.scalar("mean_stress").unwrap_or(Real::NAN);
     for name in ["stress_x", "stress_y", "stress_z"] {
         let value = record.column(name).and_then(|it| it.last()).copied().unwrap_or(Real::NAN);
-        findings.quantities.push(quantity(
+        findings.quantities.push(Quantity::new(
             name,
             "normal stress of the confined sample",
             value,
@@ -367,19 +332,20 @@ fn stress_rows(scene: &Scene, record: &Record, findings: &mut Findings) {
         ));
     }
     findings.rows.push(Row::new(
-        &Report {
+        &RowText {
             id: "U22.stress",
-            quantity: "mean stress of a sample in a membrane over the vacuum's pressure",
+            quantity: "mean stress of a sample in a membrane divided by the vacuum",
             unit: "1",
             oracle: "1: equilibrium, σ = 1/V Σ f l (Love, Weber)",
-            reason: "2 %: what the tension of the membrane takes, 2/3 of its work over the volume's",
+            reason: "2 %: the share carried by the tension of the membrane, 2/3 of its work \
+                    divided by that of the volume",
         },
         Expected::within(1.0, 0.02),
         mean / pressure,
     ));
 }
 
-/// U23: at rest wherever something was recorded.
+/// U23: every recorded state is at rest.
 fn rest_rows(records: &[Record], findings: &mut Findings) {
     let worst = |name: &str| {
         let of_columns = records.iter().filter_map(|it| it.column(name)).flatten().copied();
@@ -387,11 +353,16 @@ fn rest_rows(records: &[Record], findings: &mut Findings) {
         of_columns.chain(of_scalars).fold(Real::NEG_INFINITY, Real::max)
     };
     for (id, name, quantity, bound) in [
-        ("U23.unbalanced", "unbalanced_force", "largest unbalanced force over contact force", 1e-3),
-        ("U23.kinetic", "kinetic_over_elastic", "largest kinetic over elastic energy", 1e-6),
+        (
+            "U23.unbalanced",
+            "unbalanced_force",
+            "largest unbalanced force divided by contact force",
+            1e-3,
+        ),
+        ("U23.kinetic", "kinetic_over_elastic", "largest kinetic divided by elastic energy", 1e-6),
     ] {
         findings.rows.push(Row::new(
-            &Report {
+            &RowText {
                 id,
                 quantity,
                 unit: "1",

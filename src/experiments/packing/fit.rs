@@ -1,8 +1,8 @@
-//! Straight lines through points, by least squares.
+//! Straight lines and power laws through points, by least squares.
 
 use crate::base::{Real, real::real};
 
-/// Onsets that are tried.
+/// Number of onsets that are tried.
 const N_TRIES: usize = 2000;
 
 /// y = intercept + slope x.
@@ -12,7 +12,7 @@ pub(super) struct Line {
     pub(super) slope: Real,
 }
 
-/// The line through `points` (x, y); `None` for less than two.
+/// The line through `points` (x, y); `None` for fewer than two.
 pub(super) fn line(points: &[[Real; 2]]) -> Option<Line> {
     if points.len() < 2 {
         return None;
@@ -35,8 +35,8 @@ pub(super) fn exponent(points: &[[Real; 2]]) -> Option<Real> {
     line(&logs).map(|it| it.slope)
 }
 
-/// Where the power law y ~ (x − x₀)^b through `points` (x, y) begins, and its exponent b: x₀ is looked
-/// for up to `reach` below the smallest x, where the logarithms lie best on a line.
+/// Onset x₀ and exponent b of the power law y ~ (x − x₀)^b through `points` (x, y): of the onsets
+/// up to `reach` below the smallest x, the one at which the logarithms fit a line best.
 pub(super) fn onset(points: &[[Real; 2]], reach: Real) -> Option<(Real, Real)> {
     if points.len() < 3 {
         return None;
@@ -45,14 +45,15 @@ pub(super) fn onset(points: &[[Real; 2]], reach: Real) -> Option<(Real, Real)> {
     let shifted = |x0: Real| -> Vec<[Real; 2]> {
         points.iter().map(|p| [(p[0] - x0).ln(), p[1].ln()]).collect()
     };
-    let off = |x0: Real| {
+    let fit = |x0: Real| {
         let logs = shifted(x0);
         let fitted = line(&logs)?;
-        let misses = logs.iter().map(|p| (p[1] - fitted.intercept - fitted.slope * p[0]).powi(2));
-        Some((misses.sum::<Real>(), x0, fitted.slope))
+        let residuals =
+            logs.iter().map(|p| (p[1] - fitted.intercept - fitted.slope * p[0]).powi(2));
+        Some((residuals.sum::<Real>(), x0, fitted.slope))
     };
     let tries = (1..=N_TRIES).map(|k| lowest - reach * real(k) / real(N_TRIES));
-    tries.filter_map(off).min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, x0, slope)| (x0, slope))
+    tries.filter_map(fit).min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, x0, slope)| (x0, slope))
 }
 
 #[cfg(test)]
@@ -61,7 +62,7 @@ mod tests {
 
     /// Oracle: points on a line and on a power law; to rounding.
     #[test]
-    fn lines_and_powers_are_found_back() {
+    fn lines_and_power_laws_are_recovered() {
         let points: Vec<[Real; 2]> = (1..6).map(|k| [real(k), 3.0 - 2.0 * real(k)]).collect();
         let found = line(&points).unwrap();
         assert!((found.intercept - 3.0).abs() < 1e-13 && (found.slope + 2.0).abs() < 1e-13);

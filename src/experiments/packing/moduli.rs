@@ -1,4 +1,4 @@
-//! Elastic moduli of a packing at rest: small changes, and what the stress answers.
+//! Elastic moduli of a packing at rest: small strains and the response of the stress.
 //!
 //! ```text
 //! all diameters larger by ε:                K = Δp/(3 ε)
@@ -11,27 +11,25 @@
 //!
 //! | symbol | meaning | unit |
 //! |---|---|---|
-//! | ε | a hundredth of the mean overlap over diameter: few contacts slide | – |
+//! | ε | strain, a hundredth of the mean overlap over diameter: few contacts slide | – |
 //! | p, σ | pressure and stress that contacts carry, positive in compression | Pa |
 //! | z, φ | contacts per grain, solid fraction | – |
 //! | G_p, ν | shear modulus and Poisson's ratio of the grains | Pa, – |
 //!
-//! The theory moves all grains affinely. Real ones relax, a little in compression and much in shear:
-//! Makse, Gland, Johnson & Schwartz (1999).
+//! The theory moves all grains affinely. Real ones relax, slightly in compression and strongly in
+//! shear: Makse, Gland, Johnson & Schwartz (1999).
 
 use std::f64::consts::PI;
 
-use serde::{Deserialize, Serialize};
-
 use super::{
-    boxed::{Boxed, Changes, Seen},
-    evaluate::quantity,
-    scene::Scene,
+    boxed::{BoxRun, Change, RestState},
+    measure::Probe,
+    scene::PackingScene,
 };
 use crate::{
     base::Real,
     experiments::{
-        findings::{Expected, Findings, Report, Row},
+        findings::{Expected, Findings, Quantity, Row, RowText},
         record::{Column, Record},
     },
 };
@@ -39,19 +37,10 @@ use crate::{
 /// Name of the table with a row for each pressure.
 const TABLE: &str = "moduli";
 
-/// A small strain that measures a modulus, and what was there before it.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-pub(super) enum Probe {
-    /// Bulk modulus: pressure (Pa).
-    Bulk { strain: Real, pressure: Real },
-    /// Shear modulus: σ_xx − σ_yy (Pa).
-    Shear { strain: Real, difference: Real },
-}
-
-impl Boxed {
-    /// Begins to measure the moduli of a state at rest.
-    pub(super) fn probe(&mut self, seen: &Seen) {
-        let Seen { pressure, solid_fraction, coordination, .. } = *seen;
+impl BoxRun {
+    /// Starts to measure the moduli of a state at rest.
+    pub(super) fn start_probe(&mut self, rest: &RestState) {
+        let RestState { pressure, solid_fraction, coordination, .. } = *rest;
         for (name, unit, value) in [
             ("pressure", "Pa", pressure),
             ("solid_fraction", "1", solid_fraction),
@@ -59,30 +48,30 @@ impl Boxed {
         ] {
             self.push_modulus(name, unit, value);
         }
-        let strain = self.scene.moduli.probe * seen.overlap;
-        self.place.probe = Some(Probe::Bulk { strain, pressure });
-        self.ramp(Changes::Sizes, strain, pressure);
+        let strain = self.scene.moduli.probe * rest.overlap;
+        self.progress.probe = Some(Probe::Bulk { strain, pressure });
+        self.ramp(Change::Sizes, strain, pressure);
     }
 
-    /// Ends a measurement, and begins the next.
-    pub(super) fn probed(&mut self, probe: Probe, seen: &Seen) {
-        let Seen { pressure: now, difference: now_difference, .. } = *seen;
+    /// Ends a measurement and starts the next one.
+    pub(super) fn end_probe(&mut self, probe: Probe, rest: &RestState) {
+        let RestState { pressure: now, difference: now_difference, .. } = *rest;
         match probe {
             Probe::Bulk { strain, pressure } => {
                 self.push_modulus("bulk_modulus", "Pa", (now - pressure) / (3.0 * strain));
-                self.place.probe = Some(Probe::Shear { strain, difference: now_difference });
-                self.ramp(Changes::Shape, strain, now);
+                self.progress.probe = Some(Probe::Shear { strain, difference: now_difference });
+                self.ramp(Change::Shape, strain, now);
             }
             Probe::Shear { strain, difference } => {
                 let modulus = (difference - now_difference) / (4.0 * strain);
                 self.push_modulus("shear_modulus", "Pa", modulus);
-                self.place.n_probed += 1;
+                self.progress.n_probed += 1;
             }
         }
     }
 
     fn push_modulus(&mut self, name: &str, unit: &str, value: Real) {
-        let table = self.place.record.tables.entry(TABLE.to_owned()).or_default();
+        let table = self.progress.record.tables.entry(TABLE.to_owned()).or_default();
         match table.iter_mut().find(|it| it.name == name) {
             Some(column) => column.values.push(value),
             None => table.push(Column { values: vec![value], ..Column::new(name, unit) }),
@@ -90,41 +79,41 @@ impl Boxed {
     }
 }
 
-/// Rows of both moduli and of the exponent.
-pub(super) fn rows(scene: &Scene, record: &Record, findings: &mut Findings) {
+/// Adds the rows of both moduli and of the pressure exponent.
+pub(super) fn rows(scene: &PackingScene, record: &Record, findings: &mut Findings) {
     let column = |name| record.table_column(TABLE, name).unwrap_or_default();
     let last = |name| column(name).last().copied().unwrap_or(Real::NAN);
     let first = |name| column(name).first().copied().unwrap_or(Real::NAN);
     let (phi, p, z) = (last("solid_fraction"), last("pressure"), last("coordination"));
     let nu = scene.grains.material.poisson_ratio;
     let shear = scene.grains.material.youngs_modulus / (2.0 * (1.0 + nu));
-    let carried = (z * phi * shear / (PI * (1.0 - nu))).powi(2) * p;
-    let bulk_emt = (carried / 18.0).cbrt();
-    let shear_emt = (5.0 - 4.0 * nu) / (5.0 * (2.0 - nu)) * (1.5 * carried).cbrt();
+    let factor = (z * phi * shear / (PI * (1.0 - nu))).powi(2) * p;
+    let bulk_emt = (factor / 18.0).cbrt();
+    let shear_emt = (5.0 - 4.0 * nu) / (5.0 * (2.0 - nu)) * (1.5 * factor).cbrt();
     let (bulk, shear) = (last("bulk_modulus"), last("shear_modulus"));
     for (name, meaning, value) in [
-        ("bulk_modulus", "of the packing at the seeds' vacuum", bulk),
+        ("bulk_modulus", "of the packing at the source's vacuum", bulk),
         ("bulk_modulus_emt", "by effective-medium theory", bulk_emt),
-        ("shear_modulus", "of the packing at the seeds' vacuum", shear),
+        ("shear_modulus", "of the packing at the source's vacuum", shear),
         ("shear_modulus_emt", "by effective-medium theory", shear_emt),
     ] {
-        findings.quantities.push(quantity(name, meaning, value, "Pa"));
+        findings.quantities.push(Quantity::new(name, meaning, value, "Pa"));
     }
     let mut row = |id, quantity, oracle, expected, measured| {
-        let told =
-            Report { id, quantity, unit: "1", oracle, reason: "a range from the literature" };
-        findings.rows.push(Row::new(&told, expected, measured));
+        let text =
+            RowText { id, quantity, unit: "1", oracle, reason: "a range from the literature" };
+        findings.rows.push(Row::new(&text, expected, measured));
     };
     row(
         "U21.bulk_modulus",
-        "bulk modulus over that of effective-medium theory",
+        "bulk modulus divided by that of effective-medium theory",
         "0.7 to 1.0: the theory moves all grains affinely, real ones relax (Makse et al. 1999)",
         Expected::between(0.7, 1.0),
         bulk / bulk_emt,
     );
     row(
         "U21.shear_modulus",
-        "shear modulus over that of effective-medium theory",
+        "shear modulus divided by that of effective-medium theory",
         "0.4 to 0.8: real grains relax far more under shear (Makse et al. 1999)",
         Expected::between(0.4, 0.8),
         shear / shear_emt,
@@ -133,7 +122,7 @@ pub(super) fn rows(scene: &Scene, record: &Record, findings: &mut Findings) {
         row(
             "U21.pressure_exponent",
             "exponent with which the bulk modulus rises with pressure",
-            "1/3 to 1/2: 1/3 by Hertz at a fixed number of contacts, more as contacts are gained",
+            "1/3 to 1/2: 1/3 by Hertz at a constant number of contacts, more if the number grows",
             Expected::between(1.0 / 3.0, 0.5),
             (bulk / first("bulk_modulus")).ln() / (p / first("pressure")).ln(),
         );

@@ -1,16 +1,16 @@
-//! Pictures of the packings.
+//! Plots of the packings.
 
 use super::{
     super::{
         findings::{Kind, Plot, Series},
         record::Record,
     },
-    evaluate::{Jammed, SILBERT, jammed, states},
+    measure::{Jammed, SILBERT, jammed, states},
 };
 use crate::base::Real;
 
-/// All pictures for which there are records.
-pub(super) fn all(
+/// All plots that there are records for.
+pub(super) fn plots(
     records: &[Record],
     smooth: Option<&Record>,
     over_friction: &[Jammed],
@@ -26,10 +26,6 @@ pub(super) fn all(
     plots
 }
 
-fn series(label: &str, kind: Kind, points: Vec<[Real; 2]>) -> Series {
-    Series { label: label.to_owned(), kind, points, deviations: Vec::new() }
-}
-
 fn plot(
     title: &str,
     source_says: &str,
@@ -37,26 +33,18 @@ fn plot(
     logs: [bool; 2],
     series: Vec<Series>,
 ) -> Plot {
-    Plot {
-        title: title.to_owned(),
-        source_says: source_says.to_owned(),
-        x_label: labels[0].to_owned(),
-        y_label: labels[1].to_owned(),
-        log_x: logs[0],
-        log_y: logs[1],
-        series,
-    }
+    Plot::new(title, source_says, labels, series).with_logs(logs)
 }
 
 fn pressures(records: &[Record]) -> Plot {
     let of = |record: &Record| {
         let points = states(record).iter().map(|s| [s[0], s[1]]).collect();
-        series(&record.case, Kind::Points, points)
+        Series::new(&record.case, Kind::Points, points)
     };
     let boxed = records.iter().filter(|it| it.column("solid_fraction").is_some());
     plot(
         "Pressure over solid fraction",
-        "p grows as (φ − φ_J)^(3/2) from where the packing jams (O'Hern et al. 2003)",
+        "p grows as (φ − φ_J)^(3/2) from jamming on (O'Hern et al. 2003)",
         ["solid fraction", "pressure [Pa]"],
         [false, true],
         boxed.map(of).collect(),
@@ -84,24 +72,24 @@ fn scaling(record: &Record) -> Plot {
         ["φ − φ_J", "p / p_max, z − 6"],
         [true, true],
         vec![
-            series("p / p_max", Kind::Points, pressure),
-            series("exponent 3/2", Kind::Analytic, hertz),
-            series("z − 6", Kind::Points, contacts),
-            series("exponent 1/2", Kind::Analytic, root),
+            Series::new("p / p_max", Kind::Points, pressure),
+            Series::new("exponent 3/2", Kind::Analytic, hertz),
+            Series::new("z − 6", Kind::Points, contacts),
+            Series::new("exponent 1/2", Kind::Analytic, root),
         ],
     )
 }
 
 fn frictions(over_friction: &[Jammed]) -> [Plot; 2] {
-    // A logarithmic axis has no zero: smooth grains stand where friction no longer matters.
+    // A logarithmic axis has no zero: smooth grains are drawn where friction hardly matters.
     let at = |friction: Real| friction.max(0.01);
     let measured = |of: fn(&Jammed) -> Real| {
         let points = over_friction.iter().map(|it| [at(it.friction), of(it)]).collect();
-        series("measured", Kind::Line, points)
+        Series::new("measured", Kind::Line, points)
     };
     let silbert = |k: usize| {
         let points = SILBERT.iter().map(|row| [at(row[0]), row[k]]).collect();
-        series("Silbert (2010), from memory", Kind::Source, points)
+        Series::new("Silbert (2010), from memory", Kind::Source, points)
     };
     let label = "friction (0 drawn at 0.01)";
     [
@@ -130,14 +118,14 @@ fn table(record: &Record, name: &str) -> Vec<[Real; 2]> {
 fn structure(record: &Record) -> Plot {
     let ones = vec![[0.0, 1.0], [4.0, 1.0]];
     plot(
-        "Pair distribution, centre to centre",
-        "Götz (2024), Fig. 25: peaks that die away, amorphous; a random packing's second peak is split \
-         at √3 d and 2 d, a lattice has one at √2 d",
+        "Pair distribution of the centers",
+        "Götz (2024), Fig. 25: decaying peaks, amorphous; a random packing's second peak is split \
+        at √3 d and 2 d, a lattice has a peak at √2 d",
         ["distance / diameter", "g"],
         [false, false],
         vec![
-            series("measured", Kind::Line, table(record, "g")),
-            series("without correlations", Kind::Analytic, ones),
+            Series::new("measured", Kind::Line, table(record, "g")),
+            Series::new("without correlations", Kind::Analytic, ones),
         ],
     )
 }
@@ -149,13 +137,13 @@ fn cut(record: &Record) -> Plot {
     let without = points.iter().map(|p| [p[0], limit(p[0])]).filter(|p| p[0] > 0.5).collect();
     plot(
         "Pair distribution as in eq. 42",
-        "Götz (2024), eq. 42: grains that a sphere cuts; the kernel is a diameter wide and hides narrow \
-         peaks",
+        "Götz (2024), eq. 42: grains intersected by a sphere; the kernel is a diameter wide and \
+        hides narrow peaks",
         ["distance / diameter", "g of eq. 42"],
         [false, false],
         vec![
-            series("measured", Kind::Line, points),
-            series("without correlations", Kind::Analytic, without),
+            Series::new("measured", Kind::Line, points),
+            Series::new("without correlations", Kind::Analytic, without),
         ],
     )
 }

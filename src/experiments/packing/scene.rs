@@ -5,43 +5,114 @@ use crate::{
     physics::law,
     scene::{
         Material,
+        keys::{Inline, Map, scene_keys},
         quantity::{IMPULSE, LENGTH, PRESSURE, TIME, TORQUE},
-        schema,
         text::Keys,
-        visit::{Quantity, Range, Visitor},
+        visit::{Quantity, Range},
     },
 };
 
-/// All that the packings are made with.
-#[derive(Clone, Debug)]
-pub(super) struct Scene {
-    pub(super) seed: u64,
-    pub(super) grains: Grains,
-    /// Coulomb frictions of the cases with grains of one size.
-    pub(super) frictions: Vec<Real>,
-    pub(super) compression: Compression,
-    pub(super) moduli: Moduli,
-    pub(super) confined: Confined,
-}
+/// A length that is surely given in the right unit.
+const SOME_LENGTH: Quantity = Quantity { dimension: &LENGTH, range: Range::AboveUpTo(0.0, 0.1) };
+const SOME_TIME: Quantity = Quantity::above_zero(&TIME);
+const SOME_PRESSURE: Quantity = Quantity::above_zero(&PRESSURE);
 
-/// The grains.
-#[derive(Clone, Debug)]
-pub(super) struct Grains {
-    pub(super) count: usize,
-    /// Of smooth grains of one size.
-    pub(super) count_smooth: usize,
-    /// (m)
-    pub(super) radius_min: Real,
-    /// (m)
-    pub(super) radius_max: Real,
-    pub(super) material: Material,
-    /// (s)
-    pub(super) dissipation_time: Real,
-    pub(super) tangential_damping: Real,
+scene_keys! {
+    /// The whole scene.
+    pub(super) struct PackingScene {
+        /// Seed of all random numbers.
+        seed: u64 = 0..=u64::MAX,
+        /// The grains.
+        grains: Grains = Map,
+        /// Coulomb frictions of the cases with grains of one size.
+        frictions: Vec<Real> = Range::AtLeast(0.0),
+        /// How grains are compressed.
+        compression: Compression = Map,
+        /// The case whose elastic moduli are measured.
+        moduli: Moduli = Map,
+        /// The sample in a membrane.
+        confined: Confined = Map,
+    }
+
+    /// The grains.
+    pub(super) struct Grains {
+        /// Number of grains.
+        count: usize = 100..=200_000,
+        /// Number of grains of one size without friction.
+        count_smooth: usize = 100..=200_000,
+        /// Smallest radius (m).
+        radius_min: Real = SOME_LENGTH,
+        /// Largest radius (m).
+        radius_max: Real = SOME_LENGTH,
+        /// Their material.
+        material: Material = Inline,
+        /// Dissipation time of the contacts (s).
+        dissipation_time: Real = Quantity::at_least_zero(&TIME),
+        /// Damping of the tangential springs.
+        tangential_damping: Real = Range::AtLeast(0.0),
+    }
+
+    /// How grains are compressed.
+    pub(super) struct Compression {
+        /// Substep (s).
+        substep: Real = SOME_TIME,
+        /// Solid fraction at which grains are scattered.
+        thin: Real = Range::AboveUpTo(0.0, 0.3),
+        /// Time in which velocities decay (s).
+        drag_time: Real = SOME_TIME,
+        /// Pressure at which growth ends with friction (Pa).
+        pressure_first: Real = SOME_PRESSURE,
+        /// Pressure up to which grains are compressed with friction (Pa).
+        pressure_last: Real = SOME_PRESSURE,
+        /// Pressure at which growth ends without friction (Pa).
+        pressure_high: Real = SOME_PRESSURE,
+        /// Pressure down to which grains are decompressed without friction (Pa).
+        pressure_low: Real = SOME_PRESSURE,
+        /// Change of all diameters in a step, over the mean overlap.
+        share: Real = Range::AboveUpTo(0.0, 0.9),
+        /// Duration of a step (s).
+        ramp_time: Real = SOME_TIME,
+        /// Longest rest after a step (s).
+        rest_time_max: Real = SOME_TIME,
+    }
+
+    /// The case whose elastic moduli are measured.
+    pub(super) struct Moduli {
+        /// Coulomb friction.
+        friction: Real = Range::Above(0.0),
+        /// Pressures at which they are measured, rising (Pa).
+        pressures: Vec<Real> = SOME_PRESSURE,
+        /// Strain of a measurement, over the mean overlap of the contacts.
+        probe: Real = Range::AboveUpTo(0.0, 0.1),
+    }
+
+    /// The sample in a membrane.
+    pub(super) struct Confined {
+        /// Number of grains.
+        count: usize = 50..=100_000,
+        /// Coulomb friction between grains.
+        friction: Real = Range::AtLeast(0.0),
+        /// Vacuum, positive (Pa).
+        pressure: Real = SOME_PRESSURE,
+        /// Subdivision frequency of the icosphere.
+        frequency: usize = 2..=64,
+        /// Thickness of the membrane (m).
+        thickness: Real = SOME_LENGTH,
+        /// Young's modulus of the membrane (Pa).
+        youngs_modulus: Real = SOME_PRESSURE,
+        /// Coulomb friction between grains and membrane.
+        friction_membrane: Real = Range::AtLeast(0.0),
+        /// Damping ratio of the membrane's springs.
+        spring_damping: Real = Range::AtLeast(0.0),
+        /// Elastic constant of the hinges (N m).
+        bending_stiffness: Real = Quantity::at_least_zero(&TORQUE),
+        /// Damping constant of the hinges (N s).
+        bending_damping: Real = Quantity::at_least_zero(&IMPULSE),
+    }
 }
 
 impl Grains {
-    /// What two of them have in common at this friction.
+    /// Surface of two grains with this friction.
     pub(super) fn surface(&self, friction: Real) -> law::Surface {
         let Self { dissipation_time, tangential_damping, .. } = *self;
         law::Surface { friction, dissipation_time, tangential_damping }
@@ -53,119 +124,7 @@ impl Grains {
     }
 }
 
-/// How grains are made dense.
-#[derive(Clone, Debug)]
-pub(super) struct Compression {
-    /// (s)
-    pub(super) substep: Real,
-    /// Solid fraction at which they are scattered.
-    pub(super) thin: Real,
-    /// Time in which velocities decay (s).
-    pub(super) drag_time: Real,
-    /// Where growth ends with friction (Pa).
-    pub(super) pressure_first: Real,
-    /// How far they are compressed with friction (Pa).
-    pub(super) pressure_last: Real,
-    /// Where growth ends without friction (Pa).
-    pub(super) pressure_high: Real,
-    /// How far they are let go without friction (Pa).
-    pub(super) pressure_low: Real,
-    /// Change of diameters in a step over the mean overlap.
-    pub(super) share: Real,
-    /// Length of a step (s).
-    pub(super) ramp_time: Real,
-    /// Longest rest after a step (s).
-    pub(super) rest_time_max: Real,
-}
-
-/// The case whose elastic moduli are measured.
-#[derive(Clone, Debug)]
-pub(super) struct Moduli {
-    pub(super) friction: Real,
-    /// Where they are measured, rising (Pa).
-    pub(super) pressures: Vec<Real>,
-    /// Strain of a measurement over the mean overlap of the contacts.
-    pub(super) probe: Real,
-}
-
-/// The sample in a membrane.
-#[derive(Clone, Debug)]
-pub(super) struct Confined {
-    pub(super) count: usize,
-    pub(super) friction: Real,
-    /// (Pa)
-    pub(super) pressure: Real,
-    pub(super) frequency: usize,
-    /// (m)
-    pub(super) thickness: Real,
-    /// (Pa)
-    pub(super) youngs_modulus: Real,
-    pub(super) friction_membrane: Real,
-    pub(super) spring_damping: Real,
-    /// (N m)
-    pub(super) bending_stiffness: Real,
-    /// (N s)
-    pub(super) bending_damping: Real,
-}
-
-/// A scene in which nothing is set.
-pub(super) fn blank() -> Scene {
-    const NAN: Real = Real::NAN;
-    Scene {
-        seed: 0,
-        grains: Grains {
-            count: 0,
-            count_smooth: 0,
-            radius_min: NAN,
-            radius_max: NAN,
-            material: Material { youngs_modulus: NAN, poisson_ratio: NAN, density: NAN },
-            dissipation_time: NAN,
-            tangential_damping: NAN,
-        },
-        frictions: Vec::new(),
-        compression: Compression {
-            substep: NAN,
-            thin: NAN,
-            drag_time: NAN,
-            pressure_first: NAN,
-            pressure_last: NAN,
-            pressure_high: NAN,
-            pressure_low: NAN,
-            share: NAN,
-            ramp_time: NAN,
-            rest_time_max: NAN,
-        },
-        moduli: Moduli { friction: NAN, pressures: Vec::new(), probe: NAN },
-        confined: Confined {
-            count: 0,
-            friction: NAN,
-            pressure: NAN,
-            frequency: 0,
-            thickness: NAN,
-            youngs_modulus: NAN,
-            friction_membrane: NAN,
-            spring_damping: NAN,
-            bending_stiffness: NAN,
-            bending_damping: NAN,
-        },
-    }
-}
-
-impl Keys for Scene {
-    fn walk(&mut self, walk: &mut impl Visitor) {
-        walk.whole("seed", 0, u64::MAX, &mut self.seed);
-        walk.section("grains", |walk| grains(walk, &mut self.grains));
-        walk.plain_numbers("frictions", Range::AtLeast(0.0), &mut self.frictions);
-        walk.section("compression", |walk| compression(walk, &mut self.compression));
-        walk.section("moduli", |walk| {
-            let it = &mut self.moduli;
-            walk.number("friction", Range::Above(0.0), &mut it.friction);
-            walk.quantities("pressures", Quantity::above_zero(&PRESSURE), &mut it.pressures);
-            walk.number("probe", Range::AboveUpTo(0.0, 0.1), &mut it.probe);
-        });
-        walk.section("confined", |walk| confined(walk, &mut self.confined));
-    }
-
+impl Keys for PackingScene {
     fn unfit(&self) -> Vec<(&'static str, String, &'static str)> {
         let mut unfit = Vec::new();
         if self.grains.radius_max < self.grains.radius_min {
@@ -187,43 +146,4 @@ impl Keys for Scene {
         }
         unfit
     }
-}
-
-fn grains(walk: &mut impl Visitor, it: &mut Grains) {
-    schema::whole_usize(walk, "count", (100, 200_000), &mut it.count);
-    schema::whole_usize(walk, "count_smooth", (100, 200_000), &mut it.count_smooth);
-    let radius = Quantity { dimension: &LENGTH, range: Range::AboveUpTo(0.0, 0.1) };
-    walk.quantity("radius_min", radius, &mut it.radius_min);
-    walk.quantity("radius_max", radius, &mut it.radius_max);
-    schema::material(walk, &mut it.material);
-    walk.quantity("dissipation_time", Quantity::at_least_zero(&TIME), &mut it.dissipation_time);
-    walk.number("tangential_damping", Range::AtLeast(0.0), &mut it.tangential_damping);
-}
-
-fn compression(walk: &mut impl Visitor, it: &mut Compression) {
-    let (time, pressure) = (Quantity::above_zero(&TIME), Quantity::above_zero(&PRESSURE));
-    walk.quantity("substep", time, &mut it.substep);
-    walk.number("thin", Range::AboveUpTo(0.0, 0.3), &mut it.thin);
-    walk.quantity("drag_time", time, &mut it.drag_time);
-    walk.quantity("pressure_first", pressure, &mut it.pressure_first);
-    walk.quantity("pressure_last", pressure, &mut it.pressure_last);
-    walk.quantity("pressure_high", pressure, &mut it.pressure_high);
-    walk.quantity("pressure_low", pressure, &mut it.pressure_low);
-    walk.number("share", Range::AboveUpTo(0.0, 0.9), &mut it.share);
-    walk.quantity("ramp_time", time, &mut it.ramp_time);
-    walk.quantity("rest_time_max", time, &mut it.rest_time_max);
-}
-
-fn confined(walk: &mut impl Visitor, it: &mut Confined) {
-    schema::whole_usize(walk, "count", (50, 100_000), &mut it.count);
-    walk.number("friction", Range::AtLeast(0.0), &mut it.friction);
-    walk.quantity("pressure", Quantity::above_zero(&PRESSURE), &mut it.pressure);
-    schema::whole_usize(walk, "frequency", (2, 64), &mut it.frequency);
-    let thickness = Quantity { dimension: &LENGTH, range: Range::AboveUpTo(0.0, 0.1) };
-    walk.quantity("thickness", thickness, &mut it.thickness);
-    walk.quantity("youngs_modulus", Quantity::above_zero(&PRESSURE), &mut it.youngs_modulus);
-    walk.number("friction_membrane", Range::AtLeast(0.0), &mut it.friction_membrane);
-    walk.number("spring_damping", Range::AtLeast(0.0), &mut it.spring_damping);
-    walk.quantity("bending_stiffness", Quantity::at_least_zero(&TORQUE), &mut it.bending_stiffness);
-    walk.quantity("bending_damping", Quantity::at_least_zero(&IMPULSE), &mut it.bending_damping);
 }

@@ -1,9 +1,11 @@
-//! The friction test: a ball is drawn over a flat membrane and must not turn (Götz 2024, section 3.3.2).
+//! The slide test (Götz 2024, section 3.3.2): a ball that cannot turn is pulled over a flat
+//! membrane.
 //!
-//! It shows what a membrane of triangles is good for: a constant friction force and a constant
-//! height, where the spheres of the classic mass-spring membrane make the ball go up and down.
+//! With triangles, friction force and height are constant. With spheres on the vertices, the
+//! classic mass-spring membrane, the ball goes up and down.
 
-mod build; // the lattice
+mod build; // the lattice, the ball on it
+mod cases; // the list of cases
 mod evaluate; // verdicts from the records
 mod expected; // predictions from geometry and Hertz contact
 mod measure; // quantities from a record
@@ -13,16 +15,13 @@ mod scene; // scene keys
 #[cfg(test)]
 mod tests;
 
-use super::{Experiment, Plan, Run, SceneText, StartError, findings::Findings, record::Record};
+use super::{
+    Experiment, Plan, Run, SceneText, StartError, find_case, findings::Findings, record::Record,
+};
 use crate::scene::{SceneError, text};
-use build::Way;
-use run::{Case, Ride};
-use scene::Scene;
-
-/// The scene that comes with the program.
-const SCENE_FILE: &str = "launch_configs/experiments/slide.yaml";
-/// Its text.
-const SCENE_TEXT: &str = include_str!("../../../launch_configs/experiments/slide.yaml");
+use cases::{Case, cases};
+use run::SlideRun;
+use scene::SlideScene;
 
 /// The experiment.
 pub struct Slide;
@@ -33,72 +32,39 @@ impl Experiment for Slide {
     }
 
     fn about(&self) -> &'static str {
-        "a ball drawn over membranes of triangles and of spheres (Götz 2024, section 3.3.2, Fig. 8)"
+        "a ball pulled over membranes of triangles and of spheres (Götz 2024, section 3.3.2, Fig. 8)"
     }
 
     fn scene(&self) -> (&'static str, &'static str) {
-        (SCENE_FILE, SCENE_TEXT)
+        (
+            "launch_configs/experiments/slide.yaml",
+            include_str!("../../../launch_configs/experiments/slide.yaml"),
+        )
     }
 
     fn read(&self, scene: &SceneText<'_>) -> Result<Box<dyn Plan>, SceneError> {
-        Ok(Box::new(Rides { scene: text::fill(&scene.layers(false), scene::blank())? }))
+        let scene: SlideScene = text::read(&scene.layers(false))?;
+        Ok(Box::new(SlidePlan { cases: cases(&scene), scene }))
     }
 }
 
-/// All rides of a scene.
-struct Rides {
-    scene: Scene,
+/// The cases of a scene.
+struct SlidePlan {
+    scene: SlideScene,
+    cases: Vec<Case>,
 }
 
-impl Plan for Rides {
+impl Plan for SlidePlan {
     fn cases(&self) -> Vec<String> {
-        cases(&self.scene).iter().map(|case| case.name.to_owned()).collect()
+        self.cases.iter().map(|case| case.name.to_owned()).collect()
     }
 
     fn start(&self, name: &str) -> Result<Box<dyn Run>, StartError> {
-        let case = cases(&self.scene)
-            .into_iter()
-            .find(|case| case.name == name)
-            .ok_or_else(|| StartError::NoSuchCase { name: name.to_owned(), known: self.cases() })?;
-        Ok(Box::new(Ride::new(&self.scene, case)?))
+        let case = find_case(&self.cases, name, |case| case.name.to_owned())?;
+        Ok(Box::new(SlideRun::new(&self.scene, *case)?))
     }
 
     fn evaluate(&self, records: &[Record]) -> Findings {
-        evaluate::findings(&self.scene, &cases(&self.scene), records)
+        evaluate::findings(&self.scene, &self.cases, records)
     }
-}
-
-/// Both membranes along and across the rows and askew; more load; stiff contacts; a free sheet.
-fn cases(scene: &Scene) -> Vec<Case> {
-    let plain = Case {
-        name: "triangles_rows",
-        has_spheres: false,
-        way: Way::ROWS,
-        load: scene.load,
-        stiffening: 1.0,
-        pull: scene.pull,
-        is_framed: false,
-        edge: scene.membrane.edge,
-    };
-    let mut framed = Case { is_framed: true, ..plain };
-    framed.pull.length = scene.frame.length;
-    let hard = Case { stiffening: scene.hard.stiffening, pull: scene.hard.pull, ..plain };
-    let mut cases = vec![
-        plain,
-        Case { name: "triangles_across", way: Way::ACROSS, ..plain },
-        Case { name: "triangles_skew", way: Way::SKEW, ..plain },
-        Case { name: "triangles_heavy", load: scene.heavy_load, ..plain },
-        Case { name: "spheres_rows", has_spheres: true, ..plain },
-        Case { name: "spheres_across", has_spheres: true, way: Way::ACROSS, ..plain },
-        Case { name: "spheres_skew", has_spheres: true, way: Way::SKEW, ..plain },
-        Case { name: "hard_spheres_rows", has_spheres: true, ..hard },
-        Case { name: "hard_spheres_across", has_spheres: true, way: Way::ACROSS, ..hard },
-        Case { name: "triangles_framed", ..framed },
-        Case { name: "spheres_framed", has_spheres: true, ..framed },
-    ];
-    if scene.frame.is_refined {
-        let edge = scene.membrane.edge / 2.0;
-        cases.push(Case { name: "small_triangles_framed", edge, ..framed });
-    }
-    cases
 }

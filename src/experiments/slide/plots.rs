@@ -1,25 +1,24 @@
-//! The pictures: Fig. 8 of the source for both membranes, and what stands behind it.
+//! Plots: Fig. 8 of the source for both membranes, and further cases.
 
 use super::{
-    evaluate::named,
     expected,
-    measure::{Seen, at_phase},
-    scene::Scene,
+    measure::{CaseRecord, interpolate, named},
+    scene::SlideScene,
 };
 use crate::{
     base::Real,
     experiments::findings::{Kind, Plot, Series},
 };
 
-/// Length of the ways that are drawn (m).
+/// Distance that is plotted (m).
 const SHOWN: Real = 8e-3;
 
-/// Draws all pictures whose records are there.
-pub(super) fn draw(scene: &Scene, seen: &[Seen<'_>], plots: &mut Vec<Plot>) {
+/// Adds all plots that there are records for.
+pub(super) fn add(scene: &SlideScene, records: &[CaseRecord<'_>], plots: &mut Vec<Plot>) {
     let sets: [(&str, &[&str]); 4] = [
         ("all vertices held, along rows", &["triangles_rows", "spheres_rows"]),
         (
-            "all vertices held, across rows and askew",
+            "all vertices held, across rows and at an angle",
             &["triangles_across", "spheres_across", "spheres_skew"],
         ),
         ("hard contacts, slowly", &["hard_spheres_rows", "hard_spheres_across"]),
@@ -29,7 +28,8 @@ pub(super) fn draw(scene: &Scene, seen: &[Seen<'_>], plots: &mut Vec<Plot>) {
         ),
     ];
     for (title, names) in sets {
-        let shown: Vec<&Seen<'_>> = names.iter().filter_map(|name| named(seen, name)).collect();
+        let shown: Vec<&CaseRecord<'_>> =
+            names.iter().filter_map(|name| named(records, name)).collect();
         if !shown.is_empty() {
             plots.push(friction(scene, title, &shown));
             plots.push(height(scene, title, &shown));
@@ -37,92 +37,73 @@ pub(super) fn draw(scene: &Scene, seen: &[Seen<'_>], plots: &mut Vec<Plot>) {
     }
 }
 
-fn friction(scene: &Scene, title: &str, shown: &[&Seen<'_>]) -> Plot {
+fn friction(scene: &SlideScene, title: &str, shown: &[&CaseRecord<'_>]) -> Plot {
     let mut series = Vec::new();
     for it in shown {
         let weight = it.case.weight(scene);
         series.push(measured(it, "friction_force", |force| force / weight));
         if it.case.has_spheres && !it.case.is_framed {
-            series.push(computed(it, scene, "computed", |rest| rest.friction / weight));
+            series.push(computed(it, scene, |rest| rest.friction / weight));
         }
     }
-    let friction = scene.membrane.surface.friction;
+    let friction = scene.membrane.friction;
     let points = vec![[0.0, friction], [1e3 * SHOWN, friction]];
-    series.push(Series {
-        label: "μ".to_owned(),
-        kind: Kind::Analytic,
-        points,
-        deviations: Vec::new(),
-    });
-    Plot {
-        title: format!("Friction force, {title}"),
-        source_says: "Götz (2024), Fig. 8 (a): constant with triangles, oscillating with particles"
-            .to_owned(),
-        x_label: "distance / mm".to_owned(),
-        y_label: "F_R / (weight and load)".to_owned(),
-        log_x: false,
-        log_y: false,
+    series.push(Series::new("μ", Kind::Analytic, points));
+    Plot::new(
+        &format!("Friction force, {title}"),
+        "Götz (2024), Fig. 8 (a): constant with triangles, oscillating with particles",
+        ["distance / mm", "F_R / (weight and load)"],
         series,
-    }
+    )
 }
 
-/// Heights above the place where the ball starts.
-fn height(scene: &Scene, title: &str, shown: &[&Seen<'_>]) -> Plot {
+/// Heights above the ball's first position.
+fn height(scene: &SlideScene, title: &str, shown: &[&CaseRecord<'_>]) -> Plot {
     let mut series = Vec::new();
     let reach = scene.ball.radius + scene.membrane.sphere_radius;
     for it in shown {
         let start = it.all("height").first().copied().unwrap_or(Real::NAN);
         series.push(measured(it, "height", |z| 1e3 * (z - start)));
         if it.case.has_spheres && !it.case.is_framed {
-            series.push(computed(it, scene, "computed", |rest| 1e3 * (rest.height - start)));
+            series.push(computed(it, scene, |rest| 1e3 * (rest.height - start)));
         }
     }
     for (distance, label) in [
         (scene.membrane.edge / 2.0, "bridge, geometry"),
         (scene.membrane.edge / 3.0_f64.sqrt(), "hollow, geometry"),
     ] {
-        let fallen = -1e3 * expected::fall(reach, distance);
-        series.push(Series {
-            label: label.to_owned(),
-            kind: Kind::Analytic,
-            points: vec![[0.0, fallen], [1e3 * SHOWN, fallen]],
-            deviations: Vec::new(),
-        });
+        let height = -1e3 * expected::fall(reach, distance);
+        let points = vec![[0.0, height], [1e3 * SHOWN, height]];
+        series.push(Series::new(label, Kind::Analytic, points));
     }
-    Plot {
-        title: format!("Vertical position, {title}"),
-        source_says: "Götz (2024), Fig. 8 (b): constant with triangles, oscillating with particles"
-            .to_owned(),
-        x_label: "distance / mm".to_owned(),
-        y_label: "height above the start / mm".to_owned(),
-        log_x: false,
-        log_y: false,
+    Plot::new(
+        &format!("Vertical position, {title}"),
+        "Götz (2024), Fig. 8 (b): constant with triangles, oscillating with particles",
+        ["distance / mm", "height above the start / mm"],
         series,
-    }
+    )
 }
 
-fn measured(seen: &Seen<'_>, column: &str, value: impl Fn(Real) -> Real) -> Series {
-    let points = (seen.all("distance").iter().zip(seen.all(column)))
+fn measured(it: &CaseRecord<'_>, column: &str, value: impl Fn(Real) -> Real) -> Series {
+    let points = (it.all("distance").iter().zip(it.all(column)))
         .take_while(|(x, _)| **x <= SHOWN)
         .map(|(x, y)| [1e3 * x, value(*y)])
         .collect();
-    let label = seen.case.name.replace('_', " ");
-    Series { label, kind: Kind::Line, points, deviations: Vec::new() }
+    Series::new(&it.case.name.replace('_', " "), Kind::Line, points)
 }
 
-/// The quasi-static curve at the places of the record.
+/// The expected quasi-static curve at the recorded distances.
 fn computed(
-    seen: &Seen<'_>,
-    scene: &Scene,
-    what: &str,
+    it: &CaseRecord<'_>,
+    scene: &SlideScene,
     value: impl Fn(&expected::Rest) -> Real,
 ) -> Series {
-    let curve = seen.expected(scene);
-    let period = seen.case.period().norm();
-    let points = (seen.all("distance").iter())
+    let curve = it.expected(scene);
+    let period = it.case.period().norm();
+    let points = (it.all("distance").iter())
         .take_while(|x| **x <= SHOWN && !curve.is_empty())
-        .map(|x| [1e3 * x, value(&at_phase(&curve, x / period))])
+        .map(|x| [1e3 * x, value(&interpolate(&curve, x / period))])
         .collect();
-    let label = format!("{}, {what}", seen.case.name.replace('_', " "));
-    Series { label, kind: Kind::Analytic, points, deviations: Vec::new() }
+    let label = format!("{}, computed", it.case.name.replace('_', " "));
+    Series::new(&label, Kind::Analytic, points)
 }

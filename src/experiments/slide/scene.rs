@@ -5,106 +5,124 @@ use crate::{
     physics::{law, membrane::MembraneMaterial},
     scene::{
         Material,
+        keys::{Flag, Inline, Map, scene_keys},
         quantity::{FORCE, IMPULSE, LENGTH, SPEED, TIME, TORQUE},
-        schema,
         text::Keys,
-        visit::{Quantity, Range, Visitor},
+        visit::{Quantity, Range},
     },
 };
 
-/// All that the slide test is made of.
-#[derive(Clone, Debug)]
-pub(super) struct Scene {
-    pub(super) ball: Ball,
-    pub(super) membrane: Membrane,
-    /// Force that presses the ball down besides its weight (N).
-    pub(super) load: Real,
-    /// The same on a second run over triangles (N).
-    pub(super) heavy_load: Real,
-    pub(super) pull: Pull,
-    /// Distance between two records (m).
-    pub(super) record_every: Real,
-    pub(super) hard: Hard,
-    pub(super) frame: Frame,
-}
+/// A positive length.
+const SOME_LENGTH: Quantity = Quantity::above_zero(&LENGTH);
 
-#[derive(Clone, Debug)]
-pub(super) struct Ball {
-    /// (m)
-    pub(super) radius: Real,
-    pub(super) material: Material,
-}
-
-#[derive(Clone, Debug)]
-pub(super) struct Membrane {
-    /// Distance of neighbouring vertices (m).
-    pub(super) edge: Real,
-    /// Radius of the vertex spheres (m).
-    pub(super) sphere_radius: Real,
-    pub(super) material: Material,
-    pub(super) surface: law::Surface,
-    pub(super) sheet: MembraneMaterial,
-}
-
-/// How the ball is drawn.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Pull {
-    /// (m/s)
-    pub(super) speed: Real,
-    /// (m)
-    pub(super) length: Real,
-    /// (s)
-    pub(super) substep: Real,
-}
-
-/// Contacts so stiff that only geometry counts.
-#[derive(Clone, Debug)]
-pub(super) struct Hard {
-    /// Factor on the moduli of the contact.
-    pub(super) stiffening: Real,
-    pub(super) pull: Pull,
-}
-
-/// A sheet whose edge is held.
-#[derive(Clone, Debug)]
-pub(super) struct Frame {
-    /// Along and across (m).
-    pub(super) size: Real,
-    /// Strain of the sheet at rest.
-    pub(super) stretch: Real,
-    /// True if it is tried with triangles of half the size too.
-    pub(super) is_refined: bool,
-    /// Time before the ball is drawn (s).
-    pub(super) settle: Real,
-    /// (m)
-    pub(super) length: Real,
-}
-
-impl Keys for Scene {
-    fn walk(&mut self, walk: &mut impl Visitor) {
-        let length = Quantity::above_zero(&LENGTH);
-        walk.section("ball", |walk| {
-            walk.quantity("radius", length, &mut self.ball.radius);
-            schema::material(walk, &mut self.ball.material);
-        });
-        walk.section("membrane", |walk| membrane(walk, &mut self.membrane));
-        walk.quantity("load", Quantity::above_zero(&FORCE), &mut self.load);
-        walk.quantity("heavy_load", Quantity::above_zero(&FORCE), &mut self.heavy_load);
-        pull(walk, &mut self.pull);
-        walk.quantity("record_every", length, &mut self.record_every);
-        walk.section("hard", |walk| {
-            walk.number("stiffening", Range::Between(1.0, 1e6), &mut self.hard.stiffening);
-            pull(walk, &mut self.hard.pull);
-        });
-        walk.section("frame", |walk| {
-            walk.quantity("size", length, &mut self.frame.size);
-            walk.number("stretch", Range::AboveUpTo(0.0, 0.5), &mut self.frame.stretch);
-            walk.flag("refined", &mut self.frame.is_refined);
-            walk.quantity("settle", Quantity::above_zero(&TIME), &mut self.frame.settle);
-            walk.quantity("length", length, &mut self.frame.length);
-        });
+scene_keys! {
+    /// The whole scene.
+    pub(super) struct SlideScene {
+        /// The ball that is pulled.
+        ball: Ball = Map,
+        /// The membrane it slides on.
+        membrane: Membrane = Map,
+        /// Force that presses the ball down in addition to its weight (N).
+        load: Real = Quantity::above_zero(&FORCE),
+        /// The same in a second run over triangles (N).
+        heavy_load: Real = Quantity::above_zero(&FORCE),
+        /// How the ball is pulled.
+        pull: Pull = Inline,
+        /// Distance between two recorded rows (m).
+        record_every: Real = SOME_LENGTH,
+        /// Contacts so stiff that only geometry matters.
+        hard: Hard = Map,
+        /// A membrane that is held at its edge only.
+        frame: Frame = Map,
     }
 
+    /// The ball.
+    pub(super) struct Ball {
+        /// Radius (m).
+        radius: Real = SOME_LENGTH,
+        /// Its material.
+        material: Material = Inline,
+    }
+
+    /// The membrane and its contact with the ball.
+    pub(super) struct Membrane {
+        /// Distance between neighboring vertices (m).
+        edge: Real = SOME_LENGTH,
+        /// Radius of the spheres on the vertices (m).
+        sphere_radius: Real = SOME_LENGTH,
+        /// Thickness (m).
+        thickness: Real = SOME_LENGTH,
+        /// Its material.
+        material: Material = Inline,
+        /// Coulomb friction with the ball.
+        friction: Real = Range::Above(0.0),
+        /// Damping ratio of the springs.
+        spring_damping: Real = Range::AtLeast(0.0),
+        /// Elastic constant of the hinges (N m).
+        bending_stiffness: Real = Quantity::at_least_zero(&TORQUE),
+        /// Damping constant of the hinges (N s).
+        bending_damping: Real = Quantity::at_least_zero(&IMPULSE),
+        /// Dissipation time of the contact (s).
+        dissipation_time: Real = Quantity::at_least_zero(&TIME),
+        /// Damping of the tangential spring of the contact.
+        tangential_damping: Real = Range::AtLeast(0.0),
+    }
+
+    /// How the ball is pulled.
+    #[derive(Copy)]
+    pub(super) struct Pull {
+        /// Speed (m/s).
+        speed: Real = Quantity::above_zero(&SPEED),
+        /// Distance (m).
+        length: Real = SOME_LENGTH,
+        /// Substep (s).
+        substep: Real = Quantity::above_zero(&TIME),
+    }
+
+    /// Contacts so stiff that only geometry matters.
+    pub(super) struct Hard {
+        /// Factor on the moduli of the contact.
+        stiffening: Real = Range::Between(1.0, 1e6),
+        /// How the ball is pulled.
+        pull: Pull = Inline,
+    }
+
+    /// A membrane that is held at its edge only.
+    pub(super) struct Frame {
+        /// Edge length of the square frame (m).
+        size: Real = SOME_LENGTH,
+        /// Strain of the membrane at rest.
+        stretch: Real = Range::AboveUpTo(0.0, 0.5),
+        /// True adds a case with triangles of half the size.
+        is_refined ("refined"): bool = Flag,
+        /// Time before the ball is pulled (s).
+        settle: Real = Quantity::above_zero(&TIME),
+        /// Distance over which it is pulled (m).
+        length: Real = SOME_LENGTH,
+    }
+}
+
+impl Membrane {
+    /// Friction and damping of the contact with the ball.
+    pub(super) fn surface(&self) -> law::Surface {
+        let Self { friction, dissipation_time, tangential_damping, .. } = *self;
+        law::Surface { friction, dissipation_time, tangential_damping }
+    }
+
+    /// Springs and hinges.
+    pub(super) fn sheet(&self) -> MembraneMaterial {
+        MembraneMaterial {
+            thickness: self.thickness,
+            youngs_modulus: self.material.youngs_modulus,
+            density: self.material.density,
+            spring_damping: self.spring_damping,
+            bending_stiffness: self.bending_stiffness,
+            bending_damping: self.bending_damping,
+        }
+    }
+}
+
+impl Keys for SlideScene {
     fn unfit(&self) -> Vec<(&'static str, String, &'static str)> {
         let mut unfit = Vec::new();
         let room = self.frame.size - 4.0 * self.ball.radius;
@@ -122,56 +140,5 @@ impl Keys for Scene {
             unfit.push(("length", reason, "make it longer"));
         }
         unfit
-    }
-}
-
-fn membrane(walk: &mut impl Visitor, it: &mut Membrane) {
-    let length = Quantity::above_zero(&LENGTH);
-    walk.quantity("edge", length, &mut it.edge);
-    walk.quantity("sphere_radius", length, &mut it.sphere_radius);
-    walk.quantity("thickness", length, &mut it.sheet.thickness);
-    schema::material(walk, &mut it.material);
-    walk.number("friction", Range::Above(0.0), &mut it.surface.friction);
-    walk.number("spring_damping", Range::AtLeast(0.0), &mut it.sheet.spring_damping);
-    let stiffness = Quantity::at_least_zero(&TORQUE);
-    walk.quantity("bending_stiffness", stiffness, &mut it.sheet.bending_stiffness);
-    let damping = Quantity::at_least_zero(&IMPULSE);
-    walk.quantity("bending_damping", damping, &mut it.sheet.bending_damping);
-    let time = Quantity::at_least_zero(&TIME);
-    walk.quantity("dissipation_time", time, &mut it.surface.dissipation_time);
-    walk.number("tangential_damping", Range::AtLeast(0.0), &mut it.surface.tangential_damping);
-    it.sheet.youngs_modulus = it.material.youngs_modulus;
-    it.sheet.density = it.material.density;
-}
-
-fn pull(walk: &mut impl Visitor, it: &mut Pull) {
-    walk.quantity("speed", Quantity::above_zero(&SPEED), &mut it.speed);
-    walk.quantity("length", Quantity::above_zero(&LENGTH), &mut it.length);
-    walk.quantity("substep", Quantity::above_zero(&TIME), &mut it.substep);
-}
-
-/// A scene before it is read.
-pub(super) fn blank() -> Scene {
-    let nan = Real::NAN;
-    let material = Material { youngs_modulus: nan, poisson_ratio: nan, density: nan };
-    let surface = law::Surface { friction: nan, dissipation_time: nan, tangential_damping: nan };
-    let sheet = MembraneMaterial {
-        thickness: nan,
-        youngs_modulus: nan,
-        density: nan,
-        spring_damping: nan,
-        bending_stiffness: nan,
-        bending_damping: nan,
-    };
-    let pull = Pull { speed: nan, length: nan, substep: nan };
-    Scene {
-        ball: Ball { radius: nan, material },
-        membrane: Membrane { edge: nan, sphere_radius: nan, material, surface, sheet },
-        load: nan,
-        heavy_load: nan,
-        pull,
-        record_every: nan,
-        hard: Hard { stiffening: nan, pull },
-        frame: Frame { size: nan, stretch: nan, is_refined: false, settle: nan, length: nan },
     }
 }

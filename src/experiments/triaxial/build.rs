@@ -1,11 +1,14 @@
-//! The specimen: grains in a tube of membrane between two plates, and what of it changes between the
-//! stages of the test.
+//! The specimen: grains in a tubular membrane between two plates, and what changes of it between
+//! the phases of the test.
 //!
-//! A frame holds the whole membrane straight while the grains grow; afterwards its end rings are fixed
-//! to the plates and the rest is free. Grains touch the plates and the membrane. They are softer while
-//! they grow; stiffness and dissipation climb to their true values by equal factors.
+//! A frame holds the membrane straight while the grains grow; afterwards its end rings are fixed to
+//! the plates and the rest is free. Grains touch the plates and the membrane. They are softer while
+//! they grow; stiffness and dissipation rise to their true values by equal factors.
 
-use super::scene::{Setup, Size};
+use super::{
+    cases::{Choice, Kind},
+    scene::{MeshSize, Size, TriaxialScene},
+};
 use crate::{
     base::{
         Real, Vec3,
@@ -20,7 +23,7 @@ use crate::{
         membrane::{
             FREE, MembraneContact, MembraneModel,
             critical_step::critical_step_at,
-            mesh::{Mesh, MeshFault},
+            mesh::{Mesh, MeshError},
         },
         packing::{Room, first_scale, scatter, sphere_volume},
         state::Grains,
@@ -28,84 +31,54 @@ use crate::{
     scene::Material,
 };
 
-/// The wall that holds the membrane while grains grow. It is first, so that the lists of neighbours
-/// are kept relative to the middle of the specimen.
+/// The wall that holds the membrane while grains grow. It is the first one, so that the neighbor
+/// lists are kept relative to the middle of the specimen.
 pub(super) const FRAME: u32 = 0;
 /// The lower plate.
 pub(super) const BOTTOM: u32 = 1;
 /// The upper plate.
 pub(super) const TOP: u32 = 2;
-/// Neighbours are listed this share of the largest radius beyond contact.
+/// Skin of the neighbor lists, as a share of the largest radius.
 const SKIN_SHARE: Real = 0.2;
-
-/// What grains touch of the membrane.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
-    /// Triangles, the wall model.
-    Triangles,
-    /// Spheres around the vertices, the particle model.
-    Spheres,
-}
-
-impl Kind {
-    /// Its name in cases and stages.
-    pub(super) fn name(self) -> &'static str {
-        match self {
-            Self::Triangles => "triangles",
-            Self::Spheres => "spheres",
-        }
-    }
-}
-
-/// Which specimen.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Choice {
-    /// 0 or 1: the source's case 1 or 2.
-    pub(super) size: usize,
-    /// What grains touch of the membrane.
-    pub(super) kind: Kind,
-    /// 0 or 1: initial state A or B.
-    pub(super) initial: usize,
-}
 
 /// How the specimen is made, independent of its state.
 #[derive(Clone)]
 pub(super) struct Recipe {
-    pub(super) setup: Setup,
+    pub(super) scene: TriaxialScene,
     pub(super) choice: Choice,
     pub(super) final_radii: Vec<Real>,
-    /// Common factor of the radii when they are scattered.
+    /// Common factor of the radii at the start of growth.
     pub(super) first_scale: Real,
     /// Substep while grains grow (s).
     pub(super) growth_step: Real,
-    /// Substep of the free membrane in its first shape (s).
+    /// Substep of the free, undeformed membrane (s).
     pub(super) first_step: Real,
-    /// Stiffness of the grains at a vertex (N/m) that the membrane's substep reckons with.
+    /// Stiffness of the grains at a vertex (N/m) for the substep of the membrane.
     contact_stiffness: Real,
 }
 
 impl Recipe {
-    /// Of the chosen specimen, and its system before the grains grow.
+    /// The recipe of a specimen, and its system before the grains grow.
     ///
     /// # Errors
     /// If the membrane cannot be meshed, or the parts do not fit each other.
-    pub(super) fn new(setup: &Setup, choice: Choice) -> Result<(Self, System), StartError> {
-        let Size { radius, height, .. } = setup.cases[choice.size];
-        let membrane = membrane(setup, choice)?;
-        let [_, _, law] = laws(setup, 0.0);
-        let mut random = Random::new(setup.seeds[choice.initial], Stream::Radius);
-        let (low, high) = (setup.grains.radius_min, setup.grains.radius_max);
-        let n_grains = net(setup, choice).n_grains[choice.initial];
+    pub(super) fn new(scene: &TriaxialScene, choice: Choice) -> Result<(Self, System), StartError> {
+        let Size { radius, height, .. } = scene.cases[choice.size];
+        let membrane = membrane(scene, choice)?;
+        let [_, _, law] = laws(scene, 0.0);
+        let mut random = Random::new(scene.seeds[choice.initial], Stream::Radius);
+        let (low, high) = (scene.grains.radius_min, scene.grains.radius_max);
+        let n_grains = net(scene, choice).n_grains[choice.initial];
         let final_radii: Vec<Real> = (0..n_grains).map(|_| random.between(low, high)).collect();
         let room = Room::Tube { radius, bottom: -0.5 * height, top: 0.5 * height };
-        let thin = setup.growth.first_solid_fraction;
-        let pressure = setup.confining.pressure;
+        let thin = scene.growth.first_solid_fraction;
+        let pressure = scene.confining.pressure;
         let mut recipe = Self {
-            setup: setup.clone(),
+            scene: scene.clone(),
             choice,
             first_scale: first_scale(&final_radii, thin, room.volume()),
             final_radii,
-            growth_step: growth_step(setup),
+            growth_step: growth_step(scene),
             first_step: Real::NAN,
             contact_stiffness: stiffness_at_vertex(&membrane, &law, high, pressure),
         };
@@ -115,15 +88,15 @@ impl Recipe {
         Ok((recipe, system))
     }
 
-    /// Size of the specimen as it is built.
+    /// Initial size of the specimen.
     pub(super) fn size(&self) -> &Size {
-        &self.setup.cases[self.choice.size]
+        &self.scene.cases[self.choice.size]
     }
 
-    /// Thin grains at rest in the straight membrane, which the frame holds.
+    /// Small grains at rest in the straight membrane, which the frame holds.
     fn system(&self, membrane: MembraneModel, room: &Room) -> Result<System, BuildError> {
-        let grains = &self.setup.grains;
-        let [plates, among_grains, on_membrane] = laws(&self.setup, 0.0);
+        let grains = &self.scene.grains;
+        let [plates, among_grains, on_membrane] = laws(&self.scene, 0.0);
         let mut builder = SystemBuilder::new(among_grains);
         builder
             .wall_law(plates)
@@ -140,11 +113,11 @@ impl Recipe {
         builder.build()
     }
 
-    /// Thin grains at random places.
+    /// Small grains at random positions.
     fn scattered(&self, room: &Room) -> Grains {
-        let grains = &self.setup.grains;
+        let grains = &self.scene.grains;
         let small: Vec<Real> = self.final_radii.iter().map(|r| self.first_scale * r).collect();
-        let mut random = Random::new(self.setup.seeds[self.choice.initial], Stream::Position);
+        let mut random = Random::new(self.scene.seeds[self.choice.initial], Stream::Position);
         let margin = grains.radius_max;
         let positions = scatter(&small, None, &mut random, |it| room.place(margin, it))
             .expect("the first solid fraction is limited to what always finds a place");
@@ -153,7 +126,7 @@ impl Recipe {
         Grains::at_rest(positions, small, masses)
     }
 
-    /// The frame holds the whole membrane; grains are soft.
+    /// Lets the frame hold the membrane, and makes the grains soft.
     pub(super) fn hold(&self, model: &mut Model) {
         model.membrane.holders.fill(FRAME);
         model.held_positions.clone_from(&model.membrane.mesh.positions);
@@ -161,7 +134,8 @@ impl Recipe {
         self.soften(model, 1.0);
     }
 
-    /// The end rings are fixed to the plates, the rest of the membrane is free; grains are stiff.
+    /// Fixes the end rings to the plates, releases the rest of the membrane, and makes the grains
+    /// stiff.
     pub(super) fn release(&self, model: &mut Model) {
         fix_rings(model);
         model.substep = self.first_step;
@@ -170,27 +144,27 @@ impl Recipe {
 
     /// Substep of the free membrane (s) with its vertices at `positions`.
     ///
-    /// Hinges with their first areas are damped as the cube of their edges' lengths: the membrane that
-    /// grains stretch by a third bears half the substep of the straight one.
+    /// The damping of hinges with initial areas grows with the cube of their edge lengths: a
+    /// membrane that is stretched by a third is stable with half the substep of the straight one.
     ///
-    /// A packing rings where ω dt nears 2, and ω² ~ √(ξ/R): at 0.4 of the Rayleigh time for overlaps
-    /// of a tenth of a diameter, far later for those of stiff grains.
+    /// A packing becomes unstable as ω dt approaches 2, and ω² ~ √(ξ/R): at 0.4 of the Rayleigh
+    /// time for overlaps of a tenth of a diameter, and far later for those of stiff grains.
     pub(super) fn step(&self, membrane: &MembraneModel, positions: &[Vec3]) -> Real {
-        let Setup { grains, time, .. } = &self.setup;
+        let TriaxialScene { grains, time, .. } = &self.scene;
         let packing = time.rayleigh_share * rayleigh_time(grains.radius_min, &grains.material);
         let sheet = critical_step_at(membrane, positions, self.contact_stiffness);
         time.safety * packing.min(sheet)
     }
 
-    /// Laws of grains that are softer: 1 as while they grow, 0 as they are.
+    /// Sets the contact laws of softer grains: `share` 1 as during growth, 0 for the true ones.
     pub(super) fn soften(&self, model: &mut Model, share: Real) {
-        set_laws(&self.setup, model, share);
+        set_laws(&self.scene, model, share);
     }
 }
 
 /// Mesh and numbers of grains of a specimen.
-fn net(setup: &Setup, choice: Choice) -> super::scene::Net {
-    let size = &setup.cases[choice.size];
+fn net(scene: &TriaxialScene, choice: Choice) -> MeshSize {
+    let size = &scene.cases[choice.size];
     match choice.kind {
         Kind::Triangles => size.triangles,
         Kind::Spheres => size.spheres,
@@ -198,16 +172,16 @@ fn net(setup: &Setup, choice: Choice) -> super::scene::Net {
 }
 
 /// The membrane in its straight shape.
-fn membrane(setup: &Setup, choice: Choice) -> Result<MembraneModel, MeshFault> {
-    let size = &setup.cases[choice.size];
-    let net = net(setup, choice);
+fn membrane(scene: &TriaxialScene, choice: Choice) -> Result<MembraneModel, MeshError> {
+    let size = &scene.cases[choice.size];
+    let net = net(scene, choice);
     let mesh = Mesh::tube(size.radius, size.height, net.n_around, net.n_rows)?;
     let damping = match choice.kind {
-        Kind::Triangles => setup.membrane.bending_damping,
-        Kind::Spheres => setup.membrane.bending_damping_spheres,
+        Kind::Triangles => scene.membrane.bending_damping,
+        Kind::Spheres => scene.membrane.bending_damping_spheres,
     };
-    let mut membrane = MembraneModel::new(mesh, setup.membrane.sheet(damping));
-    if setup.membrane.bends_by_first_areas {
+    let mut membrane = MembraneModel::new(mesh, scene.membrane.sheet(damping));
+    if scene.membrane.bends_by_first_areas {
         membrane.bend_by_first_areas();
     }
     if choice.kind == Kind::Spheres {
@@ -228,9 +202,10 @@ fn fix_rings(model: &mut Model) {
     }
 }
 
-/// Laws of grains with plates, grains and membrane; `softness` 1 as while they grow, 0 as they are.
-fn laws(setup: &Setup, softness: Real) -> [PairLaw; 3] {
-    let Setup { grains, growth, membrane, .. } = setup;
+/// Laws of grains with plates, grains and membrane; `softness` 1 as during growth, 0 for the true
+/// ones.
+fn laws(scene: &TriaxialScene, softness: Real) -> [PairLaw; 3] {
+    let TriaxialScene { grains, growth, membrane, .. } = scene;
     let between = |hard: Real, soft: Real| hard * (soft / hard).powf(softness);
     let material = Material {
         youngs_modulus: between(grains.material.youngs_modulus, growth.youngs_modulus),
@@ -247,21 +222,21 @@ fn laws(setup: &Setup, softness: Real) -> [PairLaw; 3] {
         tangential_damping: membrane.tangential_damping,
     };
     [
-        PairLaw::against_rigid(&material, surface(setup.plate_friction)),
+        PairLaw::against_rigid(&material, surface(scene.plates.friction)),
         PairLaw::between(&material, &material, surface(grains.friction)),
         PairLaw::between(&material, &membrane.material, on_sheet),
     ]
 }
 
-fn set_laws(setup: &Setup, model: &mut Model, softness: Real) {
-    let [plates, grains, sheet] = laws(setup, softness);
+fn set_laws(scene: &TriaxialScene, model: &mut Model, softness: Real) {
+    let [plates, grains, sheet] = laws(scene, softness);
     model.walls.iter_mut().for_each(|wall| wall.law = plates);
     (model.grain_law, model.membrane_law) = (grains, sheet);
 }
 
 /// Substep while grains grow in the held membrane (s).
-fn growth_step(setup: &Setup) -> Real {
-    let Setup { grains, growth, time, .. } = setup;
+fn growth_step(scene: &TriaxialScene) -> Real {
+    let TriaxialScene { grains, growth, time, .. } = scene;
     let soft = Material { youngs_modulus: growth.youngs_modulus, ..grains.material };
     time.safety * RAYLEIGH_SHARE * rayleigh_time(grains.radius_min, &soft)
 }

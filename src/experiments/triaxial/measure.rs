@@ -1,14 +1,15 @@
-//! What is read off the specimen.
+//! Measurements on a specimen.
 //!
 //! ```text
 //! p_plate = F/A,  A = V/h            σ_d = p_plate − p_c,   ε = ln(h_0/h)
 //! σ_zz = 1/V_m Σ_c f_z l_z,   σ_rr = 1/2V_m Σ_c (f_x l_x + f_y l_y)
 //! ```
 //!
-//! F is what grains put on a plate, V the volume inside membrane and plates, h their distance. Stresses
-//! are those in the middle half of the height, away from the end rings, on which the membrane hangs:
-//! V_m is its volume; f and l are force and branch of each contact, of l the part that lies in it. On
-//! the membrane l goes from the contact point to the centre.
+//! F is the force of the grains on a plate, V the volume inside membrane and plates, h the distance
+//! of the plates. Stresses are those in the middle half of the height, away from the end rings,
+//! which hold the membrane: V_m is its volume; f and l are force and branch vector of each contact,
+//! and of l only the part inside V_m counts. For contacts with the membrane l goes from the contact
+//! point to the center of the grain.
 
 use super::build::{BOTTOM, TOP};
 use crate::{
@@ -42,7 +43,8 @@ pub(super) fn volume(system: &System) -> Real {
     pressure::volume(&system.model.membrane.mesh, &system.state.membrane.positions)
 }
 
-/// Mean distance of the membrane from the axis in the middle half of the height and at the ends (m).
+/// Mean distance of the membrane from the axis in the middle half of the height and at the ends
+/// (m).
 pub(super) fn radii(system: &System) -> [Real; 2] {
     let mesh = &system.model.membrane.mesh;
     let top = mesh.positions.iter().map(|p| p.z).fold(0.0, Real::max);
@@ -59,9 +61,10 @@ pub(super) fn radii(system: &System) -> [Real; 2] {
     [mean(&|z| z <= 0.25), mean(&|z| z >= 0.75)]
 }
 
-/// What the springs of the membrane add to the confining pressure in the middle half (Pa); below zero
-/// where the grains have drawn together. It is their lateral virial over twice the volume,
-/// Σ F (Δx² + Δy²)/L / 2V, from the means over edges around and across, of which there are twice as many.
+/// Pressure that the springs of the membrane add to the confining pressure in the middle half (Pa);
+/// negative if the grains have contracted. It is the lateral virial of the springs over twice the
+/// volume, Σ F (Δx² + Δy²)/L / 2V, from the means over the edges around the axis and the other
+/// edges, of which there are twice as many.
 pub(super) fn hoop_pressure(system: &System) -> Real {
     let membrane = &system.model.membrane;
     let (mesh, material) = (&membrane.mesh, &membrane.material);
@@ -86,8 +89,8 @@ pub(super) fn hoop_pressure(system: &System) -> Real {
     n_vertices * (around + 2.0 * across) / (2.0 * volume)
 }
 
-/// Kinetic energy of the grains (J). The membrane's is left out: here and there a vertex of some
-/// milligrams swings for ever between two patches, without anything else moving.
+/// Kinetic energy of the grains (J). That of the membrane is left out: single vertices of some
+/// milligrams may oscillate forever between two contacts while nothing else moves.
 pub(super) fn grain_energy(system: &System) -> Real {
     let grains = &system.state.grains;
     let twice = |i: usize| {
@@ -99,9 +102,9 @@ pub(super) fn grain_energy(system: &System) -> Real {
     0.5 * (0..grains.len()).map(twice).sum::<Real>()
 }
 
-/// What the contacts carry.
+/// Stress and energy of all contacts.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Carried {
+pub(super) struct ContactSums {
     /// Axial and mean lateral stress of the grains in the middle half of the height (Pa).
     pub(super) stress: [Real; 2],
     /// Elastic energy of contacts between grains and with plates and membrane (J).
@@ -114,12 +117,12 @@ pub(super) struct Carried {
     pub(super) coordination: Real,
 }
 
-/// Looks at every contact of the last substep.
-pub(super) fn carried(system: &System) -> Carried {
+/// Sums over all contacts of the last substep.
+pub(super) fn contacts(system: &System) -> ContactSums {
     let z = |wall: u32| system.state.walls[wall as usize].pose.translation.z;
     let mut sum = Sum {
-        centre: 0.5 * (z(BOTTOM) + z(TOP)),
-        reach: 0.25 * (z(TOP) - z(BOTTOM)),
+        center: 0.5 * (z(BOTTOM) + z(TOP)),
+        half_height: 0.25 * (z(TOP) - z(BOTTOM)),
         ..Sum::default()
     };
     of_grains(system, &mut sum);
@@ -130,12 +133,12 @@ pub(super) fn carried(system: &System) -> Carried {
         sum.normal_overlap += contact.normal * contact.overlap;
     }
     let n_grains = system.state.grains.len();
-    let volume = middle_section(system) * 2.0 * sum.reach;
+    let volume = middle_section(system) * 2.0 * sum.half_height;
     let unbalanced: Real = (0..n_grains)
         .map(|i| sums::on_grain(&system.state.grains, &system.scratch, i).0.norm())
         .sum();
     let mean_force = sum.force / real(sum.n.max(1));
-    Carried {
+    ContactSums {
         stress: [sum.axial / volume, sum.lateral / (2.0 * volume)],
         elastic_energy: 0.4 * sum.normal_overlap,
         overlap_over_diameter: sum.overlap_over_diameter,
@@ -155,19 +158,20 @@ fn middle_section(system: &System) -> Real {
             n += 1;
         }
     }
-    // A ring of vertices is a polygon, smaller than its circle.
+    // A ring of vertices is a polygon, which is smaller than its circle.
     let turn = 2.0 * std::f64::consts::PI / real(mesh.rims[0].len());
     std::f64::consts::PI * (turn.sin() / turn) * squares / real(n)
 }
 
 #[derive(Default)]
 struct Sum {
-    /// Height of the specimen's middle, and what above and below it belongs to its middle half (m).
-    centre: Real,
-    reach: Real,
+    /// Height of the specimen's center (m).
+    center: Real,
+    /// Half of the middle half of its height (m).
+    half_height: Real,
     axial: Real,
     lateral: Real,
-    /// Σ F ξ (J); of a Hertz contact 2/5 of it are stored.
+    /// Σ F ξ (J); a Hertz contact stores 2/5 of it.
     normal_overlap: Real,
     overlap_over_diameter: Real,
     force: Real,
@@ -175,7 +179,7 @@ struct Sum {
 }
 
 impl Sum {
-    /// Adds a contact: its force on what is at `end` (m), its branch up to there, and F ξ.
+    /// Adds a contact: its force on the body at `end` (m), its branch vector up to there, and F ξ.
     fn add(&mut self, force: &Vec3, end: &Vec3, branch: &Vec3, normal_overlap: Real) {
         let share = self.share(end.z - branch.z, end.z);
         self.axial += share * force.z * branch.z;
@@ -185,13 +189,13 @@ impl Sum {
         self.n += 1;
     }
 
-    /// Share of a line from one height to another that is in the middle half.
+    /// Share of a line between two heights (m) that is in the middle half.
     fn share(&self, from: Real, to: Real) -> Real {
-        let (low, high) = (from.min(to) - self.centre, from.max(to) - self.centre);
-        let inside = high.min(self.reach) - low.max(-self.reach);
-        // Lines within a nanometre of the horizontal are in or out.
+        let (low, high) = (from.min(to) - self.center, from.max(to) - self.center);
+        let inside = high.min(self.half_height) - low.max(-self.half_height);
+        // Lines within a nanometer of the horizontal are completely inside or outside.
         if high - low < 1e-9 {
-            return if low.abs() < self.reach { 1.0 } else { 0.0 };
+            return if low.abs() < self.half_height { 1.0 } else { 0.0 };
         }
         (inside / (high - low)).clamp(0.0, 1.0)
     }
@@ -209,23 +213,24 @@ fn of_grains(system: &System, sum: &mut Sum) {
 }
 
 fn of_membrane(system: &System, sum: &mut Sum) {
-    let (grains, sheet) = (&system.state.grains, &system.state.membrane);
+    let (grains, membrane) = (&system.state.grains, &system.state.membrane);
     let triangles = &system.model.membrane.mesh.triangles;
-    for (patches, centre) in system.scratch.patch_forces.iter().zip(&grains.positions) {
+    for (patches, center) in system.scratch.patch_forces.iter().zip(&grains.positions) {
         for patch in &patches.contacts[..patches.n] {
-            let corners = triangles[patch.triangle as usize].map(|v| sheet.positions[v as usize]);
+            let corners =
+                triangles[patch.triangle as usize].map(|v| membrane.positions[v as usize]);
             let point: Vec3 = corners.iter().zip(patch.weights).map(|(r, w)| r * w).sum();
-            sum.add(&patch.force, centre, &(centre - point), patch.normal * patch.overlap);
+            sum.add(&patch.force, center, &(center - point), patch.normal * patch.overlap);
         }
     }
     let ids = &system.state.springs.spheres.ids;
     for (contact, [grain, vertex]) in system.scratch.sphere_forces.iter().zip(ids) {
         if contact.flags.touches() {
             let grain = *grain as usize;
-            let centre = &grains.positions[grain];
-            let apart = centre - sheet.positions[*vertex as usize];
-            let branch = apart.normalize() * (grains.radii[grain] - 0.5 * contact.overlap);
-            sum.add(&contact.force, centre, &branch, contact.normal * contact.overlap);
+            let center = &grains.positions[grain];
+            let arm = center - membrane.positions[*vertex as usize];
+            let branch = arm.normalize() * (grains.radii[grain] - 0.5 * contact.overlap);
+            sum.add(&contact.force, center, &branch, contact.normal * contact.overlap);
         }
     }
 }

@@ -1,6 +1,6 @@
-//! Curves and pictures of the triaxial tests.
+//! Curves and plots of the triaxial tests.
 
-use super::{CHECK, scene::Setup};
+use super::{cases::CHECK, scene::TriaxialScene};
 use crate::experiments::{
     findings::{Curve, Kind, Plot, Series},
     record::Record,
@@ -11,8 +11,8 @@ pub(super) fn curve(record: &Record) -> Curve {
     Curve { name: record.case.clone(), columns: record.columns.clone() }
 }
 
-/// Figure 6 and what belongs to it, for each size.
-pub(super) fn plots(setup: &Setup, records: &[Record]) -> Vec<Plot> {
+/// Figure 6 and related plots, for each size.
+pub(super) fn plots(scene: &TriaxialScene, records: &[Record]) -> Vec<Plot> {
     let mut plots = Vec::new();
     for size in 1..=2 {
         let prefix = format!("case{size}_");
@@ -32,7 +32,7 @@ pub(super) fn plots(setup: &Setup, records: &[Record]) -> Vec<Plot> {
             "Götz (2024), figure 6{panel}: a steep rise to a plateau, the same for both membrane \
              models and both initial states within their scatter."
         );
-        stress.series.extend(mohr_coulomb(setup));
+        stress.series.extend(mohr_coulomb(scene));
         plots.push(stress);
         plots.push(plot(
             &records,
@@ -53,36 +53,24 @@ pub(super) fn plots(setup: &Setup, records: &[Record]) -> Vec<Plot> {
     plots
 }
 
-/// One column over the strain, a line for each specimen, points for the check.
+/// One column over the strain: a line for each specimen, points for the check.
 fn plot(records: &[&Record], (column, label, scale): (&str, &str, f64), title: &str) -> Plot {
     let series = records.iter().filter_map(|record| {
         let (x, y) = (record.column("strain")?, record.column(column)?);
         let kind = if record.case.ends_with(CHECK) { Kind::Points } else { Kind::Line };
         let points = x.iter().zip(y).map(|(x, y)| [*x, y * scale]).collect();
-        Some(Series { label: record.case.clone(), kind, points, deviations: Vec::new() })
+        Some(Series::new(&record.case, kind, points))
     });
-    Plot {
-        title: title.to_owned(),
-        source_says: String::new(),
-        x_label: "axial strain ε".to_owned(),
-        y_label: label.to_owned(),
-        log_x: false,
-        log_y: false,
-        series: series.collect(),
-    }
+    Plot::new(title, "", ["axial strain ε", label], series.collect())
 }
 
-/// The stress differences of some friction angles.
-fn mohr_coulomb(setup: &Setup) -> Vec<Series> {
+/// The stress differences at some friction angles.
+fn mohr_coulomb(scene: &TriaxialScene) -> Vec<Series> {
     let of = |degrees: f64| {
         let sine = degrees.to_radians().sin();
-        let stress = setup.confining.pressure * 1e-3 * ((1.0 + sine) / (1.0 - sine) - 1.0);
-        Series {
-            label: format!("friction angle {degrees}°"),
-            kind: Kind::Analytic,
-            points: vec![[0.0, stress], [setup.shear.strain, stress]],
-            deviations: Vec::new(),
-        }
+        let stress = scene.confining.pressure * 1e-3 * ((1.0 + sine) / (1.0 - sine) - 1.0);
+        let points = vec![[0.0, stress], [scene.shear.strain, stress]];
+        Series::new(&format!("friction angle {degrees}°"), Kind::Analytic, points)
     };
     [20.0, 24.0].map(of).into()
 }

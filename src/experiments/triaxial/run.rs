@@ -1,10 +1,10 @@
-//! One specimen from growth to the last strain, slice by slice.
+//! A case: one specimen from growth to the last strain, slice by slice.
 
 use super::{
-    Variant,
-    build::{Choice, Kind, Recipe},
-    protocol::{Course, Stage, Test, keep_between_plates},
-    scene::Setup,
+    build::Recipe,
+    cases::{Choice, Kind, Variant},
+    protocol::{Phase, TestProgress, TriaxialTest, keep_between_plates},
+    scene::TriaxialScene,
 };
 use crate::{
     base::{Real, real::real},
@@ -12,75 +12,75 @@ use crate::{
     physics::{health::Diverged, state::State},
 };
 
-/// Contacts and vertices that a slice goes over: about a tenth of a second.
+/// Contacts and vertices computed in a slice: about a tenth of a second.
 const SLICE: usize = 600_000;
 
-/// A case that is sheared.
-pub(super) struct Sheared {
+/// A specimen that is sheared.
+pub(super) struct TriaxialRun {
     name: String,
-    test: Test,
+    test: TriaxialTest,
 }
 
-impl Sheared {
-    /// The chosen specimen, as it is or changed.
+impl TriaxialRun {
+    /// The chosen specimen, with the changes of `variant`.
     pub(super) fn new(
-        setup: &Setup,
+        scene: &TriaxialScene,
         name: &str,
         choice: Choice,
         variant: Variant,
     ) -> Result<Self, StartError> {
-        let mut setup = setup.clone();
-        let (shear, runs) = (&mut setup.shear, &setup.runs);
+        let mut scene = scene.clone();
+        let (shear, runs) = (&mut scene.shear, &scene.runs);
         let mut speed = shear.speed * shear.speed_factor;
         let strain = match variant {
             Variant::Plain => shear.strain,
             Variant::Check => {
                 speed *= 0.5;
-                setup.time.rayleigh_share = runs.check_rayleigh_share;
+                scene.time.rayleigh_share = runs.check_rayleigh_share;
                 runs.check_strain
             }
             Variant::Loose => {
-                setup.cases[choice.size].spheres.n_grains = [runs.loose_grains; 2];
+                scene.cases[choice.size].spheres.n_grains = [runs.loose_grains; 2];
                 runs.loose_strain
             }
         };
-        // The points stay where they are: curves are compared point by point.
+        // The strains of the points stay the same: curves are compared point by point.
         let step = shear.strain / real(shear.n_points);
-        shear.n_points = whole(strain / step);
+        shear.n_points = rounded(strain / step);
         shear.strain = step * real(shear.n_points);
-        let aim = (setup.shear.strain, setup.shear.n_points);
-        let (recipe, system) = Recipe::new(&setup, choice)?;
-        Ok(Self { name: name.to_owned(), test: Test::new(recipe, system, speed, aim) })
+        let end = (scene.shear.strain, scene.shear.n_points);
+        let (recipe, system) = Recipe::new(&scene, choice)?;
+        Ok(Self { name: name.to_owned(), test: TriaxialTest::new(recipe, system, speed, end) })
     }
 }
 
-impl Run for Sheared {
+impl Run for TriaxialRun {
     fn advance(&mut self) -> Result<Progress, Diverged> {
-        let stage = self.test.course.stage;
+        let phase = self.test.progress.phase;
         for _ in 0..slice(&self.test) {
             self.test.step();
-            if self.test.course.stage != stage {
+            if self.test.progress.phase != phase {
                 break;
             }
         }
         self.test.check()?;
-        let is_done = self.test.course.stage == Stage::Done;
-        Ok(Progress { stage: stage.name(), share: self.test.share(), is_done })
+        let is_done = self.test.progress.phase == Phase::Done;
+        Ok(Progress { phase: phase.name(), share: self.test.share(), is_done })
     }
 
     fn save(&self) -> Vec<u8> {
-        saved_run::pack(&self.name, &self.test.course, [&self.test.system.state])
+        saved_run::pack(&self.name, &self.test.progress, [&self.test.system.state])
     }
 
     fn resume(&mut self, bytes: &[u8]) -> Result<(), ResumeError> {
-        let (course, [state]) = saved_run::unpack(&self.name, bytes)?;
-        take(&mut self.test, course, state)
+        let (progress, [state]) = saved_run::unpack(&self.name, bytes)?;
+        restore(&mut self.test, progress, state)
     }
 
     fn record(&self) -> Record {
         let initial = self.test.recipe.choice.initial;
-        let seed = self.test.recipe.setup.seeds[initial];
-        let mut record = self.test.course.logbook.record(&self.name, seed);
+        let seed = self.test.recipe.scene.seeds[initial];
+        let mut record = self.test.progress.series.to_record(&self.name, seed);
         record.digest = saved_run::digest(&self.test.system.state);
         record
     }
@@ -91,7 +91,7 @@ impl Run for Sheared {
 }
 
 /// Substeps in a slice.
-pub(super) fn slice(test: &Test) -> usize {
+pub(super) fn slice(test: &TriaxialTest) -> usize {
     let bodies = 4 * test.recipe.final_radii.len();
     let vertices = match test.recipe.choice.kind {
         Kind::Triangles => test.system.model.membrane.mesh.n_vertices(),
@@ -100,37 +100,38 @@ pub(super) fn slice(test: &Test) -> usize {
     SLICE / (bodies + vertices).max(1) + 1
 }
 
-/// Goes on from a course and its state, if they are of the same specimen.
-pub(super) fn take(test: &mut Test, course: Course, state: State) -> Result<(), ResumeError> {
-    saved_run::of_one_scene(&state, &test.system.state)?;
+/// Resumes a test from its progress and state, if they belong to the same specimen.
+pub(super) fn restore(
+    test: &mut TriaxialTest,
+    progress: TestProgress,
+    state: State,
+) -> Result<(), ResumeError> {
+    saved_run::check_scene(&state, &test.system.state)?;
     test.system.state = state;
-    test.resume(course);
+    test.resume(progress);
     Ok(())
 }
 
-/// The next whole number, at least 1.
+/// The nearest whole number, at least 1.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
     reason = "a small number of points"
 )]
-fn whole(value: Real) -> usize {
+fn rounded(value: Real) -> usize {
     value.round().max(1.0) as usize
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{
-        super::{Triaxial, scene},
-        *,
-    };
+    use super::{super::Triaxial, *};
     use crate::{
         experiments::{Experiment, SceneText, Size},
-        scene::text::fill,
+        scene::text::read,
     };
 
     /// A specimen of 60 grains.
-    fn small() -> Sheared {
+    fn small() -> TriaxialRun {
         let overrides = [
             "case1.radius=8 mm",
             "case1.height=30 mm",
@@ -141,36 +142,37 @@ mod tests {
         .map(str::to_owned);
         let (source, text) = Triaxial.scene();
         let scene = SceneText { text, source, overrides: &overrides, size: Size::Quick };
-        let setup = fill(&scene.layers(false), scene::blank()).unwrap();
+        let scene: TriaxialScene = read(&scene.layers(false)).unwrap();
         let choice = Choice { size: 0, kind: Kind::Triangles, initial: 0 };
-        Sheared::new(&setup, "small", choice, Variant::Plain).unwrap()
+        TriaxialRun::new(&scene, "small", choice, Variant::Plain).unwrap()
     }
 
-    /// Goes on until a stage has lasted for three slices.
-    fn go_to(run: &mut Sheared, stage: Stage) {
+    /// Advances until a phase has lasted for three slices.
+    fn advance_to(run: &mut TriaxialRun, phase: Phase) {
         let mut n_slices = 0;
         while n_slices < 3 {
             run.advance().unwrap();
-            n_slices += usize::from(run.test.course.stage == stage);
+            n_slices += usize::from(run.test.progress.phase == phase);
         }
     }
 
-    /// Oracle: the contract. Under shear a leak ends the test with its curve; before, there is none.
+    /// Oracle: the definition. A leak while shearing ends the test with its curve; an earlier one
+    /// is an error.
     #[test]
-    fn a_leak_under_shear_ends_the_test_with_its_curve() {
+    fn a_leak_while_shearing_ends_the_test_and_keeps_the_curve() {
         let mut run = small();
-        go_to(&mut run, Stage::Growing);
+        advance_to(&mut run, Phase::Growing);
         run.test.system.scratch.leaked = Some(7);
         assert!(run.advance().unwrap_err().is_leak());
 
         let mut run = small();
-        go_to(&mut run, Stage::Shearing);
+        advance_to(&mut run, Phase::Shearing);
         let strains = run.record().column("strain").unwrap().to_vec();
         run.test.system.scratch.leaked = Some(7);
         assert!(run.advance().unwrap().is_done);
         let record = run.record();
         assert_eq!(record.validity.n_leaked, 1);
-        assert!(record.validity.faults().iter().any(|it| it.contains("left the membrane")));
+        assert!(record.validity.violations().iter().any(|it| it.contains("left the membrane")));
         let now = record.column("strain").unwrap();
         assert!(now.starts_with(&strains) && !now.is_empty(), "{now:?}");
         assert!(now[now.len() - 1] <= record.scalar("strain_of_leak").unwrap());

@@ -1,5 +1,5 @@
-//! What is recorded of a specimen: means over the substeps between two points of strain, and what the
-//! specimen looks like at each point.
+//! The recorded series of a specimen: means over the substeps between two points of strain, and the
+//! state of the specimen at each point.
 
 use std::collections::BTreeMap;
 
@@ -13,7 +13,7 @@ use crate::{
     physics::System,
 };
 
-/// Columns with their units.
+/// Names and units of the columns.
 const COLUMNS: [(&str, &str); 14] = [
     ("strain", "1"),
     ("stress_difference", "Pa"),
@@ -33,25 +33,26 @@ const COLUMNS: [(&str, &str); 14] = [
 
 /// The record so far.
 #[derive(Clone, Serialize, Deserialize)]
-pub(super) struct Logbook {
+pub(super) struct TimeSeries {
     columns: Vec<Vec<Real>>,
     scalars: BTreeMap<String, Scalar>,
     n_substeps: BTreeMap<String, u64>,
     pub(super) validity: Validity,
-    /// Distance of two points.
+    /// Difference of strain between two points.
     strain_step: Real,
     /// Confining pressure (Pa).
     pressure: Real,
-    /// Distance of the plates and volume at the begin of shearing (m), (m³).
+    /// Distance of the plates at the start of shearing (m).
     height_0: Real,
+    /// Volume at the start of shearing (m³).
     volume_0: Real,
     /// Sums of the forces on both plates since the last point (N).
     sums: [Real; 2],
     n_in_sums: u64,
 }
 
-impl Logbook {
-    /// An empty one for `n_points` up to `strain`.
+impl TimeSeries {
+    /// An empty series for `n_points` up to `strain`.
     pub(super) fn new(strain: Real, n_points: usize) -> Self {
         Self {
             columns: vec![Vec::new(); COLUMNS.len()],
@@ -72,12 +73,12 @@ impl Logbook {
         self.scalars.insert(name.to_owned(), Scalar { value, unit: unit.to_owned() });
     }
 
-    /// Substeps that a stage took.
-    pub(super) fn count(&mut self, stage: &str, n: u64) {
-        *self.n_substeps.entry(stage.to_owned()).or_default() += n;
+    /// Adds `n` substeps of `phase`.
+    pub(super) fn count(&mut self, phase: &str, n: u64) {
+        *self.n_substeps.entry(phase.to_owned()).or_default() += n;
     }
 
-    /// The isotropic state: under `pressure` (Pa) the plates bear `forces` (N).
+    /// Records the isotropic state, in which the plates carry `forces` (N) under `pressure` (Pa).
     pub(super) fn start(&mut self, system: &System, pressure: Real, forces: [Real; 2]) {
         self.pressure = pressure;
         self.height_0 = measure::height(system);
@@ -89,9 +90,9 @@ impl Logbook {
         self.point(system);
     }
 
-    /// Looks at the specimen after a substep of shearing at a relative speed (m/s) to a last strain,
-    /// with grains of a density (kg/m³); true at the last point.
-    pub(super) fn look(
+    /// Records a substep of shearing at a relative speed (m/s) up to a last strain, with grains of
+    /// a density (kg/m³). Returns true at the last point.
+    pub(super) fn record(
         &mut self,
         system: &System,
         forces: [Real; 2],
@@ -102,26 +103,26 @@ impl Logbook {
         }
         self.n_in_sums += 1;
         let height = measure::height(system);
-        let now = (self.height_0 / height).ln();
+        let strain_now = (self.height_0 / height).ln();
         let n_points = self.columns[0].len();
-        // The last point must not fall to rounding.
-        if now < self.strain_step * (real(n_points) - 1e-9) {
+        // Rounding must not skip the last point.
+        if strain_now < self.strain_step * (real(n_points) - 1e-9) {
             return false;
         }
         let diameter = 2.0 * system.model.radius_mean;
         let inertial = speed / height * diameter * (density / self.pressure).sqrt();
         self.validity.inertial_number_max = self.validity.inertial_number_max.max(inertial);
         self.point(system);
-        now >= strain * (1.0 - 1e-9)
+        strain_now >= strain * (1.0 - 1e-9)
     }
 
-    /// Notes that a grain has left the membrane.
+    /// Records that a grain has left the membrane.
     pub(super) fn leak(&mut self, system: &System) {
         self.validity.n_leaked = 1;
         self.set("strain_of_leak", (self.height_0 / measure::height(system)).ln(), "1");
     }
 
-    /// Writes a line, and begins new means.
+    /// Adds a point and starts new means.
     fn point(&mut self, system: &System) {
         let (height, volume) = (measure::height(system), measure::volume(system));
         let n = real(usize::try_from(self.n_in_sums).unwrap_or(usize::MAX));
@@ -129,8 +130,8 @@ impl Logbook {
         (self.sums, self.n_in_sums) = ([0.0; 2], 0);
         let (area, area_0) = (volume / height, self.volume_0 / self.height_0);
         let mean = 0.5 * (bottom + top);
-        let carried = measure::carried(system);
-        let [axial, lateral] = carried.stress;
+        let contacts = measure::contacts(system);
+        let [axial, lateral] = contacts.stress;
         let [middle, end] = measure::radii(system);
         let values = [
             (self.height_0 / height).ln(),
@@ -143,20 +144,20 @@ impl Logbook {
             measure::hoop_pressure(system),
             volume / self.volume_0 - 1.0,
             packing_measure::grain_volume(&system.state) / volume,
-            carried.coordination,
+            contacts.coordination,
             middle,
             end,
-            carried.unbalanced,
+            contacts.unbalanced,
         ];
         for (column, value) in self.columns.iter_mut().zip(values) {
             column.push(value);
         }
-        let deepest = &mut self.validity.overlap_over_diameter_max;
-        *deepest = deepest.max(carried.overlap_over_diameter);
+        let largest = &mut self.validity.overlap_over_diameter_max;
+        *largest = largest.max(contacts.overlap_over_diameter);
     }
 
-    /// As a record.
-    pub(super) fn record(&self, case: &str, seed: u64) -> Record {
+    /// The series as a record.
+    pub(super) fn to_record(&self, case: &str, seed: u64) -> Record {
         let columns = COLUMNS.iter().zip(&self.columns).map(|((name, unit), values)| {
             let mut column = Column::new(name, unit);
             column.values.clone_from(values);

@@ -1,13 +1,14 @@
-//! Both membrane models side by side: the same time of the laboratory in turns of slices, whose time on
-//! the clock is counted apart.
+//! Run times of both membrane models: the same simulated time, in alternating slices whose
+//! wall-clock times are counted separately.
 
 use serde::{Deserialize, Serialize};
 
 use super::{
-    build::{Choice, Kind, Recipe},
-    protocol::{Course, Stage, Test},
-    run::{slice, take},
-    scene::Setup,
+    build::Recipe,
+    cases::{Choice, Kind},
+    protocol::{Phase, TestProgress, TriaxialTest},
+    run::{restore, slice},
+    scene::TriaxialScene,
 };
 use crate::{
     base::{
@@ -19,56 +20,56 @@ use crate::{
     physics::{State, health::Diverged},
 };
 
-/// Stage in which both are made ready.
-const READY: &str = "growing";
+/// Phase in which both are prepared.
+const GROWING: &str = "growing";
 
-/// Two specimens in turns.
-pub(super) struct Timed {
+/// Two specimens that advance alternately.
+pub(super) struct TimingRun {
     name: String,
-    tests: [Test; 2],
-    /// Time each has gone on since its grains were grown (s).
+    tests: [TriaxialTest; 2],
+    /// Simulated time of each after growth (s).
     times: [Real; 2],
     /// Substeps in that time.
     n_substeps: [u64; 2],
-    /// Time each is to go on (s).
+    /// Simulated time at which each ends (s).
     last: Real,
 }
 
-/// All that is needed to go on, besides the states.
+/// Everything needed to resume, in addition to the states.
 #[derive(Serialize, Deserialize)]
 struct Saved {
-    courses: [Course; 2],
+    progress: [TestProgress; 2],
     times: [Real; 2],
     n_substeps: [u64; 2],
 }
 
 const KINDS: [Kind; 2] = [Kind::Triangles, Kind::Spheres];
 
-impl Timed {
+impl TimingRun {
     /// Both models of the same size, in the initial state A, with the source's hinge damping and a
-    /// substep that needs no other argument.
-    pub(super) fn new(setup: &Setup, name: &str, size: usize) -> Result<Self, StartError> {
-        let mut setup = setup.clone();
-        setup.membrane.bending_damping_spheres = setup.membrane.bending_damping;
-        setup.time.rayleigh_share = setup.runs.check_rayleigh_share;
-        let shear = &setup.shear;
-        let test = |kind: Kind| -> Result<Test, StartError> {
-            let (recipe, system) = Recipe::new(&setup, Choice { size, kind, initial: 0 })?;
+    /// substep that is safe without further arguments.
+    pub(super) fn new(scene: &TriaxialScene, name: &str, size: usize) -> Result<Self, StartError> {
+        let mut scene = scene.clone();
+        scene.membrane.bending_damping_spheres = scene.membrane.bending_damping;
+        scene.time.rayleigh_share = scene.runs.check_rayleigh_share;
+        let shear = &scene.shear;
+        let test = |kind: Kind| -> Result<TriaxialTest, StartError> {
+            let (recipe, system) = Recipe::new(&scene, Choice { size, kind, initial: 0 })?;
             let speed = shear.speed * shear.speed_factor;
-            Ok(Test::new(recipe, system, speed, (shear.strain, shear.n_points)))
+            Ok(TriaxialTest::new(recipe, system, speed, (shear.strain, shear.n_points)))
         };
         Ok(Self {
             name: name.to_owned(),
             tests: [test(KINDS[0])?, test(KINDS[1])?],
             times: [0.0; 2],
             n_substeps: [0; 2],
-            last: setup.runs.timing,
+            last: scene.runs.timing,
         })
     }
 
-    /// The specimen whose turn it is; `None` at the end.
+    /// Index of the specimen that advances next; `None` at the end.
     fn next(&self) -> Option<usize> {
-        let growing = |test: &Test| test.course.stage == Stage::Growing;
+        let growing = |test: &TriaxialTest| test.progress.phase == Phase::Growing;
         if let Some(which) = self.tests.iter().position(growing) {
             return Some(which);
         }
@@ -77,19 +78,19 @@ impl Timed {
     }
 }
 
-impl Run for Timed {
+impl Run for TimingRun {
     fn advance(&mut self) -> Result<Progress, Diverged> {
-        let done = |stage| Progress { stage, share: 1.0, is_done: true };
-        let Some(which) = self.next() else { return Ok(done(READY)) };
+        let done = |phase| Progress { phase, share: 1.0, is_done: true };
+        let Some(which) = self.next() else { return Ok(done(GROWING)) };
         let test = &mut self.tests[which];
-        let is_growing = test.course.stage == Stage::Growing;
-        let stage = if is_growing { READY } else { KINDS[which].name() };
+        let is_growing = test.progress.phase == Phase::Growing;
+        let phase = if is_growing { GROWING } else { KINDS[which].name() };
         let n = slice(test);
         let mut time = 0.0;
         for _ in 0..n {
             test.step();
-            time += test.course.substep;
-            if is_growing && test.course.stage != Stage::Growing {
+            time += test.progress.substep;
+            if is_growing && test.progress.phase != Phase::Growing {
                 break;
             }
         }
@@ -99,17 +100,17 @@ impl Run for Timed {
         }
         test.check()?;
         if self.next().is_none() {
-            return Ok(done(stage));
+            return Ok(done(phase));
         }
-        let grown = self.tests.iter().filter(|it| it.course.stage != Stage::Growing).count();
+        let grown = self.tests.iter().filter(|it| it.progress.phase != Phase::Growing).count();
         let timed = (self.times[0] + self.times[1]) / (2.0 * self.last);
-        Ok(Progress { stage, share: 0.1 * real(grown) + 0.8 * timed.min(1.0), is_done: false })
+        Ok(Progress { phase, share: 0.1 * real(grown) + 0.8 * timed.min(1.0), is_done: false })
     }
 
     fn save(&self) -> Vec<u8> {
         let [first, second] = &self.tests;
         let saved = Saved {
-            courses: [first.course.clone(), second.course.clone()],
+            progress: [first.progress.clone(), second.progress.clone()],
             times: self.times,
             n_substeps: self.n_substeps,
         };
@@ -118,15 +119,15 @@ impl Run for Timed {
 
     fn resume(&mut self, bytes: &[u8]) -> Result<(), ResumeError> {
         let (saved, states): (Saved, [State; 2]) = saved_run::unpack(&self.name, bytes)?;
-        for ((test, course), state) in self.tests.iter_mut().zip(saved.courses).zip(states) {
-            take(test, course, state)?;
+        for ((test, progress), state) in self.tests.iter_mut().zip(saved.progress).zip(states) {
+            restore(test, progress, state)?;
         }
         (self.times, self.n_substeps) = (saved.times, saved.n_substeps);
         Ok(())
     }
 
     fn record(&self) -> Record {
-        let seed = self.tests[0].recipe.setup.seeds[0];
+        let seed = self.tests[0].recipe.scene.seeds[0];
         let mut digest = Digest::new();
         let mut record = Record { case: self.name.clone(), seed, ..Record::default() };
         for (which, test) in self.tests.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! Identities of the stress in cells.
+//! Tests of the stress in cells.
 
 use super::*;
 use crate::{
@@ -27,7 +27,7 @@ fn total(grid: &Grid, stress: &[Option<Mat3>]) -> Mat3 {
     stress.iter().flatten().sum::<Mat3>() * grid.cell_volume()
 }
 
-/// Oracle: the stress of the whole. Tolerance 1e-12: sums of hundreds of parts.
+/// Oracle: the mean stress. Tolerance 1e-12: sums of hundreds of parts.
 #[test]
 fn the_cells_add_up_to_the_contact_stress() {
     let mut random = Random::new(4, Stream::Position);
@@ -37,9 +37,9 @@ fn the_cells_add_up_to_the_contact_stress() {
     let frame =
         Pose::from_parts(Vec3::repeat(-4.0).into(), Quat::from_euler_angles(0.1, -0.2, 0.15));
     let grid = Grid::new(frame, Vec3::new(0.3, 0.5, 0.4), [30, 20, 25]).unwrap();
-    let whole = mean_stress(&branches, 1.0);
+    let mean = mean_stress(&branches, 1.0);
     let cells = cell_stress(&grid, &branches, None);
-    assert!((total(&grid, &cells) - whole).norm() < 1e-12 * whole.norm());
+    assert!((total(&grid, &cells) - mean).norm() < 1e-12 * mean.norm());
     let n_empty = cells.iter().filter(|cell| cell.is_none()).count();
     assert!(0 < n_empty && n_empty < grid.n_cells());
 }
@@ -57,7 +57,7 @@ fn a_branch_is_shared_by_its_length() {
     assert_eq!(cells, [Some((2.0, 1.0)), Some((6.0, 3.0))]);
 }
 
-/// For the comparison of a few numbers.
+/// Asserts that two matrices are equal to rounding.
 trait MapEach {
     fn map_each<T>(self, of: impl Fn(Mat3) -> T) -> Vec<Option<T>>;
 }
@@ -68,10 +68,10 @@ impl MapEach for Vec<Option<Mat3>> {
     }
 }
 
-/// Oracle: a simple cubic lattice, squeezed alike along all axes, has one pressure everywhere: that of its
-/// one contact per axis and cell. Periodic, so that no cell differs. Tolerance: rounding.
+/// Oracle: a simple cubic lattice, compressed equally along all axes, has the same pressure everywhere: that of
+/// its one contact per axis and cell. Periodic, so that no cell differs. Tolerance: rounding.
 #[test]
-fn a_squeezed_lattice_is_hydrostatic_in_every_cell() {
+fn a_compressed_lattice_is_hydrostatic_in_every_cell() {
     let (n, radius, edge) = (4, 1e-3, 1.99e-3);
     let positions: Vec<Vec3> = (0..n * n * n)
         .map(|k| Vec3::new(real(k % n) + 0.3, real(k / n % n) + 0.4, real(k / n / n) + 0.2) * edge)
@@ -84,19 +84,19 @@ fn a_squeezed_lattice_is_hydrostatic_in_every_cell() {
     let mut system = builder.build().unwrap();
     system.step();
     let System { model, state, scratch, .. } = &system;
-    let whole = contact_stress(model, state, scratch, period.product());
-    let pressure = whole.trace() / 3.0;
+    let mean = contact_stress(model, state, scratch, period.product());
+    let pressure = mean.trace() / 3.0;
     assert!(pressure > 0.0);
-    assert!((whole - Mat3::identity() * pressure).norm() < 1e-12 * pressure);
+    assert!((mean - Mat3::identity() * pressure).norm() < 1e-12 * pressure);
     let grid = Grid::aligned(&Vec3::zeros(), &period, [2, 4, 2]).unwrap();
     let branches = branches(model, state, scratch);
     for stress in cell_stress(&grid, &branches, Some(&period)) {
-        assert!((stress.unwrap() - whole).norm() < 1e-9 * pressure);
+        assert!((stress.unwrap() - mean).norm() < 1e-9 * pressure);
     }
 }
 
-/// Oracle: the stress of the whole. Grains on a floor, one above the other; the branch of the lowest begins
-/// at its contact point with the floor, so that no cell below has a stress.
+/// Oracle: the mean stress. Grains on a floor, one above the other; the branch of the lowest starts at its
+/// contact point with the floor, so that no cell below has a stress.
 #[test]
 fn a_wall_carries_its_share() {
     let (radius, n) = (1e-3, 3);
@@ -114,7 +114,7 @@ fn a_wall_carries_its_share() {
     let (low, high) = (Vec3::new(-1e-3, -1e-3, -1.1e-3), Vec3::new(1e-3, 1e-3, 7.9e-3));
     let grid = Grid::aligned(&low, &high, [1, 1, 9]).unwrap();
     let cells = cell_stress(&grid, &branches, None);
-    let whole = contact_stress(model, state, scratch, 1.0);
-    assert!((total(&grid, &cells) - whole).norm() < 1e-12 * whole.norm());
+    let mean = contact_stress(model, state, scratch, 1.0);
+    assert!((total(&grid, &cells) - mean).norm() < 1e-12 * mean.norm());
     assert!(cells[0].is_none() && cells[8].is_none() && cells[1].is_some());
 }

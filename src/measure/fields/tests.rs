@@ -1,4 +1,4 @@
-//! Identities of coarse-grained fields.
+//! Tests of coarse-grained fields.
 
 use super::*;
 use crate::base::{
@@ -7,7 +7,7 @@ use crate::base::{
     real::real,
 };
 
-/// Spheres at random places in a unit cube, overlapping or not, and a turned grid around them.
+/// Spheres at random places in a unit cube, overlapping or not, and a rotated grid around them.
 fn scattered(n: usize) -> (Vec<Vec3>, Vec<Real>, Grid) {
     let mut random = Random::new(8, Stream::Position);
     let positions = (0..n).map(|_| Vec3::from_fn(|_, _| random.unit())).collect();
@@ -19,14 +19,14 @@ fn scattered(n: usize) -> (Vec<Vec3>, Vec<Real>, Grid) {
     (positions, radii, grid)
 }
 
-/// Oracle: the total of what is spread. Tolerance 1e-12: sums of thousands of parts, each exact to 1e-15.
+/// Oracle: the total of the distributed quantity. Tolerance 1e-12: sums of thousands of parts, each exact to 1e-15.
 #[test]
 fn the_cells_add_up_to_the_totals() {
     let (positions, radii, grid) = scattered(300);
     let overlaps = Overlaps::new(&grid, &positions, &radii, None);
     for i in 0..positions.len() {
-        let whole: Real = overlaps.of_sphere(i).iter().map(|(_, share)| share).sum();
-        assert!((whole - 1.0).abs() < 1e-12, "{whole}");
+        let total: Real = overlaps.of_sphere(i).iter().map(|(_, share)| share).sum();
+        assert!((total - 1.0).abs() < 1e-12, "{total}");
     }
     let volume: Real = radii.iter().map(|r| 4.0 / 3.0 * PI * r.powi(3)).sum();
     let solid: Real = overlaps.solid_fraction().iter().sum::<Real>() * grid.cell_volume();
@@ -50,8 +50,8 @@ fn a_rigid_translation_is_the_same_in_every_cell_to_the_last_bit() {
     for (cell, velocity) in overlaps.weighted_mean(&masses, &velocities).iter().enumerate() {
         assert_eq!(*velocity, (solid[cell] > 0.0).then_some(velocities[0]));
         assert_eq!(velocity.is_some(), displacement[cell].is_some());
-        let apart = displacement[cell].map_or(0.0, |it| (it - Vec3::new(0.25, -0.5, 2.0)).norm());
-        assert!(apart < 1e-15, "{apart}");
+        let delta = displacement[cell].map_or(0.0, |it| (it - Vec3::new(0.25, -0.5, 2.0)).norm());
+        assert!(delta < 1e-15, "{delta}");
     }
     assert!(solid.contains(&0.0) && solid.iter().any(|it| *it > 0.0));
 }
@@ -73,8 +73,8 @@ fn means_with_masses_are_momentum_over_mass() {
     }
 }
 
-/// Oracle: the gradient that was put in. Exact to rounding where the cells are those of a lattice, since
-/// all cells then hold the same arrangement.
+/// Oracle: the prescribed gradient. Exact to rounding if the cells are those of a lattice, since all cells
+/// then have the same content.
 #[test]
 fn a_linear_velocity_has_its_gradient() {
     let n = 6;
@@ -89,8 +89,8 @@ fn a_linear_velocity_has_its_gradient() {
     let wanted = Mat3::new(0.1, 2.0, -0.4, 0.0, 0.7, 1.3, -2.2, 0.5, -0.8);
     let velocities: Vec<Vec3> = positions.iter().map(|x| wanted * x).collect();
     let gradients = gradient(&grid, &overlaps.mean(&velocities));
-    for place in [[1, 1, 1], [2, 3, 3], [3, 4, 2]] {
-        let found = gradients[grid.index(place)].unwrap();
+    for indices in [[1, 1, 1], [2, 3, 3], [3, 4, 2]] {
+        let found = gradients[grid.index(indices)].unwrap();
         assert!((found - wanted).norm() < 1e-12, "{found}");
     }
     let mut lonely = vec![None; grid.n_cells()];
@@ -98,8 +98,8 @@ fn a_linear_velocity_has_its_gradient() {
     assert!(gradient(&grid, &lonely).iter().all(Option::is_none));
 }
 
-/// Oracle: the spheres' volume, although many stick out of the box, and a sphere shifted by periods is the
-/// same sphere.
+/// Oracle: the spheres' volume, although many extend beyond the box; a sphere shifted by periods is the same
+/// sphere.
 #[test]
 fn a_periodic_box_has_no_outside() {
     let (positions, radii, _) = scattered(100);

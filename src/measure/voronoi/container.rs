@@ -1,19 +1,19 @@
-//! What bounds the cells: a box, walls, a closed surface of triangles.
+//! Containers of the cells: a box, walls, a closed triangulated surface.
 //!
-//! A surface need not be convex. A cell C is clipped exactly, seen from any point O:
+//! A surface need not be convex. A cell C is clipped exactly, with an arbitrary point O:
 //!
 //! ```text
 //! V(C ∩ M) = w V(C) − Σ_f s_f V(C ∩ K_f ∩ B_f)
 //!
 //! w    winding number of the surface M about O: 1 inside, 0 outside
 //! K_f  infinite cone from O over facet f
-//! B_f  what lies beyond the plane of facet f, seen from O
+//! B_f  half-space beyond the plane of facet f, seen from O
 //! s_f  1 if O sees the inner side of the facet, −1 if the outer one
 //! ```
 //!
-//! The cones over all facets, with their signs, cover space w times, and what they cover beyond the facets is
-//! the outside. Each part is convex, and only facets no farther from O than the cell's farthest vertex have
-//! one. Areas of faces are clipped by the same sum.
+//! The cones over all facets, with their signs, cover space w times, and their parts beyond the facets cover
+//! the outside. Each part is convex. Only facets no farther from O than the cell's farthest vertex contribute.
+//! Areas of faces are clipped by the same sum.
 
 use std::{collections::BTreeMap, f64::consts::PI};
 
@@ -23,19 +23,19 @@ use super::{
 };
 use crate::{
     base::{Real, Vec3},
-    measure::near::Near,
+    measure::search::PointSearch,
 };
 
-/// A wall: the cells keep to the side that `normal` points to.
+/// A plane wall: the cells are on the side of `normal`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plane {
-    /// A point of it, world frame (m).
+    /// A point of the plane, world frame (m).
     pub point: Vec3,
-    /// Unit normal, into the room.
+    /// Unit normal, into the container.
     pub normal: Vec3,
 }
 
-/// A surface that bounds nothing.
+/// The surface is not closed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "the surface is open or inconsistently oriented at the edge of vertices {0} and {1}; close its rims \
@@ -43,7 +43,7 @@ pub struct Plane {
 )]
 pub struct OpenSurface(pub u32, pub u32);
 
-/// What bounds the cells.
+/// The region that the cells fill.
 pub struct Container<'a> {
     corners: [Vec3; 2],
     period: Option<Vec3>,
@@ -51,16 +51,16 @@ pub struct Container<'a> {
     surface: Option<Surface<'a>>,
 }
 
-/// A closed surface and where its facets are.
+/// A closed surface with a search structure for its facets.
 struct Surface<'a> {
     positions: &'a [Vec3],
     triangles: &'a [[u32; 3]],
-    /// Their centroids.
-    near: Near<'static>,
-    /// No vertex is farther than this from the centroid of its facet (m).
+    /// Centroids of the facets.
+    points: PointSearch<'static>,
+    /// Largest distance of a vertex from the centroid of its facet (m).
     radius_max: Real,
-    /// Planes that have the whole surface below them: unit normal and height (m). Cells on the outside are
-    /// open until these close them, long before the corners of the box.
+    /// Planes with the entire surface below them: unit normal and height (m). They close the outer cells
+    /// much tighter than the box.
     hull: Vec<(Vec3, Real)>,
 }
 
@@ -70,22 +70,22 @@ impl<'a> Container<'a> {
         Self { corners: [low, high], period: None, planes: &[], surface: None }
     }
 
-    /// The box from the origin to `period` (m) that goes on periodically along all axes.
+    /// The box from the origin to `period` (m), periodic along all axes.
     pub fn periodic(period: Vec3) -> Self {
         Self { period: Some(period), ..Self::cuboid(Vec3::zeros(), period) }
     }
 
     /// The inside of the closed surface of `triangles`, counterclockwise seen from outside, with vertices
     /// at `positions` (m). It may be concave and have several parts; `with_lids` closes a surface
-    /// with rims. The membrane's mid-surface is the bound, not the side that grains touch.
+    /// with rims. For a membrane, the bound is its mid-surface, not the side that grains touch.
     ///
     /// # Errors
-    /// If an edge has not exactly one triangle on either side.
+    /// If an edge does not have exactly one triangle on either side.
     pub fn surface(positions: &'a [Vec3], triangles: &'a [[u32; 3]]) -> Result<Self, OpenSurface> {
         check_closed(triangles)?;
         let none = [Vec3::repeat(Real::INFINITY), Vec3::repeat(Real::NEG_INFINITY)];
         let [low, high] = positions.iter().fold(none, |[low, high], v| [low.inf(v), high.sup(v)]);
-        // A box that the surface does not touch: what bounds the cells are facets alone.
+        // A box that does not touch the surface, so that only facets bound the cells.
         let margin = 0.01 * (high - low).norm();
         let corners = [low.add_scalar(-margin), high.add_scalar(margin)];
         let mut radius_max: Real = 0.0;
@@ -98,14 +98,14 @@ impl<'a> Container<'a> {
             }
             centroids.push(centroid);
         }
-        let near = Near::new(&centroids, radius_max, None);
+        let points = PointSearch::new(&centroids, radius_max, None);
         let hull = diagonals().map(|normal| {
             let highest =
                 positions.iter().map(|v| normal.dot(v)).fold(Real::NEG_INFINITY, Real::max);
             (normal, highest + margin)
         });
         let hull = hull.collect();
-        let surface = Some(Surface { positions, triangles, near, radius_max, hull });
+        let surface = Some(Surface { positions, triangles, points, radius_max, hull });
         Ok(Self { corners, period: None, planes: &[], surface })
     }
 
@@ -115,7 +115,7 @@ impl<'a> Container<'a> {
         Self { planes, ..self }
     }
 
-    /// Lowest and highest corner of the box around it (m).
+    /// Lowest and highest corner of the bounding box (m).
     pub(super) fn corners(&self) -> [Vec3; 2] {
         self.corners
     }
@@ -124,7 +124,7 @@ impl<'a> Container<'a> {
         self.period.as_ref()
     }
 
-    /// What sphere `i` at `center` (m) has if it is alone, without the surface; relative to its center.
+    /// The initial cell of sphere `i` at `center` (m): the box cut by the walls, relative to its center.
     pub(super) fn start(&self, i: usize, center: &Vec3, cutter: &mut Cutter) -> Polyhedron {
         let (bounds, neighbors) = match self.period {
             // Its own images are half a period away.
@@ -139,14 +139,14 @@ impl<'a> Container<'a> {
         cell
     }
 
-    /// Takes away some of what lies outside the surface, if there is one.
+    /// Cuts off some of what lies outside the surface, if there is one.
     pub(super) fn close(&self, cell: &mut Polyhedron, center: &Vec3, cutter: &mut Cutter) {
         for (normal, height) in self.surface.iter().flat_map(|surface| &surface.hull) {
             cell.cut(normal, height - normal.dot(center), None, cutter);
         }
     }
 
-    /// Volume (m³) of the part of `cell` inside the surface; adds its faces.
+    /// Volume (m³) of the part of `cell` inside the surface. Adds its faces to `faces`.
     pub(super) fn clip(
         &self,
         cell: &Polyhedron,
@@ -159,11 +159,11 @@ impl<'a> Container<'a> {
             return cell.volume();
         };
         faces.is_clipped = true;
-        // Any point serves as the apex of the cones; beside the center it is in no facet's plane.
+        // Any point can be the apex of the cones. A point next to the center is in no facet's plane.
         let apex = Vec3::new(0.61, 0.35, 0.71) * (1e-3 * surface.radius_max);
         let reach = cell.reach() + apex.norm();
         let mut facets = Vec::new();
-        surface.near.visit(center, reach + surface.radius_max, |f, _| facets.push(f));
+        surface.points.visit(center, reach + surface.radius_max, |f, _| facets.push(f));
         facets.retain(|&f| surface.is_within(f, center, reach));
         facets.sort_unstable();
         let winding = surface.winding(&(center + apex), &self.corners);
@@ -195,7 +195,7 @@ fn beyond(
     let sign = (height - normal.dot(apex)).signum();
     let mut cuts = [(-sign * normal, -sign * height); 4];
     for (cut, [p, q]) in cuts[1..].iter_mut().zip([[a, b], [b, c], [c, a]]) {
-        // An apex in line with an edge sees no cone.
+        // An apex collinear with an edge has no cone.
         let side = (p - apex).cross(&(q - apex)).try_normalize(0.0)? * -sign;
         *cut = (side, side.dot(apex));
     }
@@ -235,21 +235,21 @@ impl Surface<'_> {
     fn is_within(&self, f: usize, center: &Vec3, reach: Real) -> bool {
         let [a, b, c] = self.corners(f);
         let (low, high) = (a.inf(&b).inf(&c), a.sup(&b).sup(&c));
-        let apart = (low - center).sup(&(center - high)).sup(&Vec3::zeros());
-        apart.norm_squared() <= reach * reach
+        let outside = (low - center).sup(&(center - high)).sup(&Vec3::zeros());
+        outside.norm_squared() <= reach * reach
     }
 
-    /// How often the surface surrounds `point` (m): crossings of the ray from there along x, outward ones
-    /// less inward ones.
+    /// Winding number of the surface about `point` (m): outward minus inward crossings of the ray from
+    /// there along x.
     fn winding(&self, point: &Vec3, corners: &[Vec3; 2]) -> Real {
         let length = (corners[1].x - point.x).max(0.0);
         let middle = point + Vec3::x() * (0.5 * length);
         let half = Vec3::new(0.5 * length, 0.0, 0.0).add_scalar(self.radius_max);
         let mut turns = 0.0;
         let mut is_clear = true;
-        self.near.visit_box(&(middle - half), &(middle + half), |f| {
+        self.points.visit_box(&(middle - half), &(middle + half), |f| {
             let [a, b, c] = self.corners(f).map(|it| it - point);
-            // Twice the areas that the ray makes with the edges, seen along x.
+            // Twice the areas of the triangles of ray and edges, projected along x.
             let area = |p: &Vec3, q: &Vec3| p.y * q.z - p.z * q.y;
             let areas = [area(&b, &c), area(&c, &a), area(&a, &b)];
             let total: Real = areas.iter().sum();
@@ -259,7 +259,7 @@ impl Surface<'_> {
             if is_hit && at > 0.0 {
                 turns += total.signum();
             }
-            // A ray through an edge or a vertex, or along a facet, counts nothing for sure.
+            // A ray through an edge or a vertex, or along a facet, has no reliable crossing.
             let is_beside = areas.iter().any(|it| it * total < 0.0 && it.abs() > rounding);
             is_clear &= is_beside || areas.iter().all(|it| it.abs() > rounding);
         });
@@ -279,23 +279,23 @@ impl Surface<'_> {
     }
 }
 
-/// Faces of a cell that is put together from parts: the area of each neighbor's face (m²).
+/// Faces of a cell composed of parts: the area of each neighbor's face (m²).
 #[derive(Default)]
 pub(super) struct Faces {
-    whole: Vec<Face>,
-    /// What is taken from them, and facets.
+    original: Vec<Face>,
+    /// Areas to subtract, and facets.
     changes: BTreeMap<Neighbor, Real>,
-    /// True if a surface may have taken faces away.
+    /// True if the surface may have removed faces.
     is_clipped: bool,
 }
 
 impl Faces {
     fn add(&mut self, part: &Polyhedron, times: Real) {
         let scaled = |(neighbor, area)| Face { neighbor, area: times * area };
-        self.whole.extend(part.faces().map(scaled));
+        self.original.extend(part.faces().map(scaled));
     }
 
-    /// Takes away the faces of `part`; its face on a facet of the surface becomes one of the cell.
+    /// Subtracts the faces of `part`. Its face on a facet of the surface becomes a face of the cell.
     fn subtract(&mut self, part: &Polyhedron, sign: Real) {
         for (neighbor, area) in part.faces() {
             let is_facet = matches!(neighbor, Neighbor::Facet(_));
@@ -304,18 +304,18 @@ impl Faces {
         }
     }
 
-    /// The faces that have an area.
+    /// The faces with a positive area.
     pub(super) fn into_list(mut self) -> Vec<Face> {
         if !self.is_clipped {
-            return self.whole;
+            return self.original;
         }
-        for face in &mut self.whole {
+        for face in &mut self.original {
             face.area += self.changes.remove(&face.neighbor).unwrap_or(0.0);
         }
         let rest = self.changes.into_iter().map(|(neighbor, area)| Face { neighbor, area });
-        let mut faces: Vec<Face> = self.whole.into_iter().chain(rest).collect();
+        let mut faces: Vec<Face> = self.original.into_iter().chain(rest).collect();
         let size = faces.iter().map(|face| face.area).fold(0.0, Real::max);
-        // What is left of a face that was taken away is rounding.
+        // A face that was removed may have a remainder from rounding.
         faces.retain(|face| face.area.abs() > 1e-12 * size);
         faces
     }

@@ -1,14 +1,14 @@
-//! Laguerre–Voronoi cells: the space that belongs to each grain of a polydisperse packing.
+//! Laguerre–Voronoi cells of the grains of a polydisperse packing.
 //!
 //! ```text
 //! cell i = { x : |x − x_i|² − R_i² ≤ |x − x_j|² − R_j²  for all j }, inside the container
 //! φ_i    = 4/3 π R_i³ / V_cell,i                                  local solid fraction
 //! ```
 //!
-//! Also called the radical or power tessellation; with equal radii it is Voronoi's. Each cell starts as
-//! the container's box and is cut by the planes of its neighbors, nearest first. It ends when no farther
-//! sphere can reach it: beyond the distance ρ + √(ρ² + R_max² − R_i²) from x_i, where ρ is the distance of
-//! the farthest vertex.
+//! Also called the radical or power tessellation; with equal radii it is the Voronoi tessellation. Each
+//! cell starts as the container's box and is cut by the planes of its neighbors, nearest first. It is
+//! complete when no farther sphere can reach it: beyond the distance ρ + √(ρ² + R_max² − R_i²) from x_i,
+//! where ρ is the distance of the farthest vertex.
 //!
 //! Source: Imai, Iri & Murota, SIAM J. Comput. 14 (1985) 93; Rycroft, Chaos 19 (2009) 041111 (voro++).
 //!
@@ -21,11 +21,11 @@
 //! assert!(cells[0].faces.iter().any(|face| face.neighbor == Neighbor::Sphere(1)));
 //! ```
 //!
-//! Own clipping instead of a crate, after a trial on 19 652 cells (lattices with noise, equal and unequal
+//! This module does its own clipping instead of using a crate, after a comparison on 19 652 cells (lattices with noise, equal and unequal
 //! radii; random points): `voro_rs` 0.3, which binds voro++, gives the same volumes to 3e-14 and the same
 //! faces in 0.38 to 0.49 s, this module in 0.27 to 0.49 s on one core. The binding needs a C++ compiler for
-//! each target and knows no triangulated container; `meshless_voronoi` 0.7 and `vorothree` 0.0.1 know no radii. Their
-//! licenses (BSD-3-Clause-LBNL, MIT, Apache-2.0) would all do.
+//! each target and has no triangulated containers; `meshless_voronoi` 0.7 and `vorothree` 0.0.1 do not support
+//! radii. Their licenses (BSD-3-Clause-LBNL, MIT, Apache-2.0) would all be acceptable.
 
 mod container;
 mod polyhedron;
@@ -36,7 +36,7 @@ pub use rims::with_lids;
 
 use std::f64::consts::PI;
 
-use super::near::Near;
+use super::search::PointSearch;
 use crate::base::{Real, Vec3, parallel, real::real};
 use container::Faces;
 use polyhedron::{Cutter, Polyhedron};
@@ -57,7 +57,7 @@ pub enum Neighbor {
 /// A face of a cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Face {
-    /// What it borders on.
+    /// What is on its other side.
     pub neighbor: Neighbor,
     /// Area (m²).
     pub area: Real,
@@ -66,14 +66,14 @@ pub struct Face {
 /// The cell of a sphere.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Cell {
-    /// Volume (m³); 0 if larger spheres around it leave it no space.
+    /// Volume (m³); 0 if larger spheres around it leave no space.
     pub volume: Real,
-    /// Its faces; none if the volume is 0. Only in a periodic box can a neighbor have more than one.
+    /// The faces; none if the volume is 0. A neighbor can have more than one only in a periodic box.
     pub faces: Vec<Face>,
 }
 
 /// The cell of each sphere at `positions` (m), world frame, with `radii` (m), in `container`. The cells
-/// fill the container. Runs on the threads of the team that calls, if there is one
+/// fill the container. Runs on the caller's team of threads, if there is one
 /// (`base::parallel::lead`).
 pub fn laguerre_cells(positions: &[Vec3], radii: &[Real], container: &Container<'_>) -> Vec<Cell> {
     let [low, high] = container.corners();
@@ -82,10 +82,10 @@ pub fn laguerre_cells(positions: &[Vec3], radii: &[Real], container: &Container<
     let in_packing = 2.2 * radii.iter().sum::<Real>() / n_spheres;
     // Spheres in contact may fill only a part of the box.
     let spacing = if in_packing > 0.0 { in_packing.min(in_box) } else { in_box };
-    // A flat box has no spacing of its own.
+    // A flat box gives no spacing.
     let spacing = spacing.max(1e-3 * (high - low).norm());
     let tessellation = Tessellation {
-        near: Near::new(positions, spacing, container.period()),
+        points: PointSearch::new(positions, spacing, container.period()),
         radii,
         radius_max: radii.iter().copied().fold(0.0, Real::max),
         first_reach: 1.6 * spacing,
@@ -96,8 +96,8 @@ pub fn laguerre_cells(positions: &[Vec3], radii: &[Real], container: &Container<
     cells
 }
 
-/// Solid fraction of the cell of each sphere with `radii` (m); `None` of an empty cell. Where spheres
-/// overlap it can be more than 1.
+/// Solid fraction of the cell of each sphere with `radii` (m); `None` for an empty cell. It can exceed 1
+/// where spheres overlap.
 pub fn local_solid_fractions(cells: &[Cell], radii: &[Real]) -> Vec<Option<Real>> {
     let of = |(cell, radius): (&Cell, &Real)| {
         (cell.volume > 0.0).then(|| 4.0 / 3.0 * PI * radius.powi(3) / cell.volume)
@@ -105,22 +105,22 @@ pub fn local_solid_fractions(cells: &[Cell], radii: &[Real]) -> Vec<Option<Real>
     cells.iter().zip(radii).map(of).collect()
 }
 
-/// What all cells share.
+/// Data for the computation of all cells.
 struct Tessellation<'a> {
-    near: Near<'a>,
+    points: PointSearch<'a>,
     radii: &'a [Real],
     radius_max: Real,
-    /// Distance within which neighbors are looked for at first (m).
+    /// Radius of the first search for neighbors (m).
     first_reach: Real,
     container: &'a Container<'a>,
 }
 
-/// A neighbor's squared distance (m²), its index, and where it is from the center (m).
+/// A neighbor's squared distance (m²), its index, and its position relative to the center (m).
 type Candidate = (Real, usize, Vec3);
 
 impl Tessellation<'_> {
     fn cell(&self, i: usize) -> Cell {
-        let center = self.near.at(i);
+        let center = self.points.at(i);
         let mut cutter = Cutter::default();
         let mut cell = self.container.start(i, &center, &mut cutter);
         self.cut_by_spheres(i, &center, &mut cell, &mut cutter);
@@ -141,11 +141,11 @@ impl Tessellation<'_> {
         let mut candidates: Vec<Candidate> = Vec::new();
         while !cell.is_empty() && done < end {
             self.collect((i, center), (done, reach), &mut candidates);
-            for (squared, j, apart) in &candidates {
+            for (squared, j, delta) in &candidates {
                 if end * end < *squared || cell.is_empty() {
                     return;
                 }
-                if self.cut_by((i, *j), *squared, apart, cell, cutter) {
+                if self.cut_by((i, *j), *squared, delta, cell, cutter) {
                     end = safe(cell);
                 }
             }
@@ -157,18 +157,18 @@ impl Tessellation<'_> {
         }
     }
 
-    /// Cuts `cell` of sphere i by the plane of sphere j, which is `apart` from it; true if it got smaller.
+    /// Cuts `cell` of sphere i by the plane of sphere j, which is at `delta` from it; true if it became smaller.
     fn cut_by(
         &self,
         (i, j): (usize, usize),
         squared: Real,
-        apart: &Vec3,
+        delta: &Vec3,
         cell: &mut Polyhedron,
         cutter: &mut Cutter,
     ) -> bool {
         let [own, other] = [i, j].map(|k| self.radii[k]);
         if squared == 0.0 {
-            // Of two spheres in one place the larger has the cell, of equal ones the first.
+            // Of two spheres at the same position the larger has the cell, of equal ones the first.
             let is_hidden = own < other || own.total_cmp(&other).is_eq() && j < i;
             if is_hidden {
                 *cell = Polyhedron::default();
@@ -177,7 +177,7 @@ impl Tessellation<'_> {
         }
         let distance = squared.sqrt();
         let offset = (squared + (own - other) * (own + other)) / (2.0 * distance);
-        cell.cut(&(apart / distance), offset, Some(Neighbor::Sphere(j)), cutter)
+        cell.cut(&(delta / distance), offset, Some(Neighbor::Sphere(j)), cutter)
     }
 
     /// The spheres farther from sphere i than `done` and not farther than `reach` (m), nearest first.
@@ -188,13 +188,13 @@ impl Tessellation<'_> {
         candidates: &mut Vec<Candidate>,
     ) {
         candidates.clear();
-        self.near.visit(center, reach, |j, position| {
-            let apart = position - center;
-            let squared = apart.norm_squared();
+        self.points.visit(center, reach, |j, position| {
+            let delta = position - center;
+            let squared = delta.norm_squared();
             let is_itself = i == j && squared == 0.0;
             let is_new = done < 0.0 || done * done < squared;
             if is_new && squared <= reach * reach && !is_itself {
-                candidates.push((squared, j, apart));
+                candidates.push((squared, j, delta));
             }
         });
         candidates.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));

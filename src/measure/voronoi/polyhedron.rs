@@ -1,27 +1,27 @@
-//! A convex polyhedron that half-spaces cut, face by face.
+//! A convex polyhedron that is cut by half-spaces, face by face.
 //!
-//! A vertex within a tolerance of the cutting plane counts as on it, so that lattices, whose planes meet by
-//! fours and more in one point, keep their shape. If rounding still makes the cut edges inconsistent, the
+//! A vertex within a tolerance of the cutting plane counts as on it. This keeps the cells of lattices, where
+//! four or more planes meet in one point, exact. If rounding still makes the cut edges inconsistent, the
 //! plane is moved by a multiple of the tolerance.
 
 use super::Neighbor;
 use crate::base::{Real, Vec3};
 
-/// Distance from the plane over the size of the polyhedron within which a vertex is on the plane.
+/// Distance from the plane within which a vertex is on the plane, relative to the size of the polyhedron.
 const TOLERANCE: Real = 1e-13;
-/// Times that an inconsistent cut is tried again.
+/// Number of attempts for an inconsistent cut.
 const N_TRIES: u32 = 8;
 
 /// A face: its vertices are `loops[start .. end]`, counterclockwise seen from outside.
 #[derive(Clone, Copy, Debug)]
 struct Face {
-    /// None of a plane that only divides.
+    /// `None` for a plane that only divides.
     neighbor: Option<Neighbor>,
     start: u32,
     end: u32,
 }
 
-/// The polyhedron, around the origin or beside it (m).
+/// A polyhedron (m). The origin may be outside.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Polyhedron {
     vertices: Vec<Vec3>,
@@ -36,14 +36,14 @@ pub(super) struct Cutter {
     heights: Vec<Real>,
     /// Vertices on cut edges: the ends, inside first, and the vertex.
     crossed: Vec<[u32; 3]>,
-    /// Edges of the new face, as they run in it: against those of the faces that were cut.
+    /// Edges of the new face, in its orientation: opposite to those of the faces that were cut.
     rim: Vec<[u32; 2]>,
     cut: Polyhedron,
     /// New index of each vertex.
     kept: Vec<u32>,
 }
 
-/// Stands for a vertex that is not used.
+/// Index of an unused vertex.
 const UNUSED: u32 = u32::MAX;
 
 impl Polyhedron {
@@ -80,7 +80,7 @@ impl Polyhedron {
 
     /// Volume (m³).
     pub(super) fn volume(&self) -> Real {
-        // From a vertex of its own: accurate wherever the origin is.
+        // Relative to one of its vertices: accurate wherever the origin is.
         let Some(apex) = self.vertices.first() else { return 0.0 };
         self.faces
             .iter()
@@ -112,8 +112,8 @@ impl Polyhedron {
         twice * 0.5
     }
 
-    /// Keeps what lies where `normal · x ≤ offset` (m); the new face belongs to `neighbor`. True if
-    /// something was taken away.
+    /// Keeps the part with `normal · x ≤ offset` (m); the new face belongs to `neighbor`. True if
+    /// something was cut off.
     pub(super) fn cut(
         &mut self,
         normal: &Vec3,
@@ -151,21 +151,26 @@ impl Polyhedron {
             cutter.heights.iter_mut().for_each(|height| *height -= step);
             (highest, lowest) = (highest - step, lowest - step);
         }
-        // Not reached on lattices disturbed by 1e-3 to 1e-17 of their edge. A cut left out here would show
+        // Not reached on lattices disturbed by 1e-3 to 1e-17 of their edge. A missing cut would be visible
         // in the sum of the volumes.
         false
     }
 }
 
 impl Cutter {
-    /// Makes `self.cut` what of `whole` is not above the plane; false if the cut is inconsistent.
-    fn divide(&mut self, whole: &Polyhedron, tolerance: Real, neighbor: Option<Neighbor>) -> bool {
+    /// Sets `self.cut` to the part of `original` that is not above the plane; false if the cut is inconsistent.
+    fn divide(
+        &mut self,
+        original: &Polyhedron,
+        tolerance: Real,
+        neighbor: Option<Neighbor>,
+    ) -> bool {
         self.cut.clear();
         self.crossed.clear();
         self.rim.clear();
-        self.cut.vertices.extend_from_slice(&whole.vertices);
-        for face in &whole.faces {
-            let corners = &whole.loops[face.start as usize..face.end as usize];
+        self.cut.vertices.extend_from_slice(&original.vertices);
+        for face in &original.faces {
+            let corners = &original.loops[face.start as usize..face.end as usize];
             if !self.divide_face(face.neighbor, corners, tolerance) {
                 return false;
             }
@@ -218,7 +223,7 @@ impl Cutter {
         n_exits <= 1
     }
 
-    /// The vertex where the edge from `inside` to `above` meets the plane.
+    /// The vertex where the edge from `inside` to `above` intersects the plane.
     fn cross(&mut self, inside: u32, above: u32) -> u32 {
         if let Some(known) = self.crossed.iter().find(|it| it[0] == inside && it[1] == above) {
             return known[2];
@@ -248,7 +253,7 @@ impl Cutter {
         at == first && n_edges == self.rim.len() && end - start >= 3
     }
 
-    /// Drops vertices that no face uses.
+    /// Removes vertices that no face uses.
     fn compact(&mut self) {
         let Polyhedron { vertices, loops, .. } = &mut self.cut;
         self.kept.clear();

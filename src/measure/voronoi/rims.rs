@@ -1,11 +1,11 @@
-//! Lids on open surfaces, so that they bound a volume.
+//! Closes open surfaces with lids, so that they bound a volume.
 
 use std::collections::BTreeMap;
 
 use crate::base::{Real, Vec3, real::real};
 
 /// The vertices (m) and triangles of a surface with a lid on each rim: triangles from the rim to its
-/// centroid, which is a new vertex. A closed surface stays as it is. No vertex may be on two rims.
+/// centroid, which is a new vertex. A closed surface is not changed. No vertex may be on two rims.
 pub fn with_lids(positions: &[Vec3], triangles: &[[u32; 3]]) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let (mut vertices, mut closed) = (positions.to_vec(), triangles.to_vec());
     let mut rim = rim_edges(triangles);
@@ -13,7 +13,7 @@ pub fn with_lids(positions: &[Vec3], triangles: &[[u32; 3]]) -> (Vec<Vec3>, Vec<
         let center = u32::try_from(vertices.len()).unwrap_or(u32::MAX);
         let (mut sum, mut n, mut at) = (Vec3::zeros(), 0, first);
         while let Some(next) = rim.remove(&at) {
-            // Against the edge of the triangle that is there.
+            // Opposite to the edge of the adjacent triangle.
             closed.push([next, at, center]);
             sum += positions[at as usize];
             n += 1;
@@ -25,7 +25,7 @@ pub fn with_lids(positions: &[Vec3], triangles: &[[u32; 3]]) -> (Vec<Vec3>, Vec<
     (vertices, closed)
 }
 
-/// Edges without a triangle on their other side: where each begins, and where it ends.
+/// Edges with a triangle on one side only: from the first vertex to the second.
 fn rim_edges(triangles: &[[u32; 3]]) -> BTreeMap<u32, u32> {
     let directed = |[a, b, c]: &[u32; 3]| [[*a, *b], [*b, *c], [*c, *a]];
     let mut edges: Vec<[u32; 2]> = triangles.iter().flat_map(directed).collect();
@@ -42,9 +42,9 @@ mod tests {
         physics::membrane::{mesh::Mesh, pressure},
     };
 
-    /// Oracle: the volume that the membrane's pressure acts in, which closes the rim alike.
+    /// Oracle: the volume enclosed by the membrane for the pressure, which closes the rim in the same way.
     #[test]
-    fn a_bag_with_a_lid_has_its_volume() {
+    fn a_membrane_with_a_lid_has_its_volume() {
         let mesh = Mesh::half_icosphere(0.04, 6).unwrap();
         assert!(Container::surface(&mesh.positions, &mesh.triangles).is_err());
         let (vertices, triangles) = with_lids(&mesh.positions, &mesh.triangles);

@@ -1,4 +1,4 @@
-//! Cells beside those of voro++, closed forms, and sums.
+//! Tests against voro++, closed forms, and sums.
 
 use super::*;
 use crate::base::{
@@ -75,7 +75,7 @@ fn a_lattice_has_its_exact_cells() {
 }
 
 /// Oracle: the container's volume and symmetry. Radii that differ by a factor of ten, positions at random: many
-/// cells are empty, many do not hold their own center. Faces have the same area from both sides.
+/// cells are empty, many do not contain their own center. Faces have the same area from both sides.
 #[test]
 fn cells_fill_the_box_and_share_their_faces() {
     let (low, high) = (Vec3::new(-1.0, 2.0, 0.0), Vec3::new(1.0, 3.0, 0.7));
@@ -104,8 +104,8 @@ fn cells_fill_the_box_and_share_their_faces() {
     }
 }
 
-/// Oracle: by hand. A small sphere inside a large one has no space; a center beside its own cell is no fault;
-/// of two spheres in one place the first has the cell.
+/// Oracle: by hand. A small sphere inside a large one has no cell; a center outside its own cell is valid; of
+/// two spheres at the same position the first has the cell.
 #[test]
 fn a_hidden_sphere_has_an_empty_cell() {
     let cuboid = Container::cuboid(Vec3::repeat(-1.0), Vec3::repeat(1.0));
@@ -122,7 +122,7 @@ fn a_hidden_sphere_has_an_empty_cell() {
     assert!(total(&laguerre_cells(&hidden, &[0.1; 3], &flat)).abs() < 1e-15);
 }
 
-/// Oracle: the box less the corner of volume 1/6 that the wall cuts off, and the wall's triangle of area √3/2.
+/// Oracle: the box minus the corner of volume 1/6 that the wall cuts off, and the wall's triangle of area √3/2.
 #[test]
 fn walls_cut_cells() {
     let (low, high) = (Vec3::zeros(), Vec3::repeat(2.0));
@@ -156,8 +156,8 @@ fn ring(n: u32, m: u32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     (positions, triangles)
 }
 
-/// Oracle: the volume and the facets of the surface itself, a ring: no plane has it on one side. Half of the
-/// centers are outside. Tolerance 1e-10.
+/// Oracle: the volume and the facets of the surface itself, a ring, which is not convex. Half of the centers
+/// are outside. Tolerance 1e-10.
 #[test]
 fn cells_fill_a_closed_surface_that_is_not_convex() {
     let (vertices, triangles) = ring(24, 12);
@@ -186,8 +186,8 @@ fn cells_fill_a_closed_surface_that_is_not_convex() {
     assert!(matches!(Container::surface(&vertices, &triangles[1..]), Err(OpenSurface(..))));
 }
 
-/// Oracle: the same cells cut by six walls. A turned cube of twelve triangles, its center on none of their
-/// edges' rays.
+/// Oracle: the same cells cut by six walls. A rotated cube of twelve triangles, whose center is not in line
+/// with an edge.
 #[test]
 fn a_cube_of_triangles_cuts_as_six_walls_do() {
     let rotation = Quat::from_euler_angles(0.3, 0.4, 0.5);
@@ -206,7 +206,7 @@ fn a_cube_of_triangles_cuts_as_six_walls_do() {
         .collect();
     let (low, high) = (Vec3::repeat(-0.87), Vec3::repeat(0.87));
     let (mut positions, mut radii) = scattered(300, &low, &high, [0.02, 0.1]);
-    // On edges, on corners, in the planes of facets, and in the middle.
+    // On edges, on corners, in the planes of facets, and at the center.
     positions.extend(&vertices);
     positions.extend([Vec3::zeros(), (vertices[0] + vertices[6]) / 2.0, vertices[0] * 1.2]);
     radii.resize(positions.len(), 0.05);

@@ -1,24 +1,24 @@
-//! The port to rigid bodies: motion in, wrench out.
+//! Interface to rigid bodies: the motion is an input, the wrench an output.
 
 pub use crate::base::real::Wrench;
 use crate::base::{Pose, Vec3, real::Twist};
 
-/// How a rigid body moves during the next substeps. The frame's origin is the centre of mass.
+/// Pose and velocity of a rigid body or a wall. For a body, the origin of its frame is the center of mass.
 #[derive(Clone, Copy, Debug)]
 pub struct BodyMotion {
     /// Pose in the world.
     pub pose: Pose,
-    /// Velocity of the centre of mass and angular velocity, world axes (m/s), (rad/s).
+    /// Velocity of the frame's origin (m/s) and angular velocity (rad/s), world axes.
     pub twist: Twist,
 }
 
 impl BodyMotion {
-    /// The pose after `dt` seconds at constant twist.
+    /// Advances the pose by `dt` (s) at constant velocity.
     pub fn advance(&mut self, dt: f64) {
         self.pose.translation.vector += self.twist.linear * dt;
         if self.twist.angular != Vec3::zeros() {
-            let turn = crate::base::Quat::from_scaled_axis(self.twist.angular * dt);
-            self.pose.rotation = turn * self.pose.rotation;
+            let rotation = crate::base::Quat::from_scaled_axis(self.twist.angular * dt);
+            self.pose.rotation = rotation * self.pose.rotation;
         }
     }
 }

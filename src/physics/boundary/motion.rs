@@ -18,14 +18,14 @@
 //! | A, f, φ | amplitude, frequency, phase | m, Hz, rad |
 //! | c, θ | a point on the hinge's axis, angle | m, rad |
 //!
-//! `System::step` is the only place that evaluates a motion. The velocity is the mean over the
-//! substep, so that position and velocity never drift apart: sinusoids and hinges follow their
-//! closed forms to rounding. Vertices that a wall holds take its pose at the end of the substep and
-//! the velocity during it. Contacts of grains are evaluated at the start of the substep: they see
-//! the pose that the last substep reached, and the velocity it had on the way there.
+//! Only `System::step` evaluates motions. The velocity is the mean over the substep, so position
+//! and velocity stay consistent: sinusoids and hinges follow their closed forms up to rounding.
+//! Vertices held by a wall take its pose at the end of the substep and its velocity during it.
+//! Contacts of grains are evaluated at the start of the substep, with the pose at the end of the
+//! last substep and the velocity during it.
 //!
-//! Time counts from the moment at which a wall got its motion. It is part of the state, as is the
-//! load that a servo acts on, but only in systems with a wall that needs them.
+//! Time starts when a wall is given its motion. Time and the load of a servo are part of the state, but only in
+//! systems with a wall that needs them.
 
 use std::f64::consts::TAU;
 
@@ -34,11 +34,11 @@ use crate::base::{Pose, Quat, Real, Vec3, real::Twist};
 /// How a wall moves.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum WallMotion {
-    /// Stays where it is.
+    /// Does not move.
     #[default]
     Fixed,
-    /// Moved from outside: the owner of the system writes the velocity, and the pose if it jumps,
-    /// into `Controls::walls` before each substep. `System::step` advances the pose.
+    /// Moved by the owner of the system, who writes the velocity, and the pose if it jumps, into
+    /// `Controls::walls` before each substep. `System::step` advances the pose.
     External,
     /// Moves at a constant velocity.
     Velocity(Twist),
@@ -46,54 +46,54 @@ pub enum WallMotion {
     Sinusoid {
         /// Direction, a unit vector in world axes.
         axis: Vec3,
-        /// Largest distance from the middle of the path (m).
+        /// Amplitude (m).
         amplitude: Real,
-        /// Oscillations per second (Hz).
+        /// Frequency (Hz).
         frequency: Real,
         /// Phase at the start (rad).
         phase: Real,
     },
     /// Moves so that its load approaches a target.
     Servo(Servo),
-    /// Turns about a fixed axis.
+    /// Rotates about a fixed axis.
     Hinge(Hinge),
 }
 
-/// A wall that moves until its load is the target.
+/// A wall that moves until its load equals the target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Servo {
-    /// The direction in which the wall presses, a unit vector in world axes.
+    /// Direction in which the wall presses, a unit vector in world axes.
     pub axis: Vec3,
-    /// What it controls.
+    /// The controlled load.
     pub load: Load,
     /// Target of the load (N) or (Pa).
     pub target: Real,
-    /// Error at which the wall would move at the speed `gain` (N) or (Pa).
+    /// Deviation from the target at which the wall moves at the speed `gain` (N) or (Pa).
     pub full_scale: Real,
-    /// Speed at an error of `full_scale` (m/s).
+    /// Speed at a deviation of `full_scale` (m/s).
     pub gain: Real,
     /// Largest speed (m/s).
     pub speed_max: Real,
 }
 
-/// What a servo controls.
+/// The load that a servo controls.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Load {
-    /// The force against the wall, along the servo's axis (N).
+    /// The force on the wall, against the servo's axis (N).
     Force,
-    /// That force over an area (Pa).
+    /// That force divided by an area (Pa).
     Pressure {
         /// The area (m²).
         area: Real,
     },
 }
 
-/// A wall that turns about a fixed axis.
+/// A wall that rotates about a fixed axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hinge {
     /// A point on the axis (m), world frame.
     pub point: Vec3,
-    /// Direction of the axis, a unit vector in world axes; rotation is right-handed about it.
+    /// Direction of the axis, a unit vector in world axes. Rotation is right-handed.
     pub axis: Vec3,
     /// Angle as a function of time.
     pub turn: Turn,
@@ -102,58 +102,57 @@ pub struct Hinge {
 /// Angle of a hinge as a function of time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Turn {
-    /// At a constant angular velocity.
+    /// Constant angular velocity.
     Steady {
         /// Angular velocity (rad/s).
         rate: Real,
     },
-    /// At a constant angular velocity until an angle is reached.
+    /// Constant angular velocity until an angle is reached.
     To {
-        /// Angle at the end (rad).
+        /// Final angle (rad).
         angle: Real,
         /// Magnitude of the angular velocity (rad/s).
         rate: Real,
     },
-    /// To and fro: θ = A (sin(2π f t + φ) − sin φ).
+    /// Oscillation: θ = A (sin(2π f t + φ) − sin φ).
     Swing {
         /// Amplitude A (rad).
         amplitude: Real,
-        /// Oscillations per second f (Hz).
+        /// Frequency f (Hz).
         frequency: Real,
         /// Phase at the start φ (rad).
         phase: Real,
     },
 }
 
-/// What must be known of a wall to continue its motion.
+/// State of a wall's motion, needed to continue it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct WallMemory {
-    /// Time since the wall got its motion (s).
+    /// Time since the motion started (s).
     pub time: Real,
-    /// Force against the wall along its servo's axis in the last substep (N), 0 without a servo.
+    /// Force on the wall against its servo's axis in the last substep (N); 0 without a servo.
     pub force: Real,
 }
 
-/// A parameter of a motion that cannot be used.
+/// An invalid parameter of a motion.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("{what} is {value:e}; it must be {limit}")]
-pub struct BadMotion {
+pub struct MotionError {
     /// The parameter, with its unit.
     pub what: &'static str,
     /// Its value.
     pub value: Real,
-    /// What it must be.
+    /// Valid values.
     pub limit: &'static str,
 }
 
 impl WallMotion {
-    /// True if time or load must be saved to continue it.
+    /// True if continuing the motion needs time or load.
     pub fn needs_memory(&self) -> bool {
         matches!(self, Self::Sinusoid { .. } | Self::Servo(_) | Self::Hinge(_))
     }
 
-    /// Mean velocity over the next `dt` (s) of a wall that is now at `pose`; `None` if the owner
-    /// of the system moves it.
+    /// Mean velocity over the next `dt` (s) of a wall at `pose`; `None` for `External`.
     pub fn twist(&self, pose: &Pose, memory: &WallMemory, dt: Real) -> Option<Twist> {
         let time = memory.time;
         Some(match self {
@@ -172,8 +171,8 @@ impl WallMotion {
     /// Checks all parameters.
     ///
     /// # Errors
-    /// The first that is not finite, not positive where it must be, or not a unit vector.
-    pub fn check(&self) -> Result<(), BadMotion> {
+    /// The first parameter that is not finite, not positive where it must be, or not a unit vector.
+    pub fn check(&self) -> Result<(), MotionError> {
         match self {
             Self::Fixed | Self::External => Ok(()),
             Self::Velocity(twist) => twist
@@ -192,17 +191,17 @@ impl WallMotion {
 }
 
 impl Servo {
-    /// Speed along the axis (m/s) while `force` (N) acts against the wall.
+    /// Speed along the axis (m/s) while `force` (N) acts on the wall, against the axis.
     pub fn speed(&self, force: Real) -> Real {
         let load = match self.load {
             Load::Force => force,
             Load::Pressure { area } => force / area,
         };
-        let missing = (self.target - load) / self.full_scale;
-        (self.gain * missing).clamp(-self.speed_max, self.speed_max)
+        let deviation = (self.target - load) / self.full_scale;
+        (self.gain * deviation).clamp(-self.speed_max, self.speed_max)
     }
 
-    fn check(&self) -> Result<(), BadMotion> {
+    fn check(&self) -> Result<(), MotionError> {
         unit(&self.axis)?;
         finite("target of the servo (N) or (Pa)", self.target)?;
         positive("full scale of the servo (N) or (Pa)", self.full_scale)?;
@@ -217,20 +216,20 @@ impl Servo {
 
 impl Hinge {
     fn twist(&self, pose: &Pose, time: Real, dt: Real) -> Twist {
-        let turned = self.turn.angle(time + dt) - self.turn.angle(time);
+        let rotation = self.turn.angle(time + dt) - self.turn.angle(time);
         let arm = pose.translation.vector - self.point;
-        // The chord, not the tangent: on a tangent the wall would leave its circle.
-        let chord = Quat::from_scaled_axis(self.axis * turned) * arm - arm;
-        Twist { linear: chord / dt, angular: self.axis * (turned / dt) }
+        // The chord, not the tangent: along the tangent the wall would leave its circle.
+        let chord = Quat::from_scaled_axis(self.axis * rotation) * arm - arm;
+        Twist { linear: chord / dt, angular: self.axis * (rotation / dt) }
     }
 
-    fn check(&self) -> Result<(), BadMotion> {
+    fn check(&self) -> Result<(), MotionError> {
         unit(&self.axis)?;
         self.point.iter().try_for_each(|value| finite("point of the hinge (m)", *value))?;
         match self.turn {
             Turn::Steady { rate } => finite("rate of the hinge (rad/s)", rate),
             Turn::To { angle, rate } => {
-                finite("last angle of the hinge (rad)", angle)?;
+                finite("final angle of the hinge (rad)", angle)?;
                 positive("rate of the hinge (rad/s)", rate)
             }
             Turn::Swing { amplitude, frequency, phase } => oscillation(amplitude, frequency, phase),
@@ -239,7 +238,7 @@ impl Hinge {
 }
 
 impl Turn {
-    /// Angle at `time` (s); in rad, 0 at the start.
+    /// Angle (rad) at `time` (s); 0 at the start.
     pub fn angle(&self, time: Real) -> Real {
         match *self {
             Self::Steady { rate } => rate * time,
@@ -251,30 +250,34 @@ impl Turn {
     }
 }
 
-/// Straight along `axis`; zeros are positive zeros in every direction.
+/// Translation along `axis` at `speed` (m/s). Zero components are positive zeros.
 fn along(axis: &Vec3, speed: Real) -> Twist {
-    Twist { linear: axis.map(|share| share * speed + 0.0), angular: Vec3::zeros() }
+    Twist { linear: axis.map(|component| component * speed + 0.0), angular: Vec3::zeros() }
 }
 
-fn oscillation(amplitude: Real, frequency: Real, phase: Real) -> Result<(), BadMotion> {
+fn oscillation(amplitude: Real, frequency: Real, phase: Real) -> Result<(), MotionError> {
     finite("amplitude (m) or (rad)", amplitude)?;
     positive("frequency (Hz)", frequency)?;
     finite("phase (rad)", phase)
 }
 
-fn finite(what: &'static str, value: Real) -> Result<(), BadMotion> {
-    if value.is_finite() { Ok(()) } else { Err(BadMotion { what, value, limit: "finite" }) }
+fn finite(what: &'static str, value: Real) -> Result<(), MotionError> {
+    if value.is_finite() { Ok(()) } else { Err(MotionError { what, value, limit: "finite" }) }
 }
 
-fn positive(what: &'static str, value: Real) -> Result<(), BadMotion> {
+fn positive(what: &'static str, value: Real) -> Result<(), MotionError> {
     let is_good = value.is_finite() && value > 0.0;
-    if is_good { Ok(()) } else { Err(BadMotion { what, value, limit: "positive and finite" }) }
+    if is_good { Ok(()) } else { Err(MotionError { what, value, limit: "positive and finite" }) }
 }
 
-fn unit(axis: &Vec3) -> Result<(), BadMotion> {
+fn unit(axis: &Vec3) -> Result<(), MotionError> {
     let value = axis.norm();
     let is_unit = (value - 1.0).abs() < 1e-9;
-    if is_unit { Ok(()) } else { Err(BadMotion { what: "length of the axis", value, limit: "1" }) }
+    if is_unit {
+        Ok(())
+    } else {
+        Err(MotionError { what: "length of the axis", value, limit: "1" })
+    }
 }
 
 #[cfg(test)]
@@ -282,12 +285,12 @@ mod tests {
     use super::*;
     use crate::physics::boundary::body::BodyMotion;
 
-    /// Moves a wall for `n` substeps of `dt` and calls `look` after each with time and motion.
+    /// Moves a wall for `n` substeps of `dt` (s) and calls `inspect` after each, with time and motion.
     fn run(
         motion: WallMotion,
         start: Pose,
         (n, dt): (usize, Real),
-        mut look: impl FnMut(Real, &BodyMotion),
+        mut inspect: impl FnMut(Real, &BodyMotion),
     ) {
         let mut wall = BodyMotion { pose: start, twist: Twist::zero() };
         let mut memory = WallMemory::default();
@@ -295,14 +298,14 @@ mod tests {
             wall.twist = motion.twist(&wall.pose, &memory, dt).unwrap();
             wall.advance(dt);
             memory.time += dt;
-            look(memory.time, &wall);
+            inspect(memory.time, &wall);
         }
     }
 
-    /// Oracle: the formula at the head of the file, for an axis between the axes of the world and
-    /// a phase; 1e-13 of the amplitude per thousand substeps is rounding.
+    /// Oracle: the formula at the top of the file, for an oblique axis and a phase. Tolerance: rounding,
+    /// 1e-13 of the amplitude per thousand substeps.
     #[test]
-    fn a_sinusoid_follows_its_closed_form_and_returns_after_a_period() {
+    fn a_sinusoid_follows_its_closed_form() {
         let (amplitude, frequency, phase) = (2e-3, 50.0, 0.7);
         let axis = Vec3::new(1.0, -2.0, 2.0) / 3.0;
         let motion = WallMotion::Sinusoid { axis, amplitude, frequency, phase };
@@ -311,12 +314,12 @@ mod tests {
         let (n, dt) = (4000, 1.0 / frequency / 4000.0);
         let mut last = start.translation.vector;
         run(motion, start, (n, dt), |time, wall| {
-            let way = amplitude * ((TAU * frequency * time + phase).sin() - phase.sin());
-            let expected = start.translation.vector + axis * way;
+            let displacement = amplitude * ((TAU * frequency * time + phase).sin() - phase.sin());
+            let expected = start.translation.vector + axis * displacement;
             let position = wall.pose.translation.vector;
             assert!((position - expected).norm() < 1e-12 * amplitude, "at {time} s");
-            // The velocity is the mean over the substep: half a substep ago it was the derivative,
-            // but for (2π f dt)²/24.
+            // The velocity is the mean over the substep: the derivative at its middle, with a relative error of
+            // (2π f dt)²/24.
             let middle = TAU * frequency * (time - 0.5 * dt) + phase;
             let speed = amplitude * TAU * frequency * middle.cos();
             let error = (wall.twist.linear - axis * speed).norm();
@@ -326,8 +329,8 @@ mod tests {
         assert!((last - start.translation.vector).norm() < 1e-12 * amplitude);
     }
 
-    /// Oracle: a rotation keeps every distance from its axis; the angle is the rate times the time.
-    /// Rounding of 10⁴ rotations: 1e-12.
+    /// Oracle: a rotation preserves distances from its axis; the angle is the rate times the time.
+    /// Tolerance: rounding of 10⁴ rotations, 1e-12.
     #[test]
     fn a_hinged_wall_keeps_its_distance_from_the_axis() {
         let point = Vec3::new(0.1, 0.0, 0.05);
@@ -344,11 +347,11 @@ mod tests {
                 let rotation = Quat::from_scaled_axis(axis * turn.angle(time));
                 let expected = point + rotation * (start.translation.vector - point);
                 assert!((position - expected).norm() < 1e-12, "{turn:?} at {time} s");
-                let turned = wall.pose.rotation * start.rotation.inverse();
-                assert!(turned.angle_to(&rotation) < 1e-7, "{turn:?} at {time} s");
+                let rotated = wall.pose.rotation * start.rotation.inverse();
+                assert!(rotated.angle_to(&rotation) < 1e-7, "{turn:?} at {time} s");
             });
         }
-        // Oracle: it stops at its last angle, in both directions.
+        // Oracle: it stops at its final angle, in both directions.
         for angle in [1.2, -1.2] {
             let turn = Turn::To { angle, rate: 2.0 };
             assert!((turn.angle(0.3) - 0.6 * angle.signum()).abs() < 1e-15);
@@ -356,10 +359,10 @@ mod tests {
         }
     }
 
-    /// Oracle: the spring's own equation. The force settles at the target at the rate g k/F_0 and so
-    /// is within e⁻²⁰ of it after twenty of these times.
+    /// Oracle: the equation of a spring. The force approaches the target at the rate g k/F_0, and is within
+    /// e⁻²⁰ of it after twenty time constants.
     #[test]
-    fn a_servo_settles_on_a_spring() {
+    fn a_servo_on_a_spring_reaches_its_target() {
         let (stiffness, target, gain, dt) = (1e4, 5.0, 1e-3, 1e-4);
         for (load, area) in [(Load::Force, 1.0), (Load::Pressure { area: 0.02 }, 0.02)] {
             let servo = Servo {
@@ -374,7 +377,7 @@ mod tests {
             assert_eq!(motion.check(), Ok(()));
             let mut wall = BodyMotion { pose: Pose::identity(), twist: Twist::zero() };
             let mut memory = WallMemory::default();
-            // Twenty times F_0/(g k) = 0.5 s: ten seconds.
+            // Twenty time constants of F_0/(g k) = 0.5 s: ten seconds.
             for _ in 0..100_000 {
                 wall.twist = motion.twist(&wall.pose, &memory, dt).unwrap();
                 assert!(wall.twist.linear.norm() <= servo.speed_max);
@@ -387,10 +390,10 @@ mod tests {
     }
 
     #[test]
-    fn unusable_parameters_are_named() {
+    fn invalid_parameters_are_named() {
         let sinusoid =
             |axis, frequency| WallMotion::Sinusoid { axis, amplitude: 1e-3, frequency, phase: 0.0 };
-        // Oracle: the one parameter of each that is wrong.
+        // Oracle: the one invalid parameter of each motion.
         let of = |motion: WallMotion| motion.check().unwrap_err().what;
         assert_eq!(of(sinusoid(Vec3::new(1.0, 1.0, 0.0), 1.0)), "length of the axis");
         assert_eq!(of(sinusoid(Vec3::x(), 0.0)), "frequency (Hz)");

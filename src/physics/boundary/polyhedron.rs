@@ -1,17 +1,17 @@
-//! A closed polyhedron: signed distance by a tree over its triangles, mass by exact integrals.
+//! Closed polyhedra: signed distance from a tree of the triangles, mass from exact integrals.
 //!
 //! ```text
 //! ∫ dV = Σ s/6     ∫ x dV = Σ s/24 (a + b + c)     ∫ x xᵀ dV = Σ s/120 (aaᵀ + bbᵀ + ccᵀ + ttᵀ)
 //! s = a · (b × c),  t = a + b + c      over the triangles, each a tetrahedron with the origin
 //! ```
 //!
-//! This file is the only one of the physics that knows parry. On a face the normal is that of the
-//! face, whatever the distance; nearest to an edge or a vertex it points away from it, and within
-//! 10⁻⁹ of the size the mean normal of the faces around takes over, where the direction to a point
-//! that touches would be rounding.
+//! Where a face is closest, the normal is that of the face at any distance. Where an edge or a
+//! vertex is closest, the normal points from it to the given point; within 10⁻⁹ of the size of the
+//! polyhedron it is the mean normal of the adjacent faces instead, because the direction would be
+//! lost to rounding.
 //!
-//! parry's own convex shape was rejected: it visits every vertex, 3 µs at 162 and 43 µs at 2562; the
-//! tree takes about 1 µs.
+//! No other file in `physics` uses parry. Rejected: parry's convex shape, which visits every vertex (3 µs for 162
+//! vertices, 43 µs for 2562); the tree takes about 1 µs.
 
 use rapier3d_f64::parry;
 
@@ -21,10 +21,10 @@ use parry::query::PointQueryWithLocation;
 use parry::shape::{TriMesh, TriMeshFlags, TrianglePointLocation};
 use parry::transformation::try_convex_hull;
 
-use super::shape::{Aabb, Bulk, ShapeFault, Signed};
+use super::shape::{Aabb, Bulk, ShapeError, SignedDistance};
 use crate::base::{Mat3, Quat, Real, Vec3};
 
-/// A closed, outward oriented surface of triangles around its centre of mass.
+/// A closed surface of triangles with outward normals, in the frame of its center of mass.
 #[derive(Clone, Debug)]
 pub struct Polyhedron {
     tree: TriMesh,
@@ -32,53 +32,53 @@ pub struct Polyhedron {
     normals: Vec<Vec3>,
     bounding_radius: Real,
     volume: Real,
-    /// Centre of mass in the frame in which the shape was given (m).
-    centre_of_mass: Vec3,
-    /// ∫ x xᵀ dV about the centre of mass (m⁵).
+    /// Center of mass in the original frame of the shape (m).
+    center_of_mass: Vec3,
+    /// ∫ x xᵀ dV about the center of mass (m⁵).
     second_moment: Mat3,
 }
 
 impl Polyhedron {
     /// The convex hull of `points`.
-    pub(super) fn hull(points: &[Vec3]) -> Result<Self, ShapeFault> {
+    pub(super) fn hull(points: &[Vec3]) -> Result<Self, ShapeError> {
         check_finite(points)?;
-        let fault = ShapeFault::NoHull { n_points: points.len() };
+        let error = ShapeError::NoHull { n_points: points.len() };
         let points: Vec<Vector> = points.iter().map(|&p| p.into()).collect();
-        let (vertices, triangles) = try_convex_hull(&points).map_err(|_| fault.clone())?;
+        let (vertices, triangles) = try_convex_hull(&points).map_err(|_| error.clone())?;
         let vertices: Vec<Vec3> = vertices.into_iter().map(Into::into).collect();
-        // Flat sets of points come back as a surface with two sides.
-        Self::new(&vertices, &triangles).map_err(|_| fault)
+        // The hull of coplanar points is a flat surface with two sides.
+        Self::new(&vertices, &triangles).map_err(|_| error)
     }
 
-    /// A mesh as given; equal vertices are merged.
-    pub(super) fn new(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Result<Self, ShapeFault> {
+    /// A mesh. Equal vertices are merged.
+    pub(super) fn new(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Result<Self, ShapeError> {
         check_finite(vertices)?;
         let n_vertices = vertices.len();
         for (t, triangle) in triangles.iter().enumerate() {
             if let Some(&vertex) = triangle.iter().find(|&&v| n_vertices <= v as usize) {
-                return Err(ShapeFault::NoSuchVertex { triangle: t, vertex, n_vertices });
+                return Err(ShapeError::NoSuchVertex { triangle: t, vertex, n_vertices });
             }
         }
         let (vertices, triangles) = merged(vertices, triangles);
         check_closed(&triangles)?;
-        let (volume, centre_of_mass, second_moment) = moments(&vertices, &triangles);
-        let size = vertices.iter().map(|v| (v - centre_of_mass).norm()).fold(0.0, Real::max);
-        // Rounding of a flat surface with two sides stays far below this.
+        let (volume, center_of_mass, second_moment) = moments(&vertices, &triangles);
+        let size = vertices.iter().map(|v| (v - center_of_mass).norm()).fold(0.0, Real::max);
+        // The volume of a flat surface with two sides is rounding, far below this.
         if volume <= 1e-9 * size * size * size {
-            return Err(ShapeFault::InsideOut);
+            return Err(ShapeError::InsideOut);
         }
-        let centred: Vec<Vector> = vertices.iter().map(|v| (v - centre_of_mass).into()).collect();
-        let tree = TriMesh::with_flags(centred, triangles, TriMeshFlags::ORIENTED)
-            .map_err(|_| ShapeFault::InsideOut)?;
+        let centered: Vec<Vector> = vertices.iter().map(|v| (v - center_of_mass).into()).collect();
+        let tree = TriMesh::with_flags(centered, triangles, TriMeshFlags::ORIENTED)
+            .map_err(|_| ShapeError::InsideOut)?;
         let normal = |triangle: parry::shape::Triangle| {
             triangle.normal().map_or_else(Vec3::zeros, Vec3::from)
         };
         let normals = tree.triangles().map(normal).collect();
-        Ok(Self { tree, normals, bounding_radius: size, volume, centre_of_mass, second_moment })
+        Ok(Self { tree, normals, bounding_radius: size, volume, center_of_mass, second_moment })
     }
 
-    /// Signed distance of `p` from the surface.
-    pub fn distance(&self, p: &Vec3) -> Signed {
+    /// Signed distance of `p` (m) from the surface.
+    pub fn distance(&self, p: &Vec3) -> SignedDistance {
         let (projection, (face, location)) =
             self.tree.project_local_point_and_get_location((*p).into(), false);
         let delta = p - Vec3::from(projection.point);
@@ -86,7 +86,7 @@ impl Polyhedron {
         if let TrianglePointLocation::OnFace(..) = location
             && face_normal != Vec3::zeros()
         {
-            return Signed { distance: delta.dot(&face_normal), normal: face_normal };
+            return SignedDistance { distance: delta.dot(&face_normal), normal: face_normal };
         }
         let length = delta.norm();
         let sign = if projection.is_inside { -1.0 } else { 1.0 };
@@ -95,31 +95,29 @@ impl Polyhedron {
         } else {
             self.mean_normal(face as usize, location)
         };
-        Signed { distance: sign * length, normal }
+        SignedDistance { distance: sign * length, normal }
     }
 
-    /// Mean normal of the faces around an edge or a vertex.
+    /// Mean normal of the faces adjacent to an edge or a vertex.
     fn mean_normal(&self, face: usize, location: TrianglePointLocation) -> Vec3 {
         let Some(of) = self.tree.pseudo_normals() else { return self.normals[face] };
         let sum: Vec3 = match location {
-            TrianglePointLocation::OnVertex(place) => {
-                let vertex = self.tree.indices()[face][place as usize];
+            TrianglePointLocation::OnVertex(k) => {
+                let vertex = self.tree.indices()[face][k as usize];
                 of.vertices_pseudo_normal[vertex as usize].into()
             }
-            TrianglePointLocation::OnEdge(place, _) => {
-                of.edges_pseudo_normal[face][place as usize].into()
-            }
+            TrianglePointLocation::OnEdge(k, _) => of.edges_pseudo_normal[face][k as usize].into(),
             _ => self.normals[face],
         };
         sum.try_normalize(1e-12).unwrap_or(self.normals[face])
     }
 
-    /// Radius of a sphere about the centre of mass that holds all vertices (m).
+    /// Radius of a sphere around the center of mass that contains all vertices (m).
     pub fn bounding_radius(&self) -> Real {
         self.bounding_radius
     }
 
-    /// Box along the axes that holds all vertices.
+    /// Axis-aligned box that contains all vertices.
     pub fn aabb(&self) -> Aabb {
         let mut aabb =
             Aabb { min: Vec3::repeat(Real::INFINITY), max: Vec3::repeat(-Real::INFINITY) };
@@ -130,7 +128,7 @@ impl Polyhedron {
         aabb
     }
 
-    /// Vertices around the centre of mass (m).
+    /// Vertices relative to the center of mass (m).
     pub fn vertices(&self) -> impl Iterator<Item = Vec3> {
         self.tree.vertices().iter().map(|&v| v.into())
     }
@@ -151,21 +149,21 @@ impl Polyhedron {
         Bulk {
             volume: self.volume,
             mass: density * self.volume,
-            centre_of_mass: self.centre_of_mass,
+            center_of_mass: self.center_of_mass,
             principal_inertia: eigen.eigenvalues * density,
             principal_axes: Quat::from_rotation_matrix(&Rotation3::from_matrix_unchecked(axes)),
         }
     }
 }
 
-fn check_finite(vertices: &[Vec3]) -> Result<(), ShapeFault> {
+fn check_finite(vertices: &[Vec3]) -> Result<(), ShapeError> {
     match vertices.iter().position(|v| !v.iter().all(|x| x.is_finite())) {
-        Some(vertex) => Err(ShapeFault::NotFinite { vertex }),
+        Some(vertex) => Err(ShapeError::NotFinite { vertex }),
         None => Ok(()),
     }
 }
 
-/// One vertex for all that are equal, as files of loose triangles need; collapsed triangles go.
+/// Merges equal vertices, as needed for files with separate triangles, and drops collapsed triangles.
 fn merged(vertices: &[Vec3], triangles: &[[u32; 3]]) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let key = |v: u32| vertices[v as usize].as_slice().iter().copied().map(ordered).collect();
     let mut number = std::collections::BTreeMap::<Vec<i64>, u32>::new();
@@ -181,13 +179,13 @@ fn merged(vertices: &[Vec3], triangles: &[[u32; 3]]) -> (Vec<Vec3>, Vec<[u32; 3]
     (kept, renumbered)
 }
 
-/// The bits of a number, with both zeros alike.
+/// The bits of a number; both zeros give the same bits.
 fn ordered(x: Real) -> i64 {
     (x + 0.0).to_bits().cast_signed()
 }
 
-/// Every directed edge must meet exactly one that runs the other way.
-fn check_closed(triangles: &[[u32; 3]]) -> Result<(), ShapeFault> {
+/// Checks that every directed edge has exactly one partner in the opposite direction.
+fn check_closed(triangles: &[[u32; 3]]) -> Result<(), ShapeError> {
     let sides = |&[a, b, c]: &[u32; 3]| [(a, b), (b, c), (c, a)];
     let mut edges: Vec<(u32, u32)> = triangles.iter().flat_map(sides).collect();
     edges.sort_unstable();
@@ -196,16 +194,16 @@ fn check_closed(triangles: &[[u32; 3]]) -> Result<(), ShapeFault> {
         .iter()
         .enumerate()
         .filter(|&(k, &(a, b))| {
-            let is_twice = k > 0 && edges[k - 1] == (a, b);
-            is_twice || edges.binary_search(&(b, a)).is_err()
+            let is_duplicate = k > 0 && edges[k - 1] == (a, b);
+            is_duplicate || edges.binary_search(&(b, a)).is_err()
         })
         .count();
-    if n_open == 0 && n_edges > 0 { Ok(()) } else { Err(ShapeFault::NotClosed { n_open, n_edges }) }
+    if n_open == 0 && n_edges > 0 { Ok(()) } else { Err(ShapeError::NotClosed { n_open, n_edges }) }
 }
 
-/// Volume, centre of mass, and ∫ x xᵀ dV about it.
+/// Volume (m³), center of mass (m), and ∫ x xᵀ dV about it (m⁵).
 fn moments(vertices: &[Vec3], triangles: &[[u32; 3]]) -> (Real, Vec3, Mat3) {
-    // From a point of the surface rounding stays small however far away the origin is.
+    // Relative to a vertex, so that rounding does not grow with the distance from the origin.
     let origin = vertices[0];
     let (mut volume, mut first, mut second) = (0.0, Vec3::zeros(), Mat3::zeros());
     for triangle in triangles {
@@ -216,6 +214,6 @@ fn moments(vertices: &[Vec3], triangles: &[[u32; 3]]) -> (Real, Vec3, Mat3) {
         let squares = a * a.transpose() + b * b.transpose() + c * c.transpose();
         second += (squares + t * t.transpose()) * (s / 120.0);
     }
-    let centre = first / volume;
-    (volume, origin + centre, second - centre * centre.transpose() * volume)
+    let center = first / volume;
+    (volume, origin + center, second - center * center.transpose() * volume)
 }

@@ -1,9 +1,8 @@
-//! The surface of a rigid object: how far a point is from it, which way is out, what it weighs.
+//! Surfaces of rigid objects: signed distance, outward normal, mass properties.
 //!
-//! Every surface stands in the frame of its centre of mass. Sphere, box, cylinder and capsule are
-//! closed forms, axes along z: exact signed distances inside and outside, with a normal that is
-//! the gradient of the distance and does not depend on how small the distance is. Convex hulls
-//! and meshes are one thing here, a closed polyhedron.
+//! The origin is the center of mass. Sphere, box, cylinder and capsule have closed forms, with their
+//! axes along z: exact signed distances inside and outside, and a normal that is the gradient of the
+//! distance, accurate at any distance. Convex hulls and meshes are closed polyhedra.
 
 use std::f64::consts::PI;
 
@@ -12,7 +11,7 @@ use thiserror::Error;
 pub use super::polyhedron::Polyhedron;
 use crate::base::{Quat, Real, Vec3};
 
-/// A closed surface around its centre of mass.
+/// A closed surface, with the origin at its center of mass.
 #[derive(Clone, Debug)]
 pub enum Surface {
     /// A sphere.
@@ -32,50 +31,50 @@ pub enum Surface {
         /// Half of the height (m).
         half_height: Real,
     },
-    /// All points at one distance from a piece of the z axis.
+    /// All points at the same distance from a segment of the z axis.
     Capsule {
         /// Radius (m).
         radius: Real,
         /// Half the length of the straight part (m).
         half_length: Real,
     },
-    /// Flat triangles: a convex hull or a mesh.
+    /// A convex hull or a mesh.
     Polyhedron(Box<Polyhedron>),
 }
 
-/// A signed distance and the way out.
+/// A signed distance and its gradient.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Signed {
+pub struct SignedDistance {
     /// Distance from the surface (m), negative inside.
     pub distance: Real,
-    /// Gradient of the distance: outward, length 1.
+    /// Gradient of the distance: a unit vector, outward.
     pub normal: Vec3,
 }
 
-impl Signed {
-    /// The point of the surface closest to `p`, whose distance this is.
+impl SignedDistance {
+    /// The point of the surface closest to `p`, if this is the distance of `p`.
     #[inline]
     pub fn surface_point(&self, p: &Vec3) -> Vec3 {
         p - self.normal * self.distance
     }
 }
 
-/// What a surface encloses.
+/// Mass properties of the solid inside a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bulk {
     /// Volume (m³).
     pub volume: Real,
     /// Mass (kg).
     pub mass: Real,
-    /// Centre of mass in the frame in which the shape was given (m).
-    pub centre_of_mass: Vec3,
-    /// Principal moments of inertia about the centre of mass (kg m²).
+    /// Center of mass in the original frame of the shape (m).
+    pub center_of_mass: Vec3,
+    /// Principal moments of inertia about the center of mass (kg m²).
     pub principal_inertia: Vec3,
-    /// Turns principal axes into the axes of the shape.
+    /// Rotation from the principal axes to the axes of the shape.
     pub principal_axes: Quat,
 }
 
-/// Corners of a box along the axes.
+/// An axis-aligned box.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Aabb {
     /// Smallest coordinates (m).
@@ -84,44 +83,48 @@ pub struct Aabb {
     pub max: Vec3,
 }
 
-/// Why points or triangles are no solid.
+/// Why points or triangles do not form a solid.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
-pub enum ShapeFault {
-    /// Points in one plane, or too few.
+pub enum ShapeError {
+    /// Coplanar points, or too few points.
     #[error("{n_points} points span no volume; a convex hull needs at least 4 that do")]
     NoHull {
-        /// How many points there are.
+        /// Number of points.
         n_points: usize,
     },
-    /// A list of triangles that cannot be read.
-    #[error("triangle {triangle} names vertex {vertex}, but there are only {n_vertices}")]
+    /// A vertex index that does not exist.
+    #[error(
+        "triangle {triangle} refers to vertex {vertex}, but there are only {n_vertices} vertices"
+    )]
     NoSuchVertex {
         /// The triangle.
         triangle: usize,
-        /// The index it names.
+        /// The invalid index.
         vertex: u32,
-        /// How many vertices there are.
+        /// Number of vertices.
         n_vertices: usize,
     },
-    /// A coordinate that is not a number.
+    /// A coordinate that is not finite.
     #[error("vertex {vertex} has a coordinate that is not finite")]
     NotFinite {
         /// The vertex.
         vertex: usize,
     },
-    /// A surface with holes or with triangles that disagree about outside.
+    /// A surface with holes, or with inconsistently oriented triangles.
     #[error(
-        "{n_open} of {n_edges} edges have no partner running the other way: close the holes of the \
-         mesh and orient its triangles alike"
+        "{n_open} of {n_edges} directed edges have no partner in the opposite direction; close the \
+         holes of the mesh and orient its triangles consistently"
     )]
     NotClosed {
-        /// Edges without partner.
+        /// Number of directed edges without partner.
         n_open: usize,
-        /// All directed edges.
+        /// Number of all directed edges.
         n_edges: usize,
     },
-    /// A surface whose normals point inward, or without volume.
-    #[error("the mesh encloses no positive volume: turn its triangles over, outward normals")]
+    /// A surface with inward normals, or without volume.
+    #[error(
+        "the mesh encloses no positive volume; flip its triangles so that normals point outward"
+    )]
     InsideOut,
 }
 
@@ -141,25 +144,25 @@ impl Surface {
         Self::Capsule { radius, half_length: (0.5 * height - radius).max(0.0) }
     }
 
-    /// The convex hull of `points` (m), moved to its centre of mass.
+    /// The convex hull of `points` (m), moved to its center of mass.
     ///
     /// # Errors
-    /// If the points span no volume.
-    pub fn convex_hull(points: &[Vec3]) -> Result<Self, ShapeFault> {
+    /// If the points do not span a volume.
+    pub fn convex_hull(points: &[Vec3]) -> Result<Self, ShapeError> {
         Ok(Self::Polyhedron(Box::new(Polyhedron::hull(points)?)))
     }
 
-    /// A closed mesh with outward normals, moved to its centre of mass.
+    /// A closed mesh with outward normals, moved to its center of mass.
     ///
     /// # Errors
-    /// If the mesh is open, inconsistent or inside out.
-    pub fn mesh(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Result<Self, ShapeFault> {
+    /// If the mesh is open, inconsistently oriented or inside out.
+    pub fn mesh(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Result<Self, ShapeError> {
         Ok(Self::Polyhedron(Box::new(Polyhedron::new(vertices, triangles)?)))
     }
 
     /// Signed distance of `p` (m) from the surface.
     #[inline]
-    pub fn distance(&self, p: &Vec3) -> Signed {
+    pub fn distance(&self, p: &Vec3) -> SignedDistance {
         match self {
             Self::Sphere { radius } => ball(p, *radius),
             Self::Cuboid { half } => cuboid(p, half),
@@ -171,7 +174,7 @@ impl Surface {
         }
     }
 
-    /// Radius of a sphere about the centre of mass that holds the surface (m).
+    /// Radius of a sphere around the center of mass that contains the surface (m).
     pub fn bounding_radius(&self) -> Real {
         match self {
             Self::Sphere { radius } => *radius,
@@ -182,7 +185,7 @@ impl Surface {
         }
     }
 
-    /// Box along the local axes that holds the surface.
+    /// Box along the local axes that contains the surface.
     pub fn aabb(&self) -> Aabb {
         let half = match self {
             Self::Sphere { radius } => Vec3::repeat(*radius),
@@ -219,35 +222,35 @@ impl Surface {
         Bulk {
             volume,
             mass,
-            centre_of_mass: Vec3::zeros(),
+            center_of_mass: Vec3::zeros(),
             principal_inertia: per_mass * mass,
             principal_axes: Quat::identity(),
         }
     }
 }
 
-/// Volume, and inertia over mass, of a cylinder between two half balls.
+/// Volume (m³) and inertia divided by mass (m²) of a capsule: a cylinder between two half balls.
 fn capsule_bulk(radius: Real, half_length: Real) -> (Real, Vec3) {
     let (r, l) = (radius, half_length);
     let (straight, round) = (2.0 * PI * r * r * l, 4.0 / 3.0 * PI * r * r * r);
     let tilt = straight * (r * r / 4.0 + l * l / 3.0)
-        // Half balls about their own centres of mass, moved out to l + 3/8 r.
+        // Half balls about their own centers of mass, at l + 3/8 r.
         + round * (0.4 * r * r + l * l + 0.75 * l * r);
-    let spin = straight * r * r / 2.0 + round * 0.4 * r * r;
+    let axial = straight * r * r / 2.0 + round * 0.4 * r * r;
     let volume = straight + round;
-    (volume, Vec3::new(tilt, tilt, spin) / volume)
+    (volume, Vec3::new(tilt, tilt, axial) / volume)
 }
 
 #[inline]
-fn ball(p: &Vec3, radius: Real) -> Signed {
+fn ball(p: &Vec3, radius: Real) -> SignedDistance {
     let length = p.norm();
-    // At the very centre every way is out.
+    // At the center every direction is outward.
     let normal = if length > 0.0 { p / length } else { Vec3::x() };
-    Signed { distance: length - radius, normal }
+    SignedDistance { distance: length - radius, normal }
 }
 
 #[inline]
-fn cuboid(p: &Vec3, half: &Vec3) -> Signed {
+fn cuboid(p: &Vec3, half: &Vec3) -> SignedDistance {
     let beyond = p.abs() - half;
     let outside = beyond.sup(&Vec3::zeros());
     let n_outside = (0..3).filter(|&k| beyond[k] > 0.0).count();
@@ -255,15 +258,15 @@ fn cuboid(p: &Vec3, half: &Vec3) -> Signed {
         let distance = outside.norm();
         (distance, outside / distance)
     } else {
-        // One face is the nearest, inside and outside alike.
+        // A face is closest, both inside and outside.
         let face = beyond.imax();
         (beyond[face], Vec3::ith(face, 1.0))
     };
-    Signed { distance, normal: along.zip_map(p, |a, p| a * 1.0_f64.copysign(p)) }
+    SignedDistance { distance, normal: along.zip_map(p, |a, p| a * 1.0_f64.copysign(p)) }
 }
 
 #[inline]
-fn cylinder(p: &Vec3, radius: Real, half_height: Real) -> Signed {
+fn cylinder(p: &Vec3, radius: Real, half_height: Real) -> SignedDistance {
     let from_axis = (p.x * p.x + p.y * p.y).sqrt();
     let radial =
         if from_axis > 0.0 { Vec3::new(p.x / from_axis, p.y / from_axis, 0.0) } else { Vec3::x() };
@@ -272,10 +275,10 @@ fn cylinder(p: &Vec3, radius: Real, half_height: Real) -> Signed {
     if beyond_side > 0.0 && beyond_end > 0.0 {
         let distance = (beyond_side * beyond_side + beyond_end * beyond_end).sqrt();
         let normal = radial * (beyond_side / distance) + axial * (beyond_end / distance);
-        Signed { distance, normal }
+        SignedDistance { distance, normal }
     } else if beyond_side > beyond_end {
-        Signed { distance: beyond_side, normal: radial }
+        SignedDistance { distance: beyond_side, normal: radial }
     } else {
-        Signed { distance: beyond_end, normal: axial }
+        SignedDistance { distance: beyond_end, normal: axial }
     }
 }

@@ -1,10 +1,10 @@
-//! Closed forms against finite differences, parry and each other.
+//! Tests of surfaces against finite differences, parry and each other.
 
 use rapier3d_f64::parry;
 
 use parry::shape::{Ball, Capsule, Cuboid, Cylinder, Shape};
 
-use super::shape::{ShapeFault, Signed, Surface};
+use super::shape::{ShapeError, SignedDistance, Surface};
 use crate::base::random::{Random, Stream};
 use crate::base::{Real, Vec3};
 use crate::physics::membrane::mesh::Mesh;
@@ -24,11 +24,11 @@ fn points(n: usize, size: Real) -> Vec<Vec3> {
     (0..n).map(|_| Vec3::from_fn(|_, _| random.between(-size, size))).collect()
 }
 
-/// A cube with edge `size` about `centre`, its triangles outward.
-fn cube(size: Real, centre: Vec3) -> (Vec<Vec3>, Vec<[u32; 3]>) {
+/// A cube with edge `size` around `center`, with outward normals.
+fn cube(size: Real, center: Vec3) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let corner = |k: u32| {
         let side = |bit: u32| if k >> bit & 1 == 1 { 0.5 * size } else { -0.5 * size };
-        centre + Vec3::new(side(0), side(1), side(2))
+        center + Vec3::new(side(0), side(1), side(2))
     };
     let faces =
         [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
@@ -36,12 +36,12 @@ fn cube(size: Real, centre: Vec3) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     ((0..8).map(corner).collect(), faces.into_iter().flat_map(halves).collect())
 }
 
-/// Oracle: the normal is the gradient of the distance, by central differences; the foot lies on
-/// the surface. Points within the step of a ridge of the distance are left out.
+/// Oracle: the normal is the gradient of the distance, by central differences; the closest point lies on the
+/// surface. Skips points within one step of a ridge of the distance.
 fn check_gradient(surface: &Surface, p: &Vec3) {
     let h = 1e-8;
     let here = surface.distance(p);
-    let near: [Signed; 6] = std::array::from_fn(|k| {
+    let near: [SignedDistance; 6] = std::array::from_fn(|k| {
         let step = if k % 2 == 0 { h } else { -h };
         surface.distance(&(p + Vec3::ith(k / 2, step)))
     });
@@ -55,8 +55,8 @@ fn check_gradient(surface: &Surface, p: &Vec3) {
     }
     // Tolerance: rounding.
     assert!((here.normal.norm() - 1.0).abs() < 1e-14);
-    let foot = surface.distance(&here.surface_point(p)).distance;
-    assert!(foot.abs() < 1e-15, "{surface:?}: foot is {foot} m off");
+    let error = surface.distance(&here.surface_point(p)).distance;
+    assert!(error.abs() < 1e-15, "{surface:?}: the closest point is {error} m off the surface");
 }
 
 #[test]
@@ -75,22 +75,22 @@ fn normals_are_gradients() {
 
 #[test]
 fn closed_forms_agree_with_parry() {
-    // parry's cylinder and capsule stand along y: turn (x, y, z) into (y, z, x).
-    let turned = |p: &Vec3| Vec3::new(p.y, p.z, p.x);
+    // The axes of parry's cylinder and capsule are along y: map (x, y, z) to (y, z, x).
+    let permuted = |p: &Vec3| Vec3::new(p.y, p.z, p.x);
     let same = |p: &Vec3| *p;
     let half = parry::math::Vector::new(0.015, 0.025, 0.01);
     let axis = parry::math::Vector::new(0.0, 0.015, 0.0);
-    type Turn = fn(&Vec3) -> Vec3;
-    let oracles: [(Box<dyn Shape>, Turn); 5] = [
+    type Map = fn(&Vec3) -> Vec3;
+    let oracles: [(Box<dyn Shape>, Map); 5] = [
         (Box::new(Ball::new(0.02)), same),
         (Box::new(Cuboid::new(half)), same),
-        (Box::new(Cylinder::new(0.02, 0.015)), turned),
-        (Box::new(Cylinder::new(0.005, 0.02)), turned),
-        (Box::new(Capsule::new(-axis, axis, 0.01)), turned),
+        (Box::new(Cylinder::new(0.02, 0.015)), permuted),
+        (Box::new(Cylinder::new(0.005, 0.02)), permuted),
+        (Box::new(Capsule::new(-axis, axis, 0.01)), permuted),
     ];
-    for (surface, (oracle, turn)) in closed_forms().iter().zip(&oracles) {
+    for (surface, (oracle, map)) in closed_forms().iter().zip(&oracles) {
         for p in points(3000, 0.06) {
-            let q = turn(&p);
+            let q = map(&p);
             let projection = oracle.project_local_point(q.into(), false);
             let distance = (q - Vec3::from(projection.point)).norm();
             let signed = if projection.is_inside { -distance } else { distance };
@@ -102,24 +102,24 @@ fn closed_forms_agree_with_parry() {
 }
 
 #[test]
-fn normals_hold_at_no_distance() {
+fn normals_are_accurate_at_zero_distance() {
     for surface in closed_forms() {
         for p in points(300, 0.06) {
             let far = surface.distance(&p);
-            let foot = far.surface_point(&p);
+            let closest = far.surface_point(&p);
             for distance in [1e-9, -1e-9, 1e-13, 0.0] {
-                let near = surface.distance(&(foot + far.normal * distance));
+                let near = surface.distance(&(closest + far.normal * distance));
                 let is_smooth =
                     !matches!(surface, Surface::Cuboid { .. } | Surface::Cylinder { .. });
                 if is_smooth || near.distance.abs() > 1e-10 && far.distance < 0.0 {
-                    // Oracle: the normal of the same foot from afar. Tolerance: rounding of the
-                    // foot over the radius of curvature, and over the distance near an axis.
+                    // Oracle: the normal at the same closest point, from far away. Tolerance: rounding
+                    // of that point divided by the radius of curvature, or by the distance near an axis.
                     assert!((near.normal - far.normal).norm() < 1e-9, "{surface:?} {p} {distance}");
                 }
                 assert!((near.normal.norm() - 1.0).abs() < 1e-14);
             }
         }
-        // Oracle: even at the centre there is a way out of length one.
+        // Oracle: even at the center there is a unit normal.
         assert!((surface.distance(&Vec3::zeros()).normal.norm() - 1.0).abs() < 1e-15);
     }
 }
@@ -136,8 +136,8 @@ fn a_mesh_has_stable_normals_on_faces_edges_and_vertices() {
     }
     let diagonal = Vec3::new(0.0, 1.0, 1.0).normalize();
     let on_edge = surface.distance(&Vec3::new(0.004, 0.015, 0.015));
-    // Oracle: on an edge any normal between those of its faces; the mean is the diagonal, and a
-    // face's own normal is 45° from it.
+    // Oracle: on an edge, any normal between those of the adjacent faces. Their mean is the diagonal, 45° from
+    // each.
     assert!(on_edge.normal.dot(&diagonal) > 0.7 && on_edge.distance.abs() < 1e-16, "{on_edge:?}");
     let at_vertex = surface.distance(&(Vec3::repeat(0.015) + Vec3::repeat(1e-3)));
     // Oracle: Pythagoras. Tolerance: rounding.
@@ -146,7 +146,7 @@ fn a_mesh_has_stable_normals_on_faces_edges_and_vertices() {
 }
 
 #[test]
-fn a_fine_mesh_is_nearly_its_sphere() {
+fn a_fine_mesh_approximates_its_sphere() {
     let mesh = Mesh::icosphere(0.02, 8).unwrap();
     let sphere = Surface::Sphere { radius: 0.02 };
     let by_mesh = Surface::mesh(&mesh.positions, &mesh.triangles).unwrap();
@@ -155,27 +155,27 @@ fn a_fine_mesh_is_nearly_its_sphere() {
         for p in points(400, 0.04).iter().filter(|p| p.norm() > 0.005) {
             let (found, oracle) = (surface.distance(p), sphere.distance(p));
             // Oracle: the sphere. Tolerance: facets with sides up to a = 3.5 mm lie up to
-            // a²/(6R) = 102 µm below it, nothing lies above; normals tilt by up to
-            // a/(√3 R) = 0.1, more from far inside.
-            let missing = found.distance - oracle.distance;
-            assert!((-1e-15..1.02e-4).contains(&missing), "{missing} at {}", p.norm());
+            // a²/(6R) = 102 µm below it, and none above; normals deviate by up to
+            // a/(√3 R) = 0.1, more far inside.
+            let difference = found.distance - oracle.distance;
+            assert!((-1e-15..1.02e-4).contains(&difference), "{difference} at {}", p.norm());
             assert!(found.normal.dot(&oracle.normal) > 0.98 || p.norm() < 0.015, "{found:?}");
         }
         let (found, oracle) = (surface.bulk(1200.0), sphere.bulk(1200.0));
-        // Oracle: closed forms. Tolerance: volume is missing up to 3·102 µm/R = 1.5 %, inertia 5/3
-        // of that; the centre is a symmetry point.
+        // Oracle: closed forms. Tolerance: the volume is too small by up to 3·102 µm/R = 1.5 %, the inertia by
+        // 5/3 of that; the center is exact by symmetry.
         assert!((found.mass / oracle.mass - 1.0).abs() < 0.015, "{found:?}");
         let ratio = found.principal_inertia.component_div(&oracle.principal_inertia);
         assert!((ratio - Vec3::repeat(1.0)).amax() < 0.026, "{ratio}");
-        assert!(found.centre_of_mass.norm() < 1e-15);
+        assert!(found.center_of_mass.norm() < 1e-15);
         assert!((surface.bounding_radius() - 0.02).abs() < 1e-12);
     }
 }
 
 #[test]
-fn bulk_is_that_of_the_closed_forms() {
+fn mass_properties_match_parry() {
     let density = 1100.0;
-    // Oracle: parry's mass properties, along y for cylinder and capsule. Tolerance: rounding.
+    // Oracle: parry's mass properties; its cylinder and capsule have their axes along y. Tolerance: rounding.
     let half = parry::math::Vector::new(0.015, 0.025, 0.01);
     let oracles = [
         Ball::new(0.02).mass_properties(density),
@@ -195,49 +195,49 @@ fn bulk_is_that_of_the_closed_forms() {
 }
 
 #[test]
-fn a_turned_and_shifted_box_keeps_its_inertia() {
+fn a_rotated_and_shifted_box_has_the_same_inertia() {
     let size = Vec3::new(0.03, 0.05, 0.02);
-    let turn = crate::base::Quat::from_euler_angles(0.4, -0.7, 1.1);
-    let centre = Vec3::new(0.3, -0.1, 0.2);
+    let rotation = crate::base::Quat::from_euler_angles(0.4, -0.7, 1.1);
+    let center = Vec3::new(0.3, -0.1, 0.2);
     let (corners, triangles) = cube(1.0, Vec3::zeros());
     let corners: Vec<Vec3> =
-        corners.iter().map(|c| turn * c.component_mul(&size) + centre).collect();
+        corners.iter().map(|c| rotation * c.component_mul(&size) + center).collect();
     let found = Surface::mesh(&corners, &triangles).unwrap().bulk(700.0);
     let oracle = Surface::cuboid(&size).bulk(700.0);
-    let tensor = |turn: crate::base::Quat, i: &Vec3| {
-        let r = turn.to_rotation_matrix().into_inner();
+    let tensor = |rotation: crate::base::Quat, i: &Vec3| {
+        let r = rotation.to_rotation_matrix().into_inner();
         r * crate::base::Mat3::from_diagonal(i) * r.transpose()
     };
-    let expected = tensor(turn, &oracle.principal_inertia);
+    let expected = tensor(rotation, &oracle.principal_inertia);
     let difference = tensor(found.principal_axes, &found.principal_inertia) - expected;
-    // Oracle: the box's closed form, turned. Tolerance: rounding, with cancellation of the shift.
+    // Oracle: the closed form of the box, rotated. Tolerance: rounding, with cancellation of the shift.
     assert!((found.mass / oracle.mass - 1.0).abs() < 1e-12);
     assert!(difference.amax() < 1e-12 * expected.amax(), "{difference}");
-    assert!((found.centre_of_mass - centre).norm() < 1e-14);
+    assert!((found.center_of_mass - center).norm() < 1e-14);
 }
 
 #[test]
-fn no_solid_no_surface() {
+fn invalid_solids_are_rejected() {
     let (vertices, mut triangles) = cube(1.0, Vec3::zeros());
-    let fault = |triangles: &[[u32; 3]]| Surface::mesh(&vertices, triangles).unwrap_err();
-    // Oracle: the one fault of each list.
-    let turned: Vec<_> = triangles.iter().map(|&[a, b, c]| [a, c, b]).collect();
-    assert_eq!(fault(&turned), ShapeFault::InsideOut);
-    assert!(matches!(fault(&[[0, 1, 9]]), ShapeFault::NoSuchVertex { vertex: 9, .. }));
-    assert!(matches!(fault(&[]), ShapeFault::NotClosed { .. }));
+    let error = |triangles: &[[u32; 3]]| Surface::mesh(&vertices, triangles).unwrap_err();
+    // Oracle: the one error of each list.
+    let flipped: Vec<_> = triangles.iter().map(|&[a, b, c]| [a, c, b]).collect();
+    assert_eq!(error(&flipped), ShapeError::InsideOut);
+    assert!(matches!(error(&[[0, 1, 9]]), ShapeError::NoSuchVertex { vertex: 9, .. }));
+    assert!(matches!(error(&[]), ShapeError::NotClosed { .. }));
     triangles.pop();
-    assert_eq!(fault(&triangles), ShapeFault::NotClosed { n_open: 3, n_edges: 33 });
+    assert_eq!(error(&triangles), ShapeError::NotClosed { n_open: 3, n_edges: 33 });
     let flat: Vec<Vec3> = vertices.iter().map(|v| Vec3::new(v.x, v.y, 0.0)).collect();
-    assert_eq!(Surface::convex_hull(&flat).unwrap_err(), ShapeFault::NoHull { n_points: 8 });
-    assert!(matches!(Surface::convex_hull(&[]).unwrap_err(), ShapeFault::NoHull { .. }));
+    assert_eq!(Surface::convex_hull(&flat).unwrap_err(), ShapeError::NoHull { n_points: 8 });
+    assert!(matches!(Surface::convex_hull(&[]).unwrap_err(), ShapeError::NoHull { .. }));
 }
 
 #[test]
-fn loose_triangles_are_joined() {
+fn separate_triangles_are_merged() {
     let (vertices, triangles) = cube(0.03, Vec3::zeros());
-    let loose: Vec<Vec3> = triangles.iter().flatten().map(|&v| vertices[v as usize]).collect();
+    let separate: Vec<Vec3> = triangles.iter().flatten().map(|&v| vertices[v as usize]).collect();
     let each: Vec<[u32; 3]> = (0..12).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
-    let surface = Surface::mesh(&loose, &each).unwrap();
-    // Oracle: volume of the cube. Tolerance: rounding.
+    let surface = Surface::mesh(&separate, &each).unwrap();
+    // Oracle: the volume of the cube. Tolerance: rounding.
     assert!((surface.bulk(1.0).volume / 2.7e-5 - 1.0).abs() < 1e-14);
 }

@@ -1,9 +1,9 @@
-//! A rigid surface of triangles: what a wall is made of when it is neither plane nor round.
+//! Rigid triangulated surfaces, for walls that are neither plane nor round.
 //!
-//! A grain may touch several faces, edges and vertices of such a wall at once, so there is no
-//! single distance. For each triangle there is the closest point and the feature it lies on;
-//! `Triangles::within` keeps the local minima of the distance, each once. The surface may be open;
-//! its triangles are touched from both sides, and the normal points towards the grain.
+//! A grain may touch several faces, edges and vertices of such a wall at the same time, so there is no
+//! single distance. Each triangle has a closest point and the feature on which it lies;
+//! `Triangles::touching` selects the local minima of the distance, each once. The surface may be open.
+//! Grains touch its triangles from both sides, and the normal points towards the grain.
 
 use std::sync::Arc;
 
@@ -11,30 +11,30 @@ use crate::{
     base::{Real, Vec3},
     physics::membrane::{
         contact_geometry::{Feature, closest_on_triangle},
-        mesh::{Mesh, MeshFault},
+        mesh::{Mesh, MeshError},
     },
 };
 
-/// The triangles of a wall in its own frame.
+/// A triangulated surface, in the frame of its wall.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Triangles {
     mesh: Arc<Mesh>,
-    /// Centre of a sphere around each triangle (m), and its radius (m).
+    /// Center (m) and radius (m) of a sphere around each triangle.
     spheres: Vec<(Vec3, Real)>,
     bounding_radius: Real,
 }
 
-/// Where a triangle is closest to a point.
+/// The point of a triangle that is closest to a given point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Nearest {
     /// The triangle.
     pub triangle: u32,
-    /// Face, edge or vertex of it.
+    /// Its face, edge or vertex on which the closest point lies.
     pub feature: Feature,
-    /// Distance from the surface (m), never negative.
+    /// Distance (m), never negative.
     pub distance: Real,
-    /// Unit normal from the surface to the point, wall frame. On the surface itself it is the
-    /// triangle's own.
+    /// Unit normal from the closest point to the given one, wall frame. On the surface it is the normal of the
+    /// triangle.
     pub normal: Vec3,
 }
 
@@ -42,8 +42,8 @@ impl Triangles {
     /// A surface with these vertices (m) and facets.
     ///
     /// # Errors
-    /// If the facets are not a consistently oriented surface with rims that do not touch.
-    pub fn new(vertices: Vec<Vec3>, facets: Vec<[u32; 3]>) -> Result<Self, MeshFault> {
+    /// If the facets do not form a consistently oriented surface whose rims do not touch.
+    pub fn new(vertices: Vec<Vec3>, facets: Vec<[u32; 3]>) -> Result<Self, MeshError> {
         Ok(Self::of(Arc::new(Mesh::new(vertices, facets)?)))
     }
 
@@ -51,81 +51,43 @@ impl Triangles {
     pub fn of(mesh: Arc<Mesh>) -> Self {
         let sphere = |triangle: &[u32; 3]| {
             let [a, b, c] = triangle.map(|v| mesh.positions[v as usize]);
-            let centre = (a + b + c) / 3.0;
-            let radius = [a, b, c].iter().map(|p| (p - centre).norm()).fold(0.0, Real::max);
-            (centre, radius)
+            let center = (a + b + c) / 3.0;
+            let radius = [a, b, c].iter().map(|p| (p - center).norm()).fold(0.0, Real::max);
+            (center, radius)
         };
         let spheres = mesh.triangles.iter().map(sphere).collect();
         let bounding_radius = mesh.positions.iter().map(|p| p.norm()).fold(0.0, Real::max);
         Self { mesh, spheres, bounding_radius }
     }
 
-    /// Vertices and facets with their neighbors.
+    /// Vertices and facets with their connectivity.
     pub fn mesh(&self) -> &Mesh {
         &self.mesh
     }
 
-    /// Nothing is further from the frame's origin than this (m).
+    /// Radius of a sphere around the frame's origin that contains the surface (m).
     pub fn bounding_radius(&self) -> Real {
         self.bounding_radius
     }
 
-    /// A sphere around a triangle: centre (m) and radius (m), wall frame. For lists of candidates.
+    /// Center (m) and radius (m) of a sphere around a triangle, wall frame. It is used to find candidates.
     pub fn sphere_around(&self, triangle: u32) -> (Vec3, Real) {
         self.spheres[triangle as usize]
     }
 
-    /// Where `triangle` is closest to `point` (m), wall frame.
+    /// The point of `triangle` that is closest to `point` (m), wall frame.
     pub fn nearest(&self, triangle: u32, point: &Vec3) -> Nearest {
         let corners = self.mesh.triangles[triangle as usize];
         let positions = corners.each_ref().map(|v| &self.mesh.positions[*v as usize]);
         let closest = closest_on_triangle(point, positions);
-        let apart = point - closest.point;
-        let distance = apart.norm();
+        let separation = point - closest.point;
+        let distance = separation.norm();
         let normal = if distance > 0.0 {
-            apart / distance
+            separation / distance
         } else {
             crate::physics::membrane::mesh::area_normal(&self.mesh.positions, &corners).normalize()
         };
         Nearest { triangle, feature: closest.feature, distance, normal }
-    }
-
-    /// The closest points within `reach` (m) of `point` (m), wall frame: one for each face, edge or
-    /// vertex that is the closest part of all triangles around it. These are the contacts of a
-    /// grain of that radius.
-    pub fn within(&self, point: &Vec3, reach: Real) -> Vec<Nearest> {
-        let is_close = |(centre, radius): &(Vec3, Real)| (point - centre).norm() < reach + radius;
-        let candidates = (0..).zip(&self.spheres).filter(|(_, sphere)| is_close(sphere));
-        let found: Vec<Nearest> = candidates
-            .map(|(t, _)| self.nearest(t, point))
-            .filter(|nearest| nearest.distance < reach)
-            .collect();
-        found.iter().filter(|it| self.is_local_minimum(it, point)).copied().collect()
-    }
-
-    /// True if no triangle around the feature comes nearer to `point`, and, of those that share
-    /// the feature, this is the one with the lowest number.
-    fn is_local_minimum(&self, nearest: &Nearest, point: &Vec3) -> bool {
-        let mesh = &self.mesh;
-        let corners = mesh.triangles[nearest.triangle as usize];
-        let around: Vec<u32> = match nearest.feature {
-            Feature::Face => Vec::new(),
-            Feature::Edge(k) => {
-                let edge = mesh.edges_of_triangle[nearest.triangle as usize][k as usize];
-                let pair = mesh.triangles_of_edge[edge as usize];
-                pair.into_iter().filter(|&t| t != crate::physics::membrane::mesh::NONE).collect()
-            }
-            Feature::Vertex(k) => {
-                mesh.triangles_of_vertex.of(corners[k as usize] as usize).to_vec()
-            }
-        };
-        // Two triangles give the distance of a common edge with relative rounding errors of 10⁻¹⁶.
-        let is_nearer = |other: &Nearest| other.distance < nearest.distance * (1.0 - 1e-9);
-        around.into_iter().filter(|&t| t != nearest.triangle).all(|t| {
-            let other = self.nearest(t, point);
-            let is_same = (other.distance - nearest.distance).abs() <= 1e-9 * nearest.distance;
-            !is_nearer(&other) && (!is_same || nearest.triangle < t)
-        })
     }
 }
 
@@ -133,7 +95,7 @@ impl Triangles {
 mod tests {
     use super::*;
 
-    /// A floor of two triangles and a wall of two more at a right angle, along x.
+    /// A floor and a vertical wall along x, of two triangles each.
     fn corner() -> Triangles {
         let vertices = vec![
             Vec3::new(0.0, 0.0, 0.0),
@@ -147,15 +109,24 @@ mod tests {
         Triangles::new(vertices, facets).unwrap()
     }
 
-    /// Oracle: the corner's own planes. A sphere in an inner corner touches both, however the
-    /// planes are cut into triangles, and each of them once.
+    /// The contacts of a sphere among all triangles.
+    fn within(surface: &Triangles, point: &Vec3, reach: Real) -> Vec<Nearest> {
+        let all: Vec<u32> = (0..).zip(&surface.mesh().triangles).map(|(t, _)| t).collect();
+        let touches = surface.touching(&all, point, reach);
+        // None of the contacts below overlaps a saddle.
+        assert!(touches.iter().all(|it| it.share.to_bits() == 1.0_f64.to_bits()), "{touches:?}");
+        touches.into_iter().map(|it| it.nearest).collect()
+    }
+
+    /// Oracle: the planes of the corner. A sphere in a corner touches each of them once, however they are divided
+    /// into triangles.
     #[test]
     fn a_sphere_in_a_corner_touches_both_planes_once() {
         let surface = corner();
-        // Over the diagonals of both squares, where two triangles meet.
+        // Above the diagonals of both squares, where two triangles meet.
         for x in [0.5, 0.31] {
             let point = Vec3::new(x, 0.1, 0.12);
-            let mut found = surface.within(&point, 0.15);
+            let mut found = within(&surface, &point, 0.15);
             found.sort_by(|a, b| a.distance.total_cmp(&b.distance));
             assert_eq!(found.len(), 2, "{found:?}");
             assert!((found[0].distance - 0.1).abs() < 1e-15);
@@ -163,36 +134,34 @@ mod tests {
             assert!((found[1].distance - 0.12).abs() < 1e-15);
             assert!((found[1].normal - Vec3::z()).norm() < 1e-14, "{found:?}");
         }
-        assert!(surface.within(&Vec3::new(0.5, 0.5, 0.2), 0.15).is_empty());
+        assert!(within(&surface, &Vec3::new(0.5, 0.5, 0.2), 0.15).is_empty());
     }
 
-    /// Oracle: a point on the other side of the ridge is closest to the edge alone; distance by
-    /// Pythagoras.
+    /// Oracle: a point outside the ridge is closest to the edge; distance by Pythagoras.
     #[test]
     fn outside_a_ridge_only_the_edge_is_touched() {
         let surface = corner();
-        let found = surface.within(&Vec3::new(0.4, -0.03, -0.04), 0.1);
+        let found = within(&surface, &Vec3::new(0.4, -0.03, -0.04), 0.1);
         assert_eq!(found.len(), 1, "{found:?}");
         assert!(matches!(found[0].feature, Feature::Edge(_)), "{found:?}");
         assert!((found[0].distance - 0.05).abs() < 1e-15);
         assert!((found[0].normal - Vec3::new(0.0, -0.6, -0.8)).norm() < 1e-13);
     }
 
-    /// Oracle: a sphere over the middle of a square touches it once on its diagonal, and over a
-    /// shared vertex once.
+    /// Oracle: a sphere above an edge or a vertex of a flat surface touches it once.
     #[test]
     fn a_sphere_on_a_diagonal_or_a_vertex_counts_once() {
         let mesh = Arc::new(Mesh::hexagonal_patch(1.0, 2).unwrap());
         let surface = Triangles::of(mesh);
-        for place in [Vec3::new(0.0, 0.0, 0.2), Vec3::new(0.5, 0.0, 0.2), Vec3::new(0.3, 0.2, 0.2)]
+        for point in [Vec3::new(0.0, 0.0, 0.2), Vec3::new(0.5, 0.0, 0.2), Vec3::new(0.3, 0.2, 0.2)]
         {
-            let found = surface.within(&place, 0.3);
-            assert_eq!(found.len(), 1, "{place:?}: {found:?}");
+            let found = within(&surface, &point, 0.3);
+            assert_eq!(found.len(), 1, "{point:?}: {found:?}");
             assert!((found[0].distance - 0.2).abs() < 1e-15);
             assert!((found[0].normal - Vec3::z()).norm() < 1e-14);
         }
         assert!((surface.bounding_radius() - 2.0).abs() < 1e-14);
-        let (centre, radius) = surface.sphere_around(0);
-        assert!(radius < 0.6 && centre.z == 0.0);
+        let (center, radius) = surface.sphere_around(0);
+        assert!(radius < 0.6 && center.z == 0.0);
     }
 }

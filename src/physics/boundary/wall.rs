@@ -1,5 +1,7 @@
-//! Walls: rigid surfaces with prescribed motion that grains touch and that hold vertices of
-//! membranes. Forces act on them but do not move them.
+//! Walls: rigid surfaces with prescribed motion.
+//!
+//! Grains touch walls, and walls can hold vertices of membranes. Forces on a wall are measured but do not move
+//! it, except through a servo.
 
 use super::{body::BodyMotion, motion::WallMotion, triangles::Triangles};
 use crate::{
@@ -7,22 +9,22 @@ use crate::{
     physics::law::PairLaw,
 };
 
-/// The carrier: the first wall. A gripper's is the flange, whose inner face is the plate.
+/// Index of the carrier, the first wall. The carrier of a gripper is its flange.
 ///
-/// It is the frame of reference of the system in two ways. Lists of neighbours are kept in terms
-/// of positions relative to it, so carrying the whole system through the room costs no rebuild.
-/// And with density scaling grains and free vertices gain its velocity directly, so that heavier
-/// ones follow it as real ones do. Where the container moves, it should be the first wall.
+/// The carrier is the frame of reference of the system in two ways. Neighbor lists use positions relative to it,
+/// so moving the whole system does not cause rebuilds. And with density scaling, grains and free vertices gain
+/// its changes of velocity directly, so they follow it as the real ones do in spite of their larger inertia. If a
+/// system has a moving container, it should be the first wall.
 pub const CARRIER: usize = 0;
 
-/// What a wall is made of, and how it moves.
+/// A wall: its surface, its contact law and its motion.
 #[derive(Clone, Debug)]
 pub struct WallModel {
     /// Its surface.
     pub shape: WallShape,
-    /// Law between grains and the wall.
+    /// Contact law between grains and the wall.
     pub law: PairLaw,
-    /// How it moves.
+    /// Its motion.
     pub motion: WallMotion,
 }
 
@@ -36,12 +38,12 @@ impl WallModel {
 /// The surface of a wall in its own frame.
 #[derive(Clone, Debug, PartialEq)]
 pub enum WallShape {
-    /// A plane through the frame's origin.
+    /// A plane through the origin of the frame.
     Plane {
         /// Unit normal, towards the grains.
         normal: Vec3,
     },
-    /// The inner side of a cylinder around z, without ends.
+    /// The inner side of an infinite cylinder around z.
     Tube {
         /// Radius (m).
         radius: Real,
@@ -56,39 +58,40 @@ pub enum WallShape {
         /// Radius (m).
         radius: Real,
     },
-    /// Triangles, touched from both sides. There is no single distance from them; see
-    /// `Triangles::within`.
+    /// Triangles, which grains touch from both sides. There is no single distance; see `Triangles::touching`.
     Triangles(Box<Triangles>),
-    /// Holds vertices and touches no grain.
+    /// No surface: a frame that holds vertices and that grains do not touch.
     Frame,
 }
 
 impl WallShape {
-    /// The surface where a motion has brought it.
+    /// The surface at the pose of `motion`.
     #[inline]
-    pub fn placed(&self, motion: &BodyMotion) -> Placed {
+    pub fn placed(&self, motion: &BodyMotion) -> PlacedSurface {
         match self {
-            Self::Plane { normal } => Placed::Plane { normal: motion.pose.rotation * normal },
-            Self::Tube { radius } => {
-                Placed::Tube { radius: *radius, axis: motion.pose.rotation * Vec3::z() }
+            Self::Plane { normal } => {
+                PlacedSurface::Plane { normal: motion.pose.rotation * normal }
             }
-            Self::Bowl { radius } => Placed::Bowl { radius: *radius },
-            Self::Ball { radius } => Placed::Ball { radius: *radius },
-            Self::Triangles(_) | Self::Frame => Placed::Frame,
+            Self::Tube { radius } => {
+                PlacedSurface::Tube { radius: *radius, axis: motion.pose.rotation * Vec3::z() }
+            }
+            Self::Bowl { radius } => PlacedSurface::Bowl { radius: *radius },
+            Self::Ball { radius } => PlacedSurface::Ball { radius: *radius },
+            Self::Triangles(_) | Self::Frame => PlacedSurface::Frame,
         }
     }
 
-    /// Distance (m) of the point at `arm` (m) from the wall's origin, and the normal towards it,
-    /// world axes. `None` where the wall has no surface, or more than one distance.
+    /// Distance (m) of the surface from the point at `arm` (m) from the wall's origin, and the unit normal towards
+    /// the point, world axes. `None` if the wall has no surface or no single distance.
     pub fn distance(&self, motion: &BodyMotion, arm: &Vec3) -> Option<(Real, Vec3)> {
         self.placed(motion).distance(arm)
     }
 }
 
-/// The surface of a wall, with its directions in world axes; see `WallShape`.
+/// The surface of a wall with directions in world axes, see `WallShape`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[expect(missing_docs, reason = "as in `WallShape`")]
-pub enum Placed {
+pub enum PlacedSurface {
     Plane { normal: Vec3 },
     Tube { radius: Real, axis: Vec3 },
     Bowl { radius: Real },
@@ -96,8 +99,8 @@ pub enum Placed {
     Frame,
 }
 
-impl Placed {
-    /// As that of `WallShape`.
+impl PlacedSurface {
+    /// See `WallShape::distance`.
     #[inline(always)]
     pub fn distance(&self, arm: &Vec3) -> Option<(Real, Vec3)> {
         match self {
@@ -114,9 +117,8 @@ impl Placed {
 }
 
 impl WallShape {
-    /// No point within `extent` (m) of the wall's origin has come nearer to its surface by more than
-    /// this (m) while the wall went from one motion to another, seen from something that went by
-    /// `carried` (m).
+    /// Upper bound of the distance (m) by which points within `extent` (m) of the wall's origin have approached
+    /// its surface while the wall moved from one pose to another. The points moved by `carried` (m) meanwhile.
     pub fn displacement(
         &self,
         from: &BodyMotion,
@@ -126,20 +128,21 @@ impl WallShape {
     ) -> Real {
         let origin = |it: &BodyMotion| it.pose.translation.vector;
         let shifted = (origin(to) - origin(from) - carried).norm();
-        let turned = |axis: &Vec3| (to.pose.rotation * axis - from.pose.rotation * axis).norm();
-        // No vector changes by more than the largest change of a unit vector, 2 sin(angle/2).
-        let turned_most = || 2.0 * (0.5 * to.pose.rotation.angle_to(&from.pose.rotation)).sin();
+        let rotated = |axis: &Vec3| (to.pose.rotation * axis - from.pose.rotation * axis).norm();
+        // A rotation moves a unit vector by at most 2 sin(angle/2).
+        let rotated_most = || 2.0 * (0.5 * to.pose.rotation.angle_to(&from.pose.rotation)).sin();
         match self {
-            Self::Plane { normal } => shifted + turned(normal) * extent,
-            Self::Tube { .. } => shifted + turned(&Vec3::z()) * extent,
+            Self::Plane { normal } => shifted + rotated(normal) * extent,
+            Self::Tube { .. } => shifted + rotated(&Vec3::z()) * extent,
             Self::Bowl { .. } | Self::Ball { .. } => shifted,
-            Self::Triangles(_) => shifted + turned_most() * extent,
+            Self::Triangles(_) => shifted + rotated_most() * extent,
             Self::Frame => 0.0,
         }
     }
 }
 
-/// From the axis or the centre there is no nearest point of the wall.
+/// Distance from the inner side of a tube or a sphere. `None` on the axis or at the center, where no point of
+/// the wall is closest.
 #[inline(always)]
 fn inside(radius: Real, outward: Vec3) -> Option<(Real, Vec3)> {
     let length = outward.norm();
@@ -151,9 +154,9 @@ mod tests {
     use super::*;
     use crate::base::{Pose, real::Twist};
 
-    /// Oracle: the surfaces' own equations in a turned and shifted frame; to rounding.
+    /// Oracle: the equations of the surfaces in a rotated and shifted frame. Tolerance: rounding.
     #[test]
-    fn distances_and_normals_are_those_of_the_surfaces() {
+    fn distances_and_normals_match_the_surfaces() {
         let pose = Pose::new(Vec3::new(0.1, -0.2, 0.3), Vec3::new(0.4, 0.5, -0.6));
         let motion = BodyMotion { pose, twist: Twist::zero() };
         let local = Vec3::new(0.03, -0.04, 0.2);

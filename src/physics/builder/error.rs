@@ -1,11 +1,11 @@
-//! Why parts do not make a system.
+//! Errors of the system builder.
 
 use crate::{
     base::Real,
-    physics::{boundary::motion::BadMotion, membrane::mesh::MeshFault},
+    physics::{boundary::motion::MotionError, membrane::mesh::MeshError},
 };
 
-/// Why parts do not make a system: where, what value, which limit, and what to do.
+/// Why parts do not form a system: place, value, limit and remedy.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum BuildError {
     /// A number that is not finite.
@@ -24,26 +24,25 @@ pub enum BuildError {
         /// Its value.
         value: Real,
     },
-    /// Lists of one length that have several.
-    #[error("{place}: {found} values for {expected}; give one for each")]
+    /// Lists that must have the same length.
+    #[error("{place}: {found} values instead of {expected}; give one for each")]
     Count {
-        /// What they are.
+        /// The list.
         place: &'static str,
-        /// How many there are.
+        /// Its length.
         found: usize,
-        /// How many there must be.
+        /// The required length.
         expected: usize,
     },
-    /// Neither a substep nor what it follows from.
+    /// Neither a substep nor the material that determines it.
     #[error(
-        "substep: none is given; call `substep`, or name the grains' material and call \
-         `substep_of_critical`"
+        "substep: not set; call `substep`, or use `of_material` and call `substep_of_critical`"
     )]
     NoSubstep,
-    /// A grain larger than the radius that was announced.
+    /// A grain larger than the largest radius that was set.
     #[error(
-        "grain {grain}: radius {radius:e} m exceeds the largest of {limit:e} m; announce the \
-         largest radius with `radii_up_to`"
+        "grain {grain}: radius {radius:e} m exceeds the limit of {limit:e} m; set the largest \
+         radius with `radii_up_to`"
     )]
     Radius {
         /// The grain.
@@ -53,7 +52,7 @@ pub enum BuildError {
         /// The largest radius (m).
         limit: Real,
     },
-    /// A periodic box in which a grain could meet two images of another.
+    /// A periodic box in which a grain could touch two images of another.
     #[error(
         "period: edge {axis} is {edge:e} m; it must be at least {limit:e} m, twice the reach of the \
          largest grain"
@@ -63,32 +62,32 @@ pub enum BuildError {
         axis: usize,
         /// Length of the edge (m).
         edge: Real,
-        /// The least length (m).
+        /// The smallest valid length (m).
         limit: Real,
     },
-    /// A periodic box with something else in it than grains.
+    /// A periodic box that does not contain only grains.
     #[error(
-        "period: {n_walls} walls and {n_membranes} membranes; a periodic box holds grains alone"
+        "period: {n_walls} walls and {n_membranes} membranes; a periodic box may contain only grains"
     )]
     NotAlone {
-        /// Number of walls.
+        /// Number of walls, and of bodies that grains touch.
         n_walls: usize,
         /// Number of membranes.
         n_membranes: usize,
     },
-    /// A wall that touches no grain and holds no vertex.
+    /// A frame that does not hold any vertex.
     #[error(
-        "wall {wall}: no grain can touch a frame and it holds no vertex of a membrane; leave it out \
-         or let it hold something"
+        "wall {wall}: a frame that holds no vertex of a membrane has no effect; remove it or let it hold \
+         something"
     )]
     IdleWall {
         /// The wall.
         wall: usize,
     },
-    /// A hollow wall in which the grains do not fit.
+    /// A hollow wall that is too narrow for the grains.
     #[error(
-        "wall {wall}: radius {radius:e} m leaves no place for a grain of {limit:e} m; take a wider \
-         wall or smaller grains"
+        "wall {wall}: radius {radius:e} m is too small for grains of {limit:e} m; use a wider wall or \
+         smaller grains"
     )]
     NarrowWall {
         /// The wall.
@@ -98,7 +97,7 @@ pub enum BuildError {
         /// Radius of the largest grain (m).
         limit: Real,
     },
-    /// A normal that is no direction.
+    /// A normal that is not a unit vector.
     #[error("wall {wall}: its normal has length {length}; it must be 1")]
     Normal {
         /// The wall.
@@ -106,35 +105,26 @@ pub enum BuildError {
         /// Length of its normal.
         length: Real,
     },
-    /// A wall of triangles, which grains do not touch yet.
-    #[error(
-        "wall {wall}: grains do not touch walls of triangles in this version; use planes, tubes, \
-         bowls or balls"
-    )]
-    TriangulatedWall {
-        /// The wall.
-        wall: usize,
-    },
-    /// A motion that cannot be carried out.
+    /// An invalid motion.
     #[error("wall {wall}: {error}")]
     Motion {
         /// The wall.
         wall: usize,
-        /// The parameter.
-        error: BadMotion,
+        /// The invalid parameter.
+        error: MotionError,
     },
-    /// A mesh that is no surface.
+    /// An invalid mesh.
     #[error("membrane {membrane}: {error}")]
     Mesh {
         /// The membrane.
         membrane: usize,
         /// What is wrong.
-        error: MeshFault,
+        error: MeshError,
     },
     /// A rim that no wall holds.
     #[error(
-        "membrane {membrane}: vertex {vertex} of its rim is held by no wall; call `hold`, or \
-         `free_rims` if it shall hang free"
+        "membrane {membrane}: vertex {vertex} of its rim is not held by a wall; call `hold`, or \
+         `free_rims` if it is free"
     )]
     FreeRim {
         /// The membrane.
@@ -142,34 +132,34 @@ pub enum BuildError {
         /// A vertex of the rim.
         vertex: usize,
     },
-    /// Vertices that a membrane does not have.
-    #[error("membrane {membrane}: {what} {index} is to be held, but it has only {limit}")]
+    /// Vertices or rims that a membrane does not have.
+    #[error("membrane {membrane}: {what} {index} cannot be held, because there are only {limit}")]
     NoSuchVertices {
         /// The membrane.
         membrane: usize,
         /// `vertex` or `rim`.
         what: &'static str,
-        /// The index given.
+        /// The invalid index.
         index: usize,
         /// How many there are.
         limit: usize,
     },
     /// A holder that does not exist.
     #[error(
-        "membrane {membrane}: wall {wall} shall hold it, but there are only {n_walls}; add the wall \
-         first"
+        "membrane {membrane}: wall {wall} cannot hold it, because there are only {n_walls} walls; add the \
+         wall first"
     )]
     NoSuchWall {
         /// The membrane.
         membrane: usize,
         /// The wall.
         wall: usize,
-        /// How many walls there are.
+        /// Number of walls.
         n_walls: usize,
     },
     /// Membranes that cannot share a system.
     #[error(
-        "membrane {membrane}: {what} differs from that of the first membrane; it is the same for all \
+        "membrane {membrane}: {what} differs from the first membrane; it must be the same for all \
          membranes of a system"
     )]
     MembranesDiffer {

@@ -1,11 +1,11 @@
-//! Membranes as parts of a system to be built.
+//! Membranes as parts of a system.
 
 use super::{BuildError, WallId};
 use crate::{
     base::{Pose, Vec3},
     physics::membrane::{
         FREE, MembraneContact, MembraneMaterial, MembraneModel,
-        mesh::{Mesh, MeshFault},
+        mesh::{Mesh, MeshError},
         shape::MembraneShape,
     },
 };
@@ -15,87 +15,86 @@ use crate::{
 pub enum Vertices {
     /// All of them.
     All,
-    /// Those of all rims.
+    /// The vertices of all rims.
     Rims,
-    /// Those of one rim, by its number in `Mesh::rims`.
+    /// The vertices of one rim, by its index in `Mesh::rims`.
     Rim(usize),
-    /// These.
+    /// The vertices with these indices.
     Group(Vec<u32>),
 }
 
-/// A membrane: shape, material, and the walls that hold it.
+/// A membrane: its shape, its material, and the walls that hold it.
 #[derive(Clone, Debug)]
 pub struct Membrane {
     pub(super) model: MembraneModel,
-    /// Where its vertices are at first (m), world frame.
+    /// Initial positions of its vertices (m), world frame.
     pub(super) positions: Vec<Vec3>,
     held: Vec<(Vertices, WallId)>,
     has_free_rims: bool,
 }
 
 impl Membrane {
-    /// A membrane of `material` that is free of stress in `shape`, with its frame in the world's.
+    /// A membrane of `material`, stress-free in `shape`, whose frame is the world frame.
     ///
     /// # Errors
-    /// If the shape is no surface.
-    pub fn new(shape: &MembraneShape, material: MembraneMaterial) -> Result<Self, MeshFault> {
+    /// If the shape is not a valid surface.
+    pub fn new(shape: &MembraneShape, material: MembraneMaterial) -> Result<Self, MeshError> {
         Ok(Self::of(MembraneModel::new(shape.mesh()?, material)))
     }
 
-    /// The same at another pose.
+    /// A membrane of `material`, stress-free in `shape`, at `pose`.
     ///
     /// # Errors
-    /// If the shape is no surface.
+    /// If the shape is not a valid surface.
     pub fn placed(
         shape: &MembraneShape,
         pose: &Pose,
         material: MembraneMaterial,
-    ) -> Result<Self, MeshFault> {
+    ) -> Result<Self, MeshError> {
         let Mesh { mut positions, triangles, .. } = shape.mesh()?;
         positions.iter_mut().for_each(|p| *p = pose.rotation * *p + pose.translation.vector);
         Ok(Self::of(MembraneModel::new(Mesh::new(positions, triangles)?, material)))
     }
 
-    /// A membrane whose model is made already. Its holders are those named by `hold`.
+    /// A membrane from its model. Its holders are replaced by those set with `hold`.
     pub fn of(model: MembraneModel) -> Self {
         let positions = model.mesh.positions.clone();
         Self { model, positions, held: Vec::new(), has_free_rims: false }
     }
 
-    /// The same with vertices held by a wall, fixed in its frame where they are at first. Of
-    /// several calls for one vertex the last counts.
+    /// Lets a wall hold `vertices` at their initial positions in its frame. If a vertex is given several times,
+    /// the last wall holds it.
     #[must_use]
     pub fn hold(mut self, vertices: Vertices, wall: WallId) -> Self {
         self.held.push((vertices, wall));
         self
     }
 
-    /// The same with rims that may hang free.
+    /// Allows rims that no wall holds.
     #[must_use]
     pub fn free_rims(mut self) -> Self {
         self.has_free_rims = true;
         self
     }
 
-    /// The same with its vertices at `positions` (m) at first, world frame; the reference shape
-    /// stays.
+    /// Sets the initial positions of the vertices (m), world frame. The reference shape does not change.
     #[must_use]
     pub fn starting_at(mut self, positions: Vec<Vec3>) -> Self {
         self.positions = positions;
         self
     }
 
-    /// The same with spheres around its vertices as what grains touch, or its triangles.
+    /// Sets the contact geometry for grains.
     #[must_use]
     pub fn touched_at(mut self, contact: MembraneContact) -> Self {
         self.model.contact = contact;
         self
     }
 
-    /// Finds the holder of each vertex.
+    /// Determines the holder of each vertex.
     ///
     /// # Errors
-    /// If vertices or walls do not exist, or a rim is not held that should be.
+    /// If vertices or walls do not exist, or a rim that must be held is not.
     pub(super) fn find_holders(
         &mut self,
         membrane: usize,
@@ -105,7 +104,7 @@ impl Membrane {
         let n_vertices = mesh.n_vertices();
         if self.positions.len() != n_vertices {
             return Err(BuildError::Count {
-                place: "first positions of a membrane's vertices",
+                place: "initial positions of a membrane's vertices",
                 found: self.positions.len(),
                 expected: n_vertices,
             });
@@ -146,8 +145,8 @@ impl Membrane {
                 Vertices::Group(group) => group.iter().try_for_each(|&v| hold(v as usize))?,
             }
         }
-        let is_loose = |&v: &usize| mesh.is_on_rim[v] && holders[v] == FREE;
-        match (0..n_vertices).find(is_loose).filter(|_| !self.has_free_rims) {
+        let is_free_rim = |&v: &usize| mesh.is_on_rim[v] && holders[v] == FREE;
+        match (0..n_vertices).find(is_free_rim).filter(|_| !self.has_free_rims) {
             Some(vertex) => Err(BuildError::FreeRim { membrane, vertex }),
             None => Ok(()),
         }

@@ -1,4 +1,4 @@
-//! Any system from the same parts: grains, walls, membranes, bodies, gravity, air.
+//! Builds systems from parts: grains, walls, membranes, bodies, gravity, air.
 
 mod error;
 mod membrane;
@@ -30,20 +30,22 @@ use crate::{
     scene::Material,
 };
 
-/// Neighbours are listed this share of the largest radius beyond contact, as a rule.
+/// Default skin of the neighbor lists, as a fraction of the largest radius.
 const SKIN_SHARE: Real = 0.25;
-/// Largest error of a unit vector's length.
+/// Largest deviation of the length of a unit vector from 1.
 const UNIT_TOLERANCE: Real = 1e-9;
 
-/// Puts a system together from its parts and checks that they fit.
+/// Builds a system from parts and checks that they are consistent.
 ///
-/// Two grains that fall into a box with a shaken floor:
+/// Two grains that fall on a ramp of triangles in a box with a shaken floor:
 ///
 /// ```
 /// use jamgrip::{
 ///     base::Vec3,
 ///     physics::{
-///         SystemBuilder, boundary::motion::WallMotion, builder::Wall, law::Surface,
+///         SystemBuilder,
+///         boundary::{motion::WallMotion, triangles::Triangles},
+///         builder::Wall, law::Surface,
 ///     },
 ///     scene::Material,
 /// };
@@ -60,18 +62,22 @@ const UNIT_TOLERANCE: Real = 1e-9;
 ///     axis: Vec3::z(), amplitude: 0.2e-3, frequency: 30.0, phase: 0.0,
 /// };
 /// builder.walls([floor.moving(shaken), left, right, front, back]);
+/// let (low, high) = (Vec3::new(-0.01, -0.01, 0.0), Vec3::new(0.01, 0.01, 2e-3));
+/// let corners = vec![low, Vec3::new(0.01, -0.01, 0.0), Vec3::new(-0.01, 0.01, 2e-3), high];
+/// let ramp = Triangles::new(corners, vec![[0, 1, 2], [1, 3, 2]])?;
+/// builder.wall(Wall::triangles(ramp));
 /// let mut system = builder.build()?;
 /// for _ in 0..1000 {
 ///     system.step();
 /// }
 /// assert!(system.state.grains.positions.iter().all(|p| p.z > 1e-3));
-/// # Ok::<(), jamgrip::physics::builder::BuildError>(())
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
-/// The first wall that is added is the carrier, the frame of reference of the system
-/// (`boundary::wall::CARRIER`): where a container moves, add it first.
+/// The first wall is the carrier, the frame of reference of the system (`boundary::wall::CARRIER`). If there is a
+/// moving container, add it first.
 ///
-/// No thread is started. Loops run on the team of threads that the caller leads, if it leads one:
+/// No threads are started. To use several, step the system as the leader of a team:
 /// `parallel::lead(&pool, || system.step())`.
 #[derive(Clone, Debug)]
 pub struct SystemBuilder {
@@ -84,7 +90,7 @@ pub struct SystemBuilder {
     period: Option<Vec3>,
     substep: Substep,
     skin: Option<Real>,
-    /// Largest and mean radius, if grains are to grow.
+    /// Largest and mean radius of grains that grow or are added later.
     radii: Option<[Real; 2]>,
     chamber: ChamberModel,
     table: Pose,
@@ -96,7 +102,7 @@ pub struct SystemBuilder {
     motions: Vec<BodyMotion>,
 }
 
-/// How the length of a substep is found.
+/// How the length of a substep is determined.
 #[derive(Clone, Copy, Debug)]
 enum Substep {
     Unknown,
@@ -105,7 +111,7 @@ enum Substep {
 }
 
 impl SystemBuilder {
-    /// Nothing yet; all contacts of grains follow one `law` unless another is given.
+    /// An empty system. All contacts of grains use `law` unless others are set.
     pub fn new(law: PairLaw) -> Self {
         Self {
             grain_law: law,
@@ -129,7 +135,7 @@ impl SystemBuilder {
         }
     }
 
-    /// Nothing yet; grains are of one material, and walls are rigid.
+    /// An empty system with grains of one material and rigid walls.
     pub fn of_material(material: &Material, surface: Surface) -> Self {
         let mut builder = Self::new(PairLaw::between(material, material, surface));
         builder.wall_law = PairLaw::against_rigid(material, surface);
@@ -137,83 +143,83 @@ impl SystemBuilder {
         builder
     }
 
-    /// Gravity (m/s²), world axes; none as a rule.
+    /// Sets gravity (m/s²), world axes. The default is zero.
     pub fn gravity(&mut self, gravity: Vec3) -> &mut Self {
         self.gravity = gravity;
         self
     }
 
-    /// Inertia of grains and membranes over their real one; 1 as a rule. Masses, damping and
-    /// gravity are given as they are with that inertia.
+    /// Sets the ratio of the inertia of grains and membranes to their real inertia. The default is 1. Masses, damping
+    /// and gravity must already include the ratio.
     pub fn density_scaling(&mut self, factor: Real) -> &mut Self {
         self.density_scaling = factor;
         self
     }
 
-    /// A box from the origin that continues periodically, with these edges (m). For grains alone.
+    /// Makes the system periodic, with a box of these edges (m) from the origin. Only for systems of grains.
     pub fn period(&mut self, period: Vec3) -> &mut Self {
         self.period = Some(period);
         self
     }
 
-    /// Length of a substep (s).
+    /// Sets the length of a substep (s).
     pub fn substep(&mut self, substep: Real) -> &mut Self {
         self.substep = Substep::Given(substep);
         self
     }
 
-    /// A substep of this share of the critical one, for builders made with `of_material`.
+    /// Sets the length of a substep to this fraction of the critical step. Requires `of_material`.
     pub fn substep_of_critical(&mut self, share: Real) -> &mut Self {
         self.substep = Substep::OfCritical(share);
         self
     }
 
-    /// Largest pressure that presses a membrane on the grains (Pa), for `substep_of_critical`.
+    /// Sets the largest pressure of a membrane on the grains (Pa), for `substep_of_critical`.
     pub fn pressure_max(&mut self, pressure: Real) -> &mut Self {
         self.pressure_max = pressure;
         self
     }
 
-    /// Distance beyond contact within which neighbours are listed (m); no result depends on it. A
-    /// quarter of the largest radius as a rule.
+    /// Sets the skin (m), the distance beyond contact within which pairs are listed. Results do not depend on it. The
+    /// default is a quarter of the largest radius.
     pub fn skin(&mut self, skin: Real) -> &mut Self {
         self.skin = Some(skin);
         self
     }
 
-    /// Largest and mean radius that grains will have (m), if they are to grow or are added later.
+    /// Sets the largest and the mean radius of grains (m), if they grow or are added later.
     pub fn radii_up_to(&mut self, largest: Real, mean: Real) -> &mut Self {
         self.radii = Some([largest, mean]);
         self
     }
 
-    /// Law between grains and walls that have no law of their own.
+    /// Sets the contact law between grains and walls without their own law.
     pub fn wall_law(&mut self, law: PairLaw) -> &mut Self {
         self.wall_law = law;
         self
     }
 
-    /// Law between grains and membranes.
+    /// Sets the contact law between grains and membranes.
     pub fn membrane_law(&mut self, law: PairLaw) -> &mut Self {
         self.membrane_law = law;
         self
     }
 
-    /// Pump and line of the air inside the membranes; without lag and limit as a rule.
+    /// Sets pump and line of the air inside the membranes. The default has no lag and no limit.
     pub fn chamber(&mut self, chamber: ChamberModel) -> &mut Self {
         self.chamber = chamber;
         self
     }
 
-    /// Pose of the table in a rigid world; its surface is z = 0 of this frame.
+    /// Sets the pose of the table; its surface is z = 0 of this frame.
     pub fn table(&mut self, pose: Pose) -> &mut Self {
         self.table = pose;
         self
     }
 
-    /// Adds a grain of the builder's material at rest.
+    /// Adds a grain of the builder's material at rest, at `position` (m) with `radius` (m).
     ///
-    /// Without a material (`new`) its mass is not known, and `build` refuses it.
+    /// Without a material (`new`) its mass is unknown, and `build` returns an error.
     pub fn grain(&mut self, position: Vec3, radius: Real) -> &mut Self {
         let density = self.material.map_or(Real::NAN, |it| it.density);
         let mass = density * self.density_scaling * sphere_volume(radius);
@@ -243,8 +249,8 @@ impl SystemBuilder {
         self
     }
 
-    /// Adds a membrane. Returns the numbers that its vertices have in the system, where the vertices
-    /// and facets of several membranes follow each other.
+    /// Adds a membrane. Returns the indices of its vertices in the system, in which the vertices and facets of all
+    /// membranes are concatenated.
     pub fn membrane(&mut self, membrane: Membrane) -> Range<usize> {
         let first: usize = self.membranes.iter().map(|it| it.positions.len()).sum();
         let vertices = first..first + membrane.positions.len();
@@ -252,7 +258,7 @@ impl SystemBuilder {
         vertices
     }
 
-    /// Adds a rigid body that membranes touch.
+    /// Adds a rigid body that membranes touch, and also grains after `BodyModel::touches_grains`.
     pub fn body(&mut self, body: BodyModel, motion: BodyMotion) -> &mut Self {
         self.bodies.push(body);
         self.motions.push(motion);
@@ -262,7 +268,7 @@ impl SystemBuilder {
     /// Builds the system, at rest.
     ///
     /// # Errors
-    /// If a part is missing, or parts do not fit each other.
+    /// If a part is missing or invalid, or parts are inconsistent.
     pub fn build(mut self) -> Result<System, BuildError> {
         self.check_grains()?;
         let grains = std::mem::take(&mut self.grains);
@@ -291,10 +297,10 @@ impl SystemBuilder {
         Ok(System::new(model, controls, state))
     }
 
-    /// Builds the model alone, for grains that come later; `radii_up_to` must name their radii.
+    /// Builds only the model, for grains that are added later. Requires `radii_up_to`.
     ///
     /// # Errors
-    /// If a part is missing, or parts do not fit each other.
+    /// If a part is missing or invalid, or parts are inconsistent.
     pub fn build_model(self) -> Result<Model, BuildError> {
         let [largest, mean] = self.radii.unwrap_or([0.0; 2]);
         positive(|| "largest radius (m) of grains, see `radii_up_to`".to_owned(), largest)?;
@@ -333,7 +339,7 @@ impl SystemBuilder {
         })
     }
 
-    /// All membranes as one, and where walls hold its vertices, in their frames (m).
+    /// Joins all membranes. Also returns the positions of held vertices in the frames of their walls (m).
     fn join_membranes(&mut self) -> Result<(MembraneModel, Vec<Vec3>), BuildError> {
         let mut joined: Option<MembraneModel> = None;
         let mut held_positions = Vec::new();
@@ -342,7 +348,7 @@ impl SystemBuilder {
             let frames: Vec<Pose> = self.walls.iter().map(|it| it.pose.inverse()).collect();
             for (position, &holder) in membrane.positions.iter().zip(&membrane.model.holders) {
                 finite(|| format!("position (m) of a vertex of membrane {k}"), position)?;
-                // A vertex that is free now may be held by the carrier later.
+                // The carrier may hold vertices later that are free now.
                 let wall = if holder == FREE { WallId::CARRIER.holder() } else { holder };
                 let in_frame = |frame: &Pose| frame.rotation * position + frame.translation.vector;
                 held_positions.push(frames.get(wall as usize).map_or(*position, in_frame));
@@ -353,10 +359,10 @@ impl SystemBuilder {
                 Some(first) => {
                     let differ = |what| Err(BuildError::MembranesDiffer { membrane: k, what });
                     if first.contact != model.contact {
-                        return differ("what grains touch of it");
+                        return differ("the contact geometry for grains");
                     }
                     if first.bends_by_first_areas() != model.bends_by_first_areas() {
-                        return differ("whether hinges take the areas of the reference shape");
+                        return differ("the use of reference areas by hinges");
                     }
                     first.joined(&model).map_err(|error| BuildError::Mesh { membrane: k, error })?
                 }
@@ -400,7 +406,8 @@ impl SystemBuilder {
             match &wall.shape {
                 WallShape::Plane { normal } => {
                     let length = normal.norm();
-                    if !((length - 1.0).abs() < UNIT_TOLERANCE) {
+                    let is_unit = (length - 1.0).abs() < UNIT_TOLERANCE;
+                    if !is_unit {
                         return Err(BuildError::Normal { wall: k, length });
                     }
                 }
@@ -414,7 +421,8 @@ impl SystemBuilder {
                 WallShape::Ball { radius } => {
                     positive(|| format!("radius (m) of wall {k}"), *radius)?;
                 }
-                WallShape::Triangles(_) => return Err(BuildError::TriangulatedWall { wall: k }),
+                // Checked when they were created.
+                WallShape::Triangles(_) => {}
                 WallShape::Frame => {
                     if !membrane.holders.iter().any(|holder| *holder as usize == k) {
                         return Err(BuildError::IdleWall { wall: k });
@@ -428,7 +436,8 @@ impl SystemBuilder {
     fn check_period(&self, reach: Real) -> Result<(), BuildError> {
         let Some(period) = &self.period else { return Ok(()) };
         finite(|| "period (m)".to_owned(), period)?;
-        let (n_walls, n_membranes) = (self.walls.len(), self.membranes.len());
+        let n_touched = self.bodies.iter().filter(|it| it.of_grains.is_some()).count();
+        let (n_walls, n_membranes) = (self.walls.len() + n_touched, self.membranes.len());
         if 0 < n_walls + n_membranes {
             return Err(BuildError::NotAlone { n_walls, n_membranes });
         }

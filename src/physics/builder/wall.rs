@@ -1,30 +1,31 @@
-//! Walls as parts of a system to be built.
+//! Walls as parts of a system.
 
 use crate::{
     base::{Pose, Real, Vec3},
     physics::{
         boundary::{
             motion::WallMotion,
+            triangles::Triangles,
             wall::{CARRIER, WallShape},
         },
         law::PairLaw,
     },
 };
 
-/// A wall of a system, by its number.
+/// Index of a wall in its system.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct WallId(pub(super) u32);
 
 impl WallId {
-    /// The carrier: the first wall that is added. See `boundary::wall::CARRIER`.
+    /// The carrier, which is the first wall that is added. See `boundary::wall::CARRIER`.
     pub const CARRIER: Self = Self(0);
 
-    /// Its place in `Model::walls`, `Controls::walls` and `State::walls`.
+    /// The index in `Model::walls`, `Controls::walls` and `State::walls`.
     pub fn index(self) -> usize {
         self.0 as usize
     }
 
-    /// The number by which a membrane names its holder.
+    /// The id of the wall in `MembraneModel::holders`.
     pub fn holder(self) -> u32 {
         self.0
     }
@@ -32,7 +33,7 @@ impl WallId {
 
 const _: () = assert!(CARRIER == 0, "`WallId::CARRIER` is the carrier");
 
-/// A wall: surface, place, motion, and the law of its contacts with grains.
+/// A wall: its surface, its pose, its motion, and the law of its contacts with grains.
 #[derive(Clone, Debug)]
 pub struct Wall {
     pub(super) shape: WallShape,
@@ -42,7 +43,7 @@ pub struct Wall {
 }
 
 impl Wall {
-    /// A wall that stands still with its frame in the world's.
+    /// A fixed wall whose frame is the world frame.
     pub fn new(shape: WallShape) -> Self {
         Self { shape, pose: Pose::identity(), motion: WallMotion::Fixed, law: None }
     }
@@ -58,7 +59,7 @@ impl Wall {
         Self::plane(Vec3::new(0.0, 0.0, height), Vec3::z())
     }
 
-    /// The six sides of a box between two corners (m): low and high side along x, then y, then z.
+    /// The six sides of a box between two corners (m): the lower and the upper side along x, then y, then z.
     pub fn sides(low: Vec3, high: Vec3) -> [Self; 6] {
         std::array::from_fn(|k| {
             let (axis, is_high) = (k / 2, k % 2 == 1);
@@ -71,26 +72,31 @@ impl Wall {
         })
     }
 
-    /// A frame, which holds vertices of membranes and touches no grain.
+    /// A triangulated surface. It may be open, and grains touch it from both sides.
+    pub fn triangles(triangles: Triangles) -> Self {
+        Self::new(WallShape::Triangles(Box::new(triangles)))
+    }
+
+    /// A frame, which holds vertices of membranes and does not touch grains.
     pub fn frame() -> Self {
         Self::new(WallShape::Frame)
     }
 
-    /// The same at another pose.
+    /// Sets the pose.
     #[must_use]
     pub fn at(mut self, pose: Pose) -> Self {
         self.pose = pose;
         self
     }
 
-    /// The same with a motion, which begins when the system takes its first substep.
+    /// Sets the motion, which starts with the first substep of the system.
     #[must_use]
     pub fn moving(mut self, motion: WallMotion) -> Self {
         self.motion = motion;
         self
     }
 
-    /// The same with a law of its own for contacts with grains.
+    /// Sets the law of the contacts with grains.
     #[must_use]
     pub fn law(mut self, law: PairLaw) -> Self {
         self.law = Some(law);

@@ -1,12 +1,24 @@
 //! Contacts between the membrane and rigid bodies.
 //!
+//! ```text
+//! ξ = −φ                             at a vertex
+//! ξ = −φ − 1/3 Σ max(0, ξ_corner)    at the centroid of a facet
+//! ```
+//!
+//! | symbol | meaning | unit |
+//! |---|---|---|
+//! | φ | signed distance of the sample from the body, negative inside | m |
+//! | ξ | overlap of the sample | m |
+//!
 //! The membrane touches a body at sample points that are fixed to the membrane: every vertex, and the
-//! centroid of every facet, which detects what pokes through between vertices. A vertex at the signed
-//! distance φ < 0 has the overlap ξ = −φ. A centroid has only the overlap that its corners do not have
-//! already, ξ = −φ − ⅓ Σ max(0, ξ_corner), so the force grows from zero when a corner or an edge of the body
-//! comes up between three vertices. Because the samples are fixed to the membrane, friction springs stay
-//! with them. The law is that of the other contacts, without cohesion; the effective radius is a property of
-//! the body's model.
+//! centroid of every facet, which detects corners and edges of the body between vertices. A centroid has
+//! only the overlap that its corners do not have, so its force increases from zero when a body's corner or
+//! edge moves in between three vertices. Because the samples are fixed to the membrane, friction springs
+//! stay with them. The contact law is that of the other contacts, without cohesion; the effective radius is a
+//! property of the body's model.
+//!
+//! Source: none; penalty contacts at vertices are standard, the centroids were added for jamgrip. Valid for
+//! bodies whose features are not much smaller than the facets.
 
 use crate::{
     base::{Real, Vec3, parallel},
@@ -20,7 +32,7 @@ use crate::{
     },
 };
 
-/// Forces of all bodies on the samples near them; carries their springs on by one substep.
+/// Computes the forces of all bodies on the samples near them, and updates their springs by one substep.
 pub fn forces(
     model: &Model,
     controls: &Controls,
@@ -59,8 +71,8 @@ struct MembranePoint {
     position: Vec3,
     velocity: Vec3,
     mass: Real,
-    /// Overlap that the facet's corners have already (m).
-    known_overlap: Real,
+    /// Mean overlap of the facet's corners (m), 0 for a vertex.
+    corner_overlap: Real,
 }
 
 impl MembranePoint {
@@ -69,7 +81,7 @@ impl MembranePoint {
             position: membrane.positions[v],
             velocity: membrane.velocities[v],
             mass: model.membrane.masses[v],
-            known_overlap: 0.0,
+            corner_overlap: 0.0,
         }
     }
 
@@ -86,11 +98,12 @@ impl MembranePoint {
             velocity: (membrane.velocities[a] + membrane.velocities[b] + membrane.velocities[c])
                 / 3.0,
             mass: (masses[a] + masses[b] + masses[c]) / 3.0,
-            known_overlap: overlaps.map(|overlap| overlap.max(0.0)).iter().sum::<Real>() / 3.0,
+            corner_overlap: overlaps.map(|overlap| overlap.max(0.0)).iter().sum::<Real>() / 3.0,
         }
     }
 }
 
+/// Contacts of one body.
 struct Contact<'a> {
     body: &'a BodyModel,
     motion: &'a BodyMotion,
@@ -107,7 +120,7 @@ impl Contact<'_> {
             return SampleForce { overlap: -beyond, ..SampleForce::NONE };
         }
         let (distance, normal) = signed_distance(self.body, self.motion, &arm);
-        let overlap = -distance - membrane.known_overlap;
+        let overlap = -distance - membrane.corner_overlap;
         if overlap <= 0.0 {
             *spring = Vec3::zeros();
             return SampleForce { overlap, ..SampleForce::NONE };
@@ -131,8 +144,8 @@ impl Contact<'_> {
     }
 }
 
-/// Signed distance (m) from `body` to the point at `arm` (m) from its origin, and the outward normal, in
-/// world axes.
+/// Signed distance (m) of the point at `arm` (m) from the origin of `body`, and the outward unit normal, world
+/// axes.
 #[inline]
 pub fn signed_distance(body: &BodyModel, motion: &BodyMotion, arm: &Vec3) -> (Real, Vec3) {
     match &body.surface {

@@ -1,8 +1,8 @@
-//! Which triangles a grain overlaps, and where it is closest to them.
+//! Closest points of candidate triangles: which triangles a grain overlaps, and where.
 //!
-//! A candidate at a distance `gap` cannot touch before grain and triangle have moved that far together. So it
-//! sleeps until `travel`, the sum of the largest steps of any grain and of any vertex, has grown by the gap.
-//! The others are evaluated in lanes.
+//! A candidate separated from its grain by `gap` cannot touch it before grain and triangle have moved by a total
+//! of `gap`. It therefore sleeps until `travel`, the accumulated largest displacements of any grain and any
+//! vertex, has grown by the gap. The awake candidates are evaluated in lanes.
 
 use crate::{
     base::{
@@ -13,35 +13,35 @@ use crate::{
     physics::{
         Model,
         membrane::{VertexRow, contact_geometry::closest, mesh::Mesh},
-        scratch::{CandidateScratch, GrainRow, Neighbours},
+        scratch::{CandidateScratch, GrainRow, Neighbors},
     },
 };
 
-/// Finds the closest points of all candidates that are awake.
-pub(super) fn look(
+/// Finds the closest points of all awake candidates.
+pub(super) fn find_closest(
     model: &Model,
-    lists: &mut Neighbours,
+    lists: &mut Neighbors,
     (rows, vertices): (&[GrainRow], &[VertexRow]),
     scratch: &mut CandidateScratch,
 ) {
-    wake(lists, scratch);
+    list_awake(lists, scratch);
     let CandidateScratch { awake, found, .. } = scratch;
     found.resize(awake.len(), [0.0; 8]);
-    let view = View { mesh: &model.membrane.mesh, lists, rows, vertices };
+    let input = Input { mesh: &model.membrane.mesh, lists, rows, vertices };
     parallel::for_parts_of_two(found, awake, |_, found, awake| {
-        lanes::widest(Pass { view: &view, awake, found });
+        lanes::widest(Pass { input: &input, awake, found });
     });
     for (&k, found) in scratch.awake.iter().zip(&scratch.found) {
-        let radius = rows[lists.candidate_grains[k as usize] as usize].place[3];
+        let radius = rows[lists.candidate_grains[k as usize] as usize].position_radius[3];
         if found[0] >= radius * radius {
-            // Slightly less, because sums are rounded.
+            // Slightly less than the gap, because sums are rounded.
             lists.wake_at[k as usize] = lists.travel + (found[0].sqrt() - radius) * (1.0 - 1e-9);
         }
     }
 }
 
-/// Lists the candidates that are awake, grain by grain.
-fn wake(lists: &Neighbours, scratch: &mut CandidateScratch) {
+/// Lists the awake candidates, grain by grain.
+fn list_awake(lists: &Neighbors, scratch: &mut CandidateScratch) {
     let CandidateScratch { awake, awake_starts, .. } = scratch;
     awake.clear();
     awake.resize(lists.triangles.len(), 0);
@@ -67,17 +67,17 @@ fn is_more(a: Real, b: Real) -> bool {
     a > b
 }
 
-/// What the pass reads.
-struct View<'a> {
+/// Input of the pass.
+struct Input<'a> {
     mesh: &'a Mesh,
-    lists: &'a Neighbours,
+    lists: &'a Neighbors,
     rows: &'a [GrainRow],
     vertices: &'a [VertexRow],
 }
 
-/// Closest points of candidates.
+/// The pass over the awake candidates.
 struct Pass<'a> {
-    view: &'a View<'a>,
+    input: &'a Input<'a>,
     awake: &'a [u32],
     found: &'a mut [[Real; 8]],
 }
@@ -85,28 +85,28 @@ struct Pass<'a> {
 impl Kernel for Pass<'_> {
     #[inline(always)]
     fn run<L: Lanes>(self) {
-        let Self { view, awake, found } = self;
+        let Self { input, awake, found } = self;
         let n_whole = awake.len() / L::N * L::N;
         let (awake, last_awake) = awake.split_at(n_whole);
         let (found, last_found) = found.split_at_mut(n_whole);
         for (awake, found) in awake.chunks_exact(L::N).zip(found.chunks_exact_mut(L::N)) {
-            view.block::<L>(awake, found);
+            input.block::<L>(awake, found);
         }
         for (awake, found) in last_awake.chunks_exact(1).zip(last_found.chunks_exact_mut(1)) {
-            view.block::<f64>(awake, found);
+            input.block::<f64>(awake, found);
         }
     }
 }
 
-impl View<'_> {
+impl Input<'_> {
     #[inline(always)]
     fn block<L: Lanes>(&self, awake: &[u32], found: &mut [[Real; 8]]) {
         let grain = |lane: usize| {
-            &self.rows[self.lists.candidate_grains[awake[lane] as usize] as usize].place
+            &self.rows[self.lists.candidate_grains[awake[lane] as usize] as usize].position_radius
         };
         let triangle =
             |lane: usize| &self.mesh.triangles[self.lists.triangles[awake[lane] as usize] as usize];
-        let corner = |lane: usize, k: usize| &self.vertices[triangle(lane)[k] as usize].place;
+        let corner = |lane: usize, k: usize| &self.vertices[triangle(lane)[k] as usize].position;
         let vector = |[x, y, z, _]: [L; 4]| Vector::new(x, y, z);
         let corners = [
             vector(L::from_rows_of_4(|lane| corner(lane, 0))),

@@ -1,7 +1,7 @@
 //! Contacts between grains: the pair pass.
 //!
-//! In a periodic box a pair meets by its closest image. Whether there is a box, and which law acts, is
-//! decided once for all pairs: open systems do not pay for a box, nor one law for another.
+//! In a periodic box a pair interacts through its closest images. Whether there is a box, and which law acts, is
+//! decided once for all pairs, so open systems do not pay for periodic ones, nor one law for another.
 
 use crate::{
     base::{
@@ -11,13 +11,13 @@ use crate::{
     },
     physics::{
         Model,
-        law::{ContactLaw, ContactState, History, Memory, UnderLaw},
+        law::{ContactLaw, ContactState, History, Memory, WithLaw},
         scratch::{ContactFlags, GrainRow, PairForce, Scratch},
         state::{Grains, Springs},
     },
 };
 
-/// Forces of all pairs `ids`; carries what they remember on by one substep.
+/// Computes the forces of all pairs `ids`, and updates their history by one substep.
 pub fn forces(
     model: &Model,
     grains: &Grains,
@@ -29,13 +29,13 @@ pub fn forces(
     model.grain_law.with(AllPairs { model, ids, springs, scratch });
 }
 
-/// Gathers what pairs need of each grain in one place in memory.
+/// Gathers the data of each grain that pairs read in one row.
 fn gather(grains: &Grains, rows: &mut Vec<GrainRow>) {
     rows.resize(grains.len(), GrainRow::default());
     parallel::for_each(rows, |i, row| {
         let (position, velocity, angular_velocity) =
             (&grains.positions[i], &grains.velocities[i], &grains.angular_velocities[i]);
-        row.place = [position.x, position.y, position.z, grains.radii[i]];
+        row.position_radius = [position.x, position.y, position.z, grains.radii[i]];
         row.velocity = [velocity.x, velocity.y, velocity.z, 0.0];
         row.angular_velocity = [angular_velocity.x, angular_velocity.y, angular_velocity.z, 0.0];
     });
@@ -49,16 +49,16 @@ struct AllPairs<'a> {
     scratch: &'a mut Scratch,
 }
 
-impl UnderLaw for AllPairs<'_> {
+impl WithLaw for AllPairs<'_> {
     type Output = ();
 
     fn run<C: ContactLaw>(self, law: &C) {
         let Self { model, ids, springs, scratch } = self;
-        let Scratch { neighbours, grain_rows, pair_forces, pair_flags, .. } = scratch;
+        let Scratch { neighbors, grain_rows, pair_forces, pair_flags, .. } = scratch;
         pair_forces.resize(ids.len(), PairForce::default());
         pair_flags.resize(ids.len(), ContactFlags::NONE);
         let memories = C::Memory::rows(&mut springs.pair_memories, ids.len());
-        let (lists, rows) = (&*neighbours, &**grain_rows);
+        let (lists, rows) = (&*neighbors, &**grain_rows);
         let columns = (&mut **pair_forces, &mut **pair_flags, &mut *springs.pairs, memories);
         parallel::for_parts_of_four(columns, |start, forces, flags, springs, memories| {
             let here = start..start + forces.len();
@@ -78,19 +78,19 @@ impl UnderLaw for AllPairs<'_> {
     }
 }
 
-/// Pairs and their grains.
+/// Input of a pass: pairs and their grains.
 struct Pairs<'a, C> {
     model: &'a Model,
     law: &'a C,
     rows: &'a [GrainRow],
     ids: &'a [[u32; 2]],
-    /// R* (m).
+    /// Effective radii R* (m).
     radii: &'a [Real],
-    /// m* (kg).
+    /// Effective masses m* (kg).
     masses: &'a [Real],
 }
 
-/// What a pass over pairs writes.
+/// Output of a pass over pairs.
 struct Results<'a, M> {
     /// Rows of `PairForce`.
     forces: &'a mut [[f64; 8]],
@@ -100,7 +100,7 @@ struct Results<'a, M> {
     memories: &'a mut [M],
 }
 
-/// A pass over pairs.
+/// A pass over a range of pairs.
 struct Pass<'a, C: ContactLaw> {
     pairs: Pairs<'a, C>,
     results: Results<'a, C::Memory>,
@@ -127,13 +127,13 @@ impl<C: ContactLaw> Kernel for Pass<'_, C> {
     }
 }
 
-/// Which image of a partner is meant.
+/// Selects the image of a grain that a pair interacts with.
 trait Image {
-    /// The vector between two centers (m), to the image meant.
+    /// Maps the vector between two centers (m) to the one between the selected images.
     fn separation<L: Lanes>(&self, separation: Vector<L>) -> Vector<L>;
 }
 
-/// No images.
+/// An open system: there are no images.
 struct Open;
 
 impl Image for Open {
@@ -143,7 +143,7 @@ impl Image for Open {
     }
 }
 
-/// Images in a box with these edges (m).
+/// A periodic box with these edges (m): the closest image is selected.
 struct Periodic<'a>(&'a Vec3);
 
 impl Image for Periodic<'_> {
@@ -155,12 +155,13 @@ impl Image for Periodic<'_> {
     }
 }
 
-/// The shortest of the vectors `separation` (m) between the images of two points.
+/// The shortest vector (m) between images of two points `separation` (m) apart, in a box with edges `period`
+/// (m).
 pub fn closest_image(separation: Vec3, period: &Vec3) -> Vec3 {
     Periodic(period).separation(Vector::from(separation)).into()
 }
 
-/// What a block of pairs gives.
+/// Results of a block of pairs.
 struct Block<L: Lanes> {
     /// Columns of `PairForce`.
     force: [L; 8],
@@ -168,16 +169,16 @@ struct Block<L: Lanes> {
     slides: L::Mask,
 }
 
-/// Spreads one bit per pair over one byte per pair, which is 0 or 1.
+/// Expands one bit per pair to one byte per pair, 0 or 1.
 #[inline(always)]
 fn spread(bits: u8) -> u64 {
-    // Byte k gets bit k in its place; then any bit of a byte becomes its lowest.
+    // Byte k keeps bit k at its position; then the set bit of each byte moves to its lowest bit.
     let in_place = (u64::from(bits) * 0x0101_0101_0101_0101) & 0x8040_2010_0804_0201;
     (in_place + 0x7f7f_7f7f_7f7f_7f7f) >> 7 & 0x0101_0101_0101_0101
 }
 
 impl<C: ContactLaw> Pairs<'_, C> {
-    /// The pairs of a range, `L::N` at a time.
+    /// Evaluates the pairs of a range, `L::N` at a time.
     #[inline(always)]
     fn blocks<L: Lanes, I: Image>(
         &self,
@@ -207,7 +208,7 @@ impl<C: ContactLaw> Pairs<'_, C> {
         }
     }
 
-    /// The pairs from `k` on.
+    /// Evaluates `L::N` pairs from index `k` on.
     #[inline(always)]
     fn block<L: Lanes, I: Image>(
         &self,
@@ -217,8 +218,8 @@ impl<C: ContactLaw> Pairs<'_, C> {
     ) -> Block<L> {
         let ids = &self.ids[k..k + L::N];
         let grain = |lane: usize, side: usize| &self.rows[ids[lane][side] as usize];
-        let [x_i, y_i, z_i, radius_i] = L::from_rows_of_4(|lane| &grain(lane, 0).place);
-        let [x_j, y_j, z_j, radius_j] = L::from_rows_of_4(|lane| &grain(lane, 1).place);
+        let [x_i, y_i, z_i, radius_i] = L::from_rows_of_4(|lane| &grain(lane, 0).position_radius);
+        let [x_j, y_j, z_j, radius_j] = L::from_rows_of_4(|lane| &grain(lane, 1).position_radius);
         let separation = image.separation(Vector::new(x_i, y_i, z_i) - Vector::new(x_j, y_j, z_j));
         let reach = radius_i + radius_j;
         let distance_squared = separation.dot(separation);
@@ -241,13 +242,13 @@ impl<C: ContactLaw> Pairs<'_, C> {
         // Levers from the centers to the contact point: −(R_i − ξ/2) n and +(R_j − ξ/2) n.
         let half = overlap / L::splat(2.0);
         let vector = |[x, y, z, _]: [L; 4]| Vector::new(x, y, z);
-        let turning = vector(L::from_rows_of_4(|lane| &grain(lane, 0).angular_velocity))
+        let rotation = vector(L::from_rows_of_4(|lane| &grain(lane, 0).angular_velocity))
             * (radius_i - half)
             + vector(L::from_rows_of_4(|lane| &grain(lane, 1).angular_velocity))
                 * (radius_j - half);
         let velocity = vector(L::from_rows_of_4(|lane| &grain(lane, 0).velocity))
             - vector(L::from_rows_of_4(|lane| &grain(lane, 1).velocity))
-            - turning.cross(normal);
+            - rotation.cross(normal);
         let radius = L::load(&self.radii[k..]);
         let mass = L::load(&self.masses[k..]);
         let contact = ContactState { touches, overlap, normal, velocity, radius, mass };

@@ -1,16 +1,33 @@
 //! Contacts between grains and the membrane's triangles.
 //!
-//! A grain touches the membrane where its distance to the membrane has a local minimum. On one
-//! triangle that point lies on the face, on an edge or on a vertex; on an edge or a vertex it
-//! counts only if it is the closest point of all triangles that share it, and then once. That is
-//! the rule of priorities (face before edge before vertex) of Götz (2024), section 3.2.3, stated
-//! by depth, so that force, direction and point are continuous when a grain moves over an edge.
+//! ```text
+//! ξ = R − |x − x_c|,   n = (x − x_c) / |x − x_c|,   R* = R,   m* = Σ_k w_k m_k
+//! b = x_c − x,         v = ẋ + ω × b − Σ_k w_k v_k
+//! force on the grain c F,   on vertex k  −c w_k F,   torque on the grain c b × F
+//! ```
 //!
-//! In the valley between two triangles both faces can hold a local minimum; `sharing` says how they share
-//! the force.
+//! | symbol | meaning | unit |
+//! |---|---|---|
+//! | x, R, ω | center, radius and angular velocity of the grain | m, m, rad/s |
+//! | x_c, w_k | closest point of the triangle and its barycentric weights | m, – |
+//! | v_k, m_k | velocity and mass of the triangle's vertices | m/s, kg |
+//! | ξ, n, v | overlap, normal from membrane to grain, relative velocity | m, –, m/s |
+//! | F | force of the contact law | N |
+//! | c | share of the force, see `sharing`; 1 for a single contact | – |
+//!
+//! A grain touches the membrane where its distance to the membrane has a local minimum. On one
+//! triangle the minimum lies on the face, on an edge or on a vertex. On an edge or a vertex it
+//! counts only if it is the closest point of all triangles that share the edge or vertex, and it
+//! counts once. This is the priority rule (face before edge before vertex) of Götz (2024), section
+//! 3.2.3, expressed by depth, so that force, direction and contact point are continuous when a
+//! grain moves over an edge. In a valley between two triangles, both faces can have a local minimum;
+//! `sharing` defines how they share the force.
 //!
 //! The friction spring belongs to the patch, not to the triangle: a patch inherits the spring of the patch
-//! whose normal was closest to its own.
+//! with the most similar normal.
+//!
+//! Source: Götz (2024), section 3.2.3, except for the shares. Valid while the grain overlaps at most
+//! `N_TOUCHED` triangles and has at most `N_PATCHES` contacts, and ξ < 0.1 R as for the contact law.
 
 use arrayvec::ArrayVec;
 
@@ -25,15 +42,15 @@ use crate::{
         law::{self, ContactState},
         membrane::{MembraneState, VertexRow, contact_geometry::Feature},
         scratch::{
-            CandidateScratch, ContactFlags, GrainRow, Neighbours, PatchForce, PatchForces, Scratch,
+            CandidateScratch, ContactFlags, GrainRow, Neighbors, PatchForce, PatchForces, Scratch,
         },
         state::{Grains, N_PATCHES, Patch, Patches},
     },
 };
 
-/// Cosine of the angle to its former normal within which a patch is recognised (45°).
+/// A patch inherits a spring if the cosine of the angle between the normals is larger than this (45°).
 const SAME_HISTORY: Real = 0.7;
-/// Squared distances that differ by less than this share are equal.
+/// Relative difference below which squared distances count as equal.
 const EQUAL: Real = 1e-9;
 
 /// A triangle within reach of a grain.
@@ -46,7 +63,7 @@ struct Touched {
     index: usize,
 }
 
-/// Where a grain touches the membrane.
+/// A contact of a grain with the membrane.
 struct Contact {
     triangle: u32,
     weights: [Real; 3],
@@ -54,8 +71,8 @@ struct Contact {
     overlap: Real,
 }
 
-/// Forces of the membrane on all grains near it; carries their springs on by one substep. The rows of grains
-/// and vertices in `scratch` must be those of the present positions. Cohesion does not act here.
+/// Computes the forces of the membrane on all grains near it, and updates their springs by one substep. The rows
+/// of grains and vertices in `scratch` must hold the current positions. Cohesion does not act here.
 pub fn forces(
     model: &Model,
     grains: &Grains,
@@ -63,13 +80,13 @@ pub fn forces(
     springs: &mut [Patches],
     scratch: &mut Scratch,
 ) {
-    let Scratch { neighbours: lists, candidates, patch_forces, .. } = scratch;
+    let Scratch { neighbors: lists, candidates, patch_forces, .. } = scratch;
     patch_forces.resize(springs.len(), PatchForces::NONE);
     if lists.membrane_grains.is_empty() {
         return;
     }
     let rows: (&[GrainRow], &[VertexRow]) = (&scratch.grain_rows, &scratch.membrane.vertices);
-    candidates::look(model, lists, rows, candidates);
+    candidates::find_closest(model, lists, rows, candidates);
     let (lists, candidates) = (&*lists, &*candidates);
     let listed = &lists.membrane_grains;
     parallel::for_listed_of_two(listed, patch_forces, springs, |s, force, patches| {
@@ -77,7 +94,7 @@ pub fn forces(
         let mut touched = ArrayVec::new();
         touching(grains.radii[i], lists, candidates, s, &mut touched);
         let grain = Grain { model, grains, membrane, i, found: &candidates.found };
-        grain.meet(&touched, patches, force);
+        grain.update(&touched, patches, force);
     });
 }
 
@@ -96,14 +113,14 @@ impl Grain<'_> {
         self.grains.radii[self.i]
     }
 
-    /// From the closest point to the center (m).
+    /// Vector from the closest point to the grain's center (m).
     fn arm(&self, contact: &Touched) -> Vec3 {
         let [.., x, y, z, _] = self.found[contact.index];
         Vec3::new(x, y, z)
     }
 
-    /// Forces of the patches among the triangles that are touched.
-    fn meet(&self, touched: &[Touched], patches: &mut Patches, result: &mut PatchForces) {
+    /// Computes the forces of all patches among the touched triangles.
+    fn update(&self, touched: &[Touched], patches: &mut Patches, result: &mut PatchForces) {
         let mut minima = ArrayVec::<Minimum, N_PATCHES>::new();
         for (index, contact) in touched.iter().enumerate() {
             if !minima.is_full() && is_local_minimum(self.model, contact, touched) {
@@ -121,8 +138,8 @@ impl Grain<'_> {
         patches.n = minima.len();
         result.n = minima.len();
         result.torque = Vec3::zeros();
-        // The deepest come first. Only the nearest point decides on which side the grain is: a fold behind it
-        // may have the grain on its outer side.
+        // The deepest contact comes first. Only the closest point decides on which side the grain is: a fold
+        // behind it may have the grain on its outer side.
         let nearest = minima.first().map(|it| &touched[it.index]);
         result.is_outside = nearest.is_some_and(|it| self.is_outside(it, &self.arm(it), touched));
         for (slot, minimum) in minima.iter().enumerate() {
@@ -134,9 +151,9 @@ impl Grain<'_> {
                 from_membrane: self.arm(it),
                 overlap: minimum.overlap,
             };
-            let spring = spring_of(&before, &minimum.normal);
+            let spring = inherited_spring(&before, &minimum.normal);
             let mut patch = Patch { spring, normal: minimum.normal };
-            let (force, torque) = self.of_patch(&contact, &mut patch);
+            let (force, torque) = self.patch_force(&contact, &mut patch);
             result.contacts[slot] =
                 PatchForce { force: force.force * share, normal: force.normal * share, ..force };
             result.torque += torque * share;
@@ -144,7 +161,7 @@ impl Grain<'_> {
         }
     }
 
-    /// A contact as a local minimum; `index` is its index among those that are touched.
+    /// The local minimum of a contact; `index` is its index in the list of touched triangles.
     fn minimum(&self, index: usize, contact: &Touched) -> Minimum {
         let distance = contact.distance_squared.sqrt();
         Minimum {
@@ -155,13 +172,13 @@ impl Grain<'_> {
         }
     }
 
-    /// Adds the edges between the triangles that the grain overlaps.
+    /// Adds the edges between touched triangles to `saddles`.
     fn saddles(&self, touched: &[Touched], saddles: &mut Saddles) {
         let mesh = &self.model.membrane.mesh;
         let mut edges = [[0_u8; 3]; N_TOUCHED * (N_TOUCHED - 1) / 2];
         let mut n_edges = 0;
         for (index, contact) in touched.iter().enumerate() {
-            let across = &mesh.neighbours_of_triangle[contact.triangle as usize];
+            let across = &mesh.neighbors_of_triangle[contact.triangle as usize];
             for (later, other) in touched.iter().enumerate().skip(index + 1) {
                 let is_across = across.map(|it| it == other.triangle);
                 // Branch-free: whether two touched triangles are neighbors is not predictable.
@@ -176,7 +193,7 @@ impl Grain<'_> {
         }
     }
 
-    /// Squared distance of the grain's center from an edge of a triangle that it touches (m²).
+    /// Squared distance of the grain's center from an edge of a touched triangle (m²).
     fn height_squared(&self, contact: &Touched, edge: u8) -> Real {
         if contact.feature == Feature::Edge(edge) {
             return contact.distance_squared;
@@ -190,8 +207,8 @@ impl Grain<'_> {
         (arm - side * share).norm_squared()
     }
 
-    /// Force on the grain, and torque (N m).
-    fn of_patch(&self, contact: &Contact, patch: &mut Patch) -> (PatchForce, Vec3) {
+    /// Force of a patch on the grain, and its torque (N m).
+    fn patch_force(&self, contact: &Contact, patch: &mut Patch) -> (PatchForce, Vec3) {
         let Self { model, grains, membrane, i, .. } = *self;
         let vertices = model.membrane.mesh.triangles[contact.triangle as usize];
         let mut membrane_velocity = Vec3::zeros();
@@ -200,7 +217,7 @@ impl Grain<'_> {
             membrane_velocity += membrane.velocities[vertex] * weight;
             mass += model.membrane.masses[vertex] * weight;
         }
-        // The contact point lies on the membrane, so that both sides have the same lever.
+        // The contact point lies on the membrane, so both sides have the same lever arm.
         let arm = -contact.from_membrane;
         let velocity =
             grains.velocities[i] + grains.angular_velocities[i].cross(&arm) - membrane_velocity;
@@ -225,18 +242,17 @@ impl Grain<'_> {
         (result, arm.cross(&force.tangential))
     }
 
-    /// True if the center is on the outer side of the triangles that share the feature it touches. All
-    /// of them must agree, since around a saddle's vertex some always see the center on their outer
-    /// side.
+    /// True if the center is on the outer side of all triangles that share the touched feature. All must
+    /// agree, because around the vertex of a saddle surface the center is always on the outer side of some.
     fn is_outside(&self, contact: &Touched, from_membrane: &Vec3, touched: &[Touched]) -> bool {
         let triangles = &self.model.membrane.mesh.triangles;
-        let sees_outside = |triangle: u32| {
+        let is_on_outer_side = |triangle: u32| {
             let [a, b, c] =
                 triangles[triangle as usize].map(|vertex| self.membrane.positions[vertex as usize]);
             (b - a).cross(&(c - a)).dot(from_membrane) > 0.0
         };
-        // Most contacts are inside; their own triangle is enough to tell.
-        if !sees_outside(contact.triangle) {
+        // Most contacts are inside, and their own triangle suffices to decide that.
+        if !is_on_outer_side(contact.triangle) {
             return false;
         }
         let shared = contact.shared_vertices(self.model);
@@ -247,14 +263,14 @@ impl Grain<'_> {
                 contact.feature != Feature::Face
                     && shared.iter().flatten().all(|vertex| theirs.contains(vertex))
             })
-            .all(|other| sees_outside(other.triangle))
+            .all(|other| is_on_outer_side(other.triangle))
     }
 }
 
-/// Triangles that the `s`-th grain near the membrane, of `radius` (m), overlaps, deepest first.
+/// Lists the triangles that the `s`-th grain near the membrane, with `radius` (m), overlaps; the deepest first.
 fn touching(
     radius: Real,
-    lists: &Neighbours,
+    lists: &Neighbors,
     candidates: &CandidateScratch,
     s: usize,
     touched: &mut ArrayVec<Touched, N_TOUCHED>,
@@ -277,7 +293,7 @@ fn touching(
             }
             touched.pop();
         }
-        // From the end on, those that are less deep make room.
+        // Insertion sort from the end.
         touched.push(contact);
         let mut index = touched.len() - 1;
         while index > 0 && is_deeper(&touched[index - 1]) {
@@ -288,54 +304,54 @@ fn touching(
     }
 }
 
-/// True if no triangle that shares the contact's edge or vertex has a closer point, or holds the
-/// same point with higher priority.
+/// True if no triangle that shares the contact's edge or vertex has a closer point, or the same point
+/// with higher priority.
 fn is_local_minimum(model: &Model, contact: &Touched, touched: &[Touched]) -> bool {
     let mesh = &model.membrane.mesh;
     let triangle = contact.triangle as usize;
     match contact.feature {
         Feature::Face => true,
         Feature::Edge(k) => {
-            let neighbour = mesh.neighbours_of_triangle[triangle][usize::from(k)];
-            let other = touched.iter().find(|it| it.triangle == neighbour);
-            !other.is_some_and(|other| other.beats(contact))
+            let neighbor = mesh.neighbors_of_triangle[triangle][usize::from(k)];
+            let other = touched.iter().find(|it| it.triangle == neighbor);
+            !other.is_some_and(|other| other.precedes(contact))
         }
         Feature::Vertex(k) => {
             let vertex = mesh.triangles[triangle][usize::from(k)];
             !touched.iter().any(|other| {
                 mesh.triangles[other.triangle as usize].contains(&vertex)
                     && other.triangle != contact.triangle
-                    && other.beats(contact)
+                    && other.precedes(contact)
             })
         }
     }
 }
 
-/// The spring of the patch that had nearly this normal, if there was one.
-fn spring_of(before: &[Patch], normal: &Vec3) -> Vec3 {
+/// The spring of the former patch with the most similar normal, zero if none is similar.
+fn inherited_spring(before: &[Patch], normal: &Vec3) -> Vec3 {
     let mut best = (SAME_HISTORY, Vec3::zeros());
     for patch in before {
-        let likeness = patch.normal.dot(normal);
-        if likeness > best.0 {
-            best = (likeness, patch.spring);
+        let similarity = patch.normal.dot(normal);
+        if similarity > best.0 {
+            best = (similarity, patch.spring);
         }
     }
     best.1
 }
 
 impl Touched {
-    /// True if this contact of a neighbour is closer than `other`, or holds the same point with
-    /// higher priority.
-    fn beats(&self, other: &Self) -> bool {
+    /// True if this contact is closer than `other`, the contact of an adjacent triangle, or is the same point
+    /// with higher priority.
+    fn precedes(&self, other: &Self) -> bool {
         let difference = self.distance_squared - other.distance_squared;
         let tolerance = EQUAL * other.distance_squared;
-        let (mine, yours) = (self.feature.priority(), other.feature.priority());
+        let (own, others) = (self.feature.priority(), other.feature.priority());
         difference < -tolerance
             || (difference <= tolerance
-                && (mine > yours || (mine == yours && self.triangle < other.triangle)))
+                && (own > others || (own == others && self.triangle < other.triangle)))
     }
 
-    /// The ends of the edge, or the vertex, that the contact lies on; none on a face.
+    /// The ends of the edge, or the vertex, on which the contact lies; none on a face.
     fn shared_vertices(&self, model: &Model) -> [Option<u32>; 2] {
         let corners = model.membrane.mesh.triangles[self.triangle as usize];
         match self.feature {

@@ -1,14 +1,18 @@
-//! Contact forces. One pass writes the force of every listed contact; then every grain, vertex, wall and body
-//! sums its own contacts in a fixed order. There are no atomics, so the bits do not depend on the number of
-//! threads.
+//! Contact forces. Passes compute the force of every listed contact. Then the forces on every grain, vertex, wall
+//! and body are summed in a fixed order, without atomics, so the bits do not depend on the number of threads.
 
 pub mod bodies;
-mod candidates; // where a grain is closest to the membrane
+mod candidates; // closest points of the membrane's triangles
 pub mod grains;
 pub mod membrane;
-mod sharing; // one force among several places
+#[cfg(test)]
+mod body_tests; // grains on bodies
+pub mod surfaces; // grains on triangulated walls and bodies
+mod sharing; // how several contacts share the force
 pub mod spheres;
 pub mod sums;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod triangle_tests; // grains on walls of triangles
 pub mod walls;

@@ -1,5 +1,5 @@
-//! Contacts between grains and spheres around the membrane's vertices: the classic mass-spring
-//! membrane, which the triangles are compared with.
+//! Contacts between grains and spheres around the membrane's vertices: the classic mass–spring
+//! membrane, for comparison with contacts on triangles.
 //!
 //! ```text
 //! ξ = R + r − |x − x_v|,   n = (x − x_v) / |x − x_v|,   R* = R r / (R + r),   m* = m m_v / (m + m_v)
@@ -8,19 +8,22 @@
 //!
 //! | symbol | meaning | unit |
 //! |---|---|---|
-//! | R, m, x, ω | radius, mass, center and spin of the grain | m, kg, m, rad/s |
+//! | R, m, x, ω | radius, mass, center and angular velocity of the grain | m, kg, m, rad/s |
 //! | r, m_v, x_v | radius of the spheres, mass and position of the vertex | m, kg, m |
 //! | b | from the grain's center to the contact point | m |
+//! | ξ, n, v | overlap, normal from sphere to grain, relative velocity | m, –, m/s |
+//! | R*, m* | effective radius and mass | m, kg |
+//! | F | force of the contact law on the grain | N |
 //!
 //! Source: Götz (2024), section 3.3, "MFS Partikel", after de Bono, McDowell & Wanatowski (2012);
-//! springs, hinges and the air's load are those of the triangle membrane. A vertex has a position
-//! and no orientation, so its sphere does not turn: the couple −(r − ξ/2) n × F, which would turn
-//! it, is taken up where it is. The source does not say whether its spheres turn; a sphere that
-//! did would roll off under the grain and hand on hardly any friction. Spheres do not touch each
-//! other: the springs set how far apart they are.
+//! springs, hinges and pressure are those of the triangle membrane. A vertex has a position but no
+//! orientation, so its sphere does not rotate: the couple −(r − ξ/2) n × F, which would rotate it,
+//! has no effect. The source does not specify whether spheres rotate; a rotating sphere would roll
+//! under the grain and transmit almost no friction. Spheres do not touch each other: the springs
+//! determine their distances.
 //!
-//! Valid as long as the gaps between the spheres are smaller than the grains. What slips through is
-//! found by `neighbours::crossings`.
+//! Valid while the gaps between the spheres are smaller than the grains. Grains that slip through
+//! are detected by `neighbors::crossings`.
 
 use crate::{
     base::{Real, Vec3, parallel},
@@ -33,7 +36,7 @@ use crate::{
     },
 };
 
-/// Forces of all vertex spheres on all grains; carries their springs on by one substep.
+/// Computes the forces of all listed vertex spheres on grains, and updates their springs by one substep.
 pub fn forces(
     model: &Model,
     grains: &Grains,
@@ -52,7 +55,7 @@ pub fn forces(
     });
 }
 
-/// A grain and a sphere that it may touch.
+/// A grain and a vertex sphere that it may touch.
 struct Pair<'a> {
     model: &'a Model,
     grains: &'a Grains,

@@ -1,4 +1,4 @@
-//! A law with cohesion, range and a memory, through the passes over pairs and walls.
+//! Tests of the passes over pairs and walls with a law that has cohesion, range and history.
 
 use crate::{
     base::{
@@ -38,8 +38,8 @@ fn system(law: PairLaw, positions: &[Vec3], walls: &[(WallShape, Vec3)]) -> Syst
     builder.build().unwrap()
 }
 
-/// True if a grain of weight m g still hangs after 60 ms on what pulls with `pull_over_weight` m g: on a
-/// grain that is held, or on a ceiling.
+/// True if a grain of weight m g is still hanging after 60 ms from a fixed grain, or from a ceiling, that
+/// attracts it with the force `pull_over_weight` m g.
 fn hangs(on_ceiling: bool, pull_over_weight: Real) -> bool {
     let law = law(pull_over_weight * MASS * GRAVITY);
     let touching = Vec3::z() * (-(2.0 - 1e-9) * RADIUS);
@@ -62,7 +62,7 @@ fn hangs(on_ceiling: bool, pull_over_weight: Real) -> bool {
 }
 
 #[test]
-fn a_hanging_grain_falls_where_its_weight_exceeds_the_pull() {
+fn a_hanging_grain_falls_if_its_weight_exceeds_the_cohesion() {
     // Oracle: statics, c = m g, for a pair and at a wall; within 1 %.
     for on_ceiling in [false, true] {
         assert!(hangs(on_ceiling, 1.01), "on ceiling: {on_ceiling}");
@@ -71,8 +71,8 @@ fn a_hanging_grain_falls_where_its_weight_exceeds_the_pull() {
 }
 
 #[test]
-fn lists_reach_as_far_as_the_law() {
-    // Oracle: contact plus range plus skin, by hand, of a pair and of a wall.
+fn lists_include_the_range_of_the_law() {
+    // Oracle: contact plus range plus skin, by hand, for a pair and for a wall.
     let floor = || (WallShape::Plane { normal: Vec3::z() }, Vec3::zeros());
     for (share, is_listed) in [(0.999, true), (1.001, false)] {
         let gap = share * (RUPTURE + 0.25 * RADIUS);
@@ -87,8 +87,8 @@ fn lists_reach_as_far_as_the_law() {
 }
 
 #[test]
-fn bridges_outlive_new_lists() {
-    // Oracle: the pull itself, of a pair and at a wall, after the lists were built anew.
+fn bridges_survive_a_rebuild_of_the_lists() {
+    // Oracle: the cohesive force itself, for a pair and a wall, after a rebuild of the lists.
     let pull = 1e-3;
     let floor = (WallShape::Plane { normal: Vec3::z() }, Vec3::zeros());
     let low = Vec3::z() * (RADIUS * (1.0 - 1e-4));
@@ -98,9 +98,9 @@ fn bridges_outlive_new_lists() {
     system.state.grains.positions =
         vec![Vec3::z() * (RADIUS + gap), Vec3::z() * (3.0 * RADIUS + 2.0 * gap)];
     system.state.grains.velocities.fill(Vec3::zeros());
-    system.scratch.neighbours.is_built = false;
+    system.scratch.neighbors.is_built = false;
     system.step();
-    assert_eq!(system.scratch.neighbours.n_builds, 2);
+    assert_eq!(system.scratch.neighbors.n_builds, 2);
     assert_eq!(system.scratch.pair_forces[0].normal.to_bits(), (-pull).to_bits());
     assert_eq!(system.scratch.wall_forces[0].normal.to_bits(), (-pull).to_bits());
     assert!(
@@ -108,13 +108,13 @@ fn bridges_outlive_new_lists() {
     );
 }
 
-/// A cloud of grains that collide and stick in a box of six walls: how it ends, how often lists were built,
-/// and how many bridges span a gap.
+/// Simulates a cloud of grains that collide and stick in a box of six walls. Returns the digest at the end, the
+/// number of builds of the lists, and the number of bridges across a gap.
 fn cloud(skin_share: Real) -> (u64, u64, usize) {
     let mut random = Random::new(7, Stream::Position);
     let edge = 12.0 * RADIUS;
-    let spot = |k: u32| Vec3::from([k % 5, k / 5 % 5, k / 25].map(Real::from));
-    let positions: Vec<Vec3> = (0..75).map(|k| (spot(k) * 2.3).add_scalar(1.2) * RADIUS).collect();
+    let cell = |k: u32| Vec3::from([k % 5, k / 5 % 5, k / 25].map(Real::from));
+    let positions: Vec<Vec3> = (0..75).map(|k| (cell(k) * 2.3).add_scalar(1.2) * RADIUS).collect();
     let walls: Vec<(WallShape, Vec3)> = (0..6)
         .map(|k| {
             let axis = Vec3::ith(k % 3, 1.0);
@@ -134,14 +134,14 @@ fn cloud(skin_share: Real) -> (u64, u64, usize) {
     system.state.digest(&mut digest);
     let bridges = system.scratch.touching_pairs(&system.state).filter(|(it, _)| it.overlap < 0.0);
     let n_bridges = bridges.count();
-    (digest.finish(), system.scratch.neighbours.n_builds, n_bridges)
+    (digest.finish(), system.scratch.neighbors.n_builds, n_bridges)
 }
 
 #[test]
-fn neither_lists_nor_lanes_change_a_bit_under_cohesion() {
-    // Oracle: the same cloud with other lists, and with other registers.
+fn lists_and_lanes_do_not_change_a_bit_with_cohesion() {
+    // Oracle: the same cloud with other lists, and with registers of other widths.
     let (digest, n_builds, n_bridges) = cloud(0.25);
-    assert!(n_bridges > 0, "some bridges span a gap");
+    assert!(n_bridges > 0, "no bridge spans a gap");
     let (of_thin_lists, n_more_builds, _) = cloud(0.05);
     assert!(n_more_builds > n_builds, "{n_more_builds} after {n_builds}");
     assert_eq!(of_thin_lists, digest);

@@ -1,18 +1,32 @@
 //! Contacts between grains and walls.
+//!
+//! ```text
+//! ξ = R − d,   b = −(R − ξ/2) n,   v = ẋ + ω × b − v_wall,   R* = R,   m* = m
+//! ```
+//!
+//! | symbol | meaning | unit |
+//! |---|---|---|
+//! | R, m, ẋ, ω | radius, mass, velocity and angular velocity of the grain | m, kg, m/s, rad/s |
+//! | d, n | distance of the wall from the grain's center, unit normal towards the grain | m, – |
+//! | ξ, b | overlap, vector from the center to the contact point | m |
+//! | v, v_wall | relative velocity, velocity of the wall at the contact point | m/s |
+//! | R*, m* | effective radius and mass for the contact law | m, kg |
+//!
+//! Valid while the wall is flat compared with the grain: its curvature does not change R*.
 
 use crate::{
-    base::{Real, lanes::Vector},
+    base::{Real, Vec3, lanes::Vector},
     physics::{
         Model,
-        boundary::{body::BodyMotion, wall::Placed},
-        law::{ContactLaw, ContactState, History, Memory, ScalarForce, UnderLaw},
+        boundary::{body::BodyMotion, wall::PlacedSurface},
+        law::{ContactLaw, ContactState, History, Memory, ScalarForce, WithLaw},
         scratch::{ContactFlags, WallForce},
         state::{Grains, ListedSprings},
     },
 };
 
-/// Forces of the walls at `motions` on the grains listed near them; carries what these contacts remember on
-/// by one substep. They are few, so one thread does it.
+/// Computes the forces of the walls at `motions` on the grains listed near them, and updates the history of these
+/// contacts by one substep. They are few, so one thread computes them.
 pub fn forces(
     model: &Model,
     motions: &[BodyMotion],
@@ -25,7 +39,7 @@ pub fn forces(
     while let Some(&[w, _]) = listed.ids.get(begin) {
         let n = listed.ids[begin..].iter().take_while(|ids| ids[0] == w).count();
         let (wall, motion) = (&model.walls[w as usize], &motions[w as usize]);
-        let contacts = OfWall {
+        let contacts = WallPass {
             shape: &wall.shape.placed(motion),
             motion,
             grains,
@@ -40,24 +54,25 @@ pub fn forces(
 }
 
 /// The listed contacts of one wall.
-struct OfWall<'a> {
-    shape: &'a Placed,
+struct WallPass<'a> {
+    shape: &'a PlacedSurface,
     motion: &'a BodyMotion,
     grains: &'a Grains,
     dt: Real,
-    /// Their indices in the lists.
+    /// Indices of the contacts in the lists.
     contacts: std::ops::Range<usize>,
     listed: &'a mut ListedSprings,
     forces: &'a mut [WallForce],
 }
 
-impl UnderLaw for OfWall<'_> {
+impl WithLaw for WallPass<'_> {
     type Output = ();
 
     fn run<C: ContactLaw>(self, law: &C) {
         let ListedSprings { ids, springs, memories } = self.listed;
         let memories = C::Memory::rows(memories, ids.len());
-        let wall = Wall { law, shape: self.shape, motion: self.motion, dt: self.dt };
+        let surface = RigidSurface { law, motion: self.motion, dt: self.dt };
+        let wall = Wall { shape: self.shape, surface };
         for k in self.contacts {
             let mut history = History {
                 spring: Vector::from(springs[k]),
@@ -71,29 +86,57 @@ impl UnderLaw for OfWall<'_> {
     }
 }
 
-/// A wall and the law of its contacts.
+/// A wall and the law of its contacts with grains.
 struct Wall<'a, C> {
-    law: &'a C,
-    shape: &'a Placed,
-    motion: &'a BodyMotion,
-    dt: Real,
+    shape: &'a PlacedSurface,
+    surface: RigidSurface<'a, C>,
 }
 
 impl<C: ContactLaw> Wall<'_, C> {
-    /// Force on grain `i`. Nothing is remembered of a contact that has ended.
+    /// Force on grain `i`. The history of a contact that has ended is reset.
     #[inline(always)]
     fn force(&self, grains: &Grains, i: usize, history: &mut History<f64, C::Memory>) -> WallForce {
+        let reach = grains.radii[i] + self.surface.law.range();
+        let nearest = self.shape.distance(&self.surface.arm(&grains.positions[i]));
+        nearest
+            .filter(|(distance, _)| *distance < reach)
+            .and_then(|nearest| self.surface.force(grains, i, nearest, history))
+            .unwrap_or_else(|| {
+                *history = History { spring: Vector::zero(), memory: C::Memory::nothing() };
+                WallForce::default()
+            })
+    }
+}
+
+/// A moving rigid surface, and the law of its contacts with grains.
+pub(super) struct RigidSurface<'a, C> {
+    pub(super) law: &'a C,
+    pub(super) motion: &'a BodyMotion,
+    pub(super) dt: Real,
+}
+
+impl<C: ContactLaw> RigidSurface<'_, C> {
+    /// Vector from the origin of the surface to `point` (m).
+    #[inline(always)]
+    pub(super) fn arm(&self, point: &Vec3) -> Vec3 {
+        point - self.motion.pose.translation.vector
+    }
+
+    /// Force on grain `i` from a point of the surface at this distance (m), with the unit normal from that point to
+    /// the grain. `None` if the contact has ended.
+    #[inline(always)]
+    pub(super) fn force(
+        &self,
+        grains: &Grains,
+        i: usize,
+        (distance, normal): (Real, Vec3),
+        history: &mut History<f64, C::Memory>,
+    ) -> Option<WallForce> {
         let radius = grains.radii[i];
-        let from_wall = grains.positions[i] - self.motion.pose.translation.vector;
-        let nearest = self.shape.distance(&from_wall);
-        let reach = radius + self.law.range();
-        let Some((distance, normal)) = nearest.filter(|(distance, _)| *distance < reach) else {
-            return Self::none(history);
-        };
         let overlap = radius - distance;
         let arm = normal * -(radius - overlap / 2.0);
         let velocity = grains.velocities[i] + grains.angular_velocities[i].cross(&arm)
-            - self.motion.twist.at(&(from_wall + arm));
+            - self.motion.twist.at(&(self.arm(&grains.positions[i]) + arm));
         let contact = ContactState {
             touches: distance < radius,
             overlap,
@@ -104,22 +147,15 @@ impl<C: ContactLaw> Wall<'_, C> {
         };
         let force = ScalarForce::of(&self.law.force(&contact, self.dt, history));
         if !force.acts {
-            return Self::none(history);
+            return None;
         }
         let is_loaded = force.normal != 0.0;
-        WallForce {
+        Some(WallForce {
             force: normal * force.normal + force.tangential,
             arm,
             overlap,
             normal: force.normal,
             flags: if is_loaded { ContactFlags::contact(force.slides) } else { ContactFlags::NONE },
-        }
-    }
-
-    /// No contact, and nothing that it remembers.
-    #[inline(always)]
-    fn none(history: &mut History<f64, C::Memory>) -> WallForce {
-        *history = History { spring: Vector::zero(), memory: C::Memory::nothing() };
-        WallForce::default()
+        })
     }
 }

@@ -1,31 +1,31 @@
-//! The contact law: viscoelastic Hertz in the normal, a Mindlin-type spring with history in the
-//! tangential direction.
+//! The standard contact law: a viscoelastic Hertz force along the normal, and a Mindlin-type spring with history
+//! in the tangential direction.
 //!
 //! ```text
-//! F_n = max(0, 4/3 E* √(R* ξ) (ξ − 3/2 A v_n))                      repulsive, on the first body
+//! F_n = max(0, 4/3 E* √(R* ξ) (ξ − 3/2 A v_n))                       on the first body, repulsive
 //! k   = 2/3 · 8 G* √(R* ξ)                                          stiffness of the spring ξ_t
-//! stick, k |ξ_t| < μ F_n:  F_t = −k ξ_t − γ_t √(m* 8 G* √(R* ξ)) v_t,  at most μ F_n long
-//! slip:                    F_t = −μ F_n ξ_t/|ξ_t|,                   |ξ_t| set back to μ F_n / k
+//! stick, k |ξ_t| < μ F_n:  F_t = −k ξ_t − γ_t √(m* 8 G* √(R* ξ)) v_t,  clipped at |F_t| = μ F_n
+//! slip:                    F_t = −μ F_n ξ_t/|ξ_t|,                   |ξ_t| reduced to μ F_n / k
 //! ```
 //!
 //! | symbol | meaning | unit |
 //! |---|---|---|
 //! | ξ | overlap, positive in contact | m |
-//! | v_n | normal velocity of the first body relative to the second, positive when parting | m/s |
+//! | v_n | normal velocity of the first body relative to the second, positive when separating | m/s |
 //! | v_t | tangential slip velocity at the contact point | m/s |
-//! | ξ_t | tangential spring: slip integrated over the contact's life, in the tangent plane | m |
+//! | ξ_t | tangential spring: slip integrated over the duration of the contact, in the tangent plane | m |
 //! | R*, m* | effective radius and mass | m, kg |
 //! | E*, G* | effective moduli, 1/E* = Σ (1−ν²)/E, 1/G* = Σ (2−ν)/G | Pa |
 //! | A | dissipation time of the material | s |
-//! | γ_t, μ | tangential damping ratio, Coulomb friction | – |
+//! | γ_t, μ | tangential damping ratio, coefficient of Coulomb friction | – |
 //!
-//! Source: Götz (2024), chapter 2, eqs. 4–11, with its misprints resolved: the prefactor of the
+//! Source: Götz (2024), chapter 2, eqs. 4–11, with its misprints corrected: the prefactor of the
 //! spring follows Mindlin and Di Renzo & Di Maio (2005), the dissipative term opposes the motion,
-//! and the viscous tangential term exists only while the contact sticks. Valid while the overlap
-//! is small against R*, say ξ < 0.1 R*. The spring keeps its length when the contact unloads; a
-//! spring rescaled by the shrinking contact radius (Thornton 2013) is not what the source does. It is
-//! carried along when the pair turns about an axis across the normal; about the normal itself it is
-//! not turned, as in the source.
+//! and the viscous tangential term acts only while the contact sticks. As in the source, the spring
+//! keeps its length when the contact unloads (Thornton 2013 rescales it with the contact radius),
+//! and it rotates with the normal but not about it.
+//!
+//! Valid while the overlap is small compared with R*, about ξ < 0.1 R*.
 
 use super::{
     ContactState, NoCohesion, NormalForce, NormalPart, Parts, TangentialForce, TangentialPart,
@@ -38,7 +38,7 @@ use crate::base::{
 /// The law of this file.
 pub type HertzMindlin = Parts<Hertz, Mindlin, NoCohesion>;
 
-/// Viscoelastic Hertz: the force along the normal.
+/// Viscoelastic Hertz force along the normal.
 #[derive(Clone, Copy, Debug)]
 pub struct Hertz {
     /// Effective Young's modulus E* (Pa).
@@ -63,14 +63,14 @@ impl NormalForce for Hertz {
     }
 }
 
-/// A spring with history, a damper while it sticks, and Coulomb's limit: the tangential force.
+/// Tangential force: a spring with history, a damper while the contact sticks, and Coulomb's limit.
 #[derive(Clone, Copy, Debug)]
 pub struct Mindlin {
     /// Effective shear modulus G* (Pa).
     pub shear_modulus: Real,
-    /// Coulomb friction μ.
+    /// Coefficient of Coulomb friction μ.
     pub friction: Real,
-    /// Tangential damping γ_t.
+    /// Tangential damping ratio γ_t.
     pub tangential_damping: Real,
 }
 
@@ -88,7 +88,7 @@ impl TangentialForce for Mindlin {
         let k_t = L::splat(8.0 * self.shear_modulus) * normal.contact_radius;
         let k = L::splat(2.0 / 3.0) * k_t;
         let limit = L::splat(self.friction) * normal.force;
-        // Squares are compared: most contacts stick, and then no root is needed.
+        // Compares squares: most contacts stick, and then no square root is needed.
         let stretch_squared = xi_t.dot(xi_t);
         let slides = (limit * limit).le(k * k * stretch_squared);
         let damping = L::splat(self.tangential_damping) * (contact.mass * k_t).sqrt();
@@ -108,7 +108,7 @@ impl TangentialForce for Mindlin {
     }
 }
 
-/// The spring turned into the tangent plane, its length kept.
+/// Rotates the spring into the tangent plane, preserving its length.
 #[inline(always)]
 fn into_tangent_plane<L: Lanes>(spring: Vector<L>, normal: Vector<L>) -> Vector<L> {
     let before = spring.dot(spring);
@@ -118,10 +118,10 @@ fn into_tangent_plane<L: Lanes>(spring: Vector<L>, normal: Vector<L>) -> Vector<
     }
     let flat = spring - normal * spring.dot(normal);
     let after = flat.dot(flat);
-    // Below this the direction is lost; the spring is then as good as zero.
+    // Below this the direction is lost to rounding; the spring becomes zero.
     let keeps_direction = (L::splat(1e-12) * before).lt(after);
-    let turned = flat * (before / after).sqrt();
-    turned.or_where(keeps_direction, Vector::zero()).or_where(is_loaded, spring)
+    let rotated = flat * (before / after).sqrt();
+    rotated.or_where(keeps_direction, Vector::zero()).or_where(is_loaded, spring)
 }
 
 #[cfg(test)]
@@ -142,13 +142,14 @@ mod tests {
         PairLaw::between(&grain(), &grain(), surface)
     }
 
-    /// Head-on collision of two equal grains; returns (restitution, largest overlap, duration).
+    /// Simulates a head-on collision of two equal grains. Returns coefficient of restitution, largest overlap (m) and
+    /// duration (s).
     fn collide(law: &PairLaw, radius: Real, v: Real, dt: Real) -> (Real, Real, Real) {
         let mass = 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3) * grain().density;
         let (mut overlap, mut closing, mut deepest, mut time) = (0.0_f64, v, 0.0_f64, 0.0);
         let mut spring = Vec3::zeros();
         loop {
-            // Velocity Verlet, so that the oracle's error is not the integrator's.
+            // Velocity Verlet, so that the error of the integrator is negligible.
             let force_at = |overlap: Real, closing: Real, spring: &mut Vec3| {
                 let contact = ContactState {
                     overlap: overlap.max(1e-300),
@@ -173,9 +174,9 @@ mod tests {
     }
 
     #[test]
-    fn elastic_impact_is_hertzian() {
+    fn elastic_impact_follows_hertz() {
         // Oracle: Hertz, ξ_max = (5 m* v² / 4 k)^(2/5), T = 2.943275 ξ_max / v.
-        // Tolerance 0.1 %: 2000 steps per collision leave a discretisation error of that order.
+        // Tolerance 0.1 %: 2000 steps per collision leave a discretization error of that order.
         let law = law(0.0, 0.0);
         let (radius, v): (Real, Real) = (2e-3, 1.0);
         let mass = 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3) * grain().density / 2.0;
@@ -188,7 +189,7 @@ mod tests {
     }
 
     #[test]
-    fn restitution_follows_the_viscoelastic_theory() {
+    fn restitution_follows_viscoelastic_theory() {
         // Oracle: integration of the law by Müller & Pöschel (2011); values for equal spheres,
         // ν = 0.245, ρ = 2000 kg/m³. Tolerance 2e-4: step error at 2000 steps per collision.
         for (radius, a, v, expected) in [
@@ -203,8 +204,8 @@ mod tests {
     }
 
     #[test]
-    fn friction_never_exceeds_coulomb_and_opposes_slip() {
-        // Oracle: |F_t| ≤ μ F_n, exact up to rounding; sliding force points against the slip.
+    fn friction_obeys_coulombs_limit_and_opposes_slip() {
+        // Oracle: |F_t| ≤ μ F_n, exact up to rounding; the sliding force opposes the slip.
         let law = law(7e-6, 0.25);
         let mut spring = Vec3::zeros();
         let velocity = Vec3::new(0.05, 0.02, 0.0);
@@ -228,10 +229,10 @@ mod tests {
     }
 
     #[test]
-    fn rotating_everything_rotates_the_force() {
-        // Oracle: objectivity. Tolerance: rounding of a few operations.
+    fn the_force_is_objective() {
+        // Oracle: rotating everything rotates the force. Tolerance: rounding of a few operations.
         let law = law(7e-6, 0.25);
-        let turn = nalgebra::Rotation3::from_euler_angles(0.3, -1.1, 2.0);
+        let rotation = nalgebra::Rotation3::from_euler_angles(0.3, -1.1, 2.0);
         let (normal, velocity) = (Vec3::new(0.0, 0.6, 0.8), Vec3::new(0.05, 0.02, -0.1));
         let contact = ContactState {
             overlap: 1e-5,
@@ -241,17 +242,17 @@ mod tests {
             touches: true,
             mass: 3e-5,
         };
-        let turned = ContactState {
-            normal: (turn * normal).into(),
-            velocity: (turn * velocity).into(),
+        let rotated = ContactState {
+            normal: (rotation * normal).into(),
+            velocity: (rotation * velocity).into(),
             ..contact
         };
         let mut spring = Vec3::new(1e-7, 2e-7, -1.5e-7);
-        let mut spring_turned = turn * spring;
+        let mut rotated_spring = rotation * spring;
         let f = scalar(&law, &contact, 1e-6, &mut spring);
-        let g = scalar(&law, &turned, 1e-6, &mut spring_turned);
-        assert!((turn * f.tangential - g.tangential).norm() < 1e-12 * f.normal);
+        let g = scalar(&law, &rotated, 1e-6, &mut rotated_spring);
+        assert!((rotation * f.tangential - g.tangential).norm() < 1e-12 * f.normal);
         assert!((f.normal - g.normal).abs() < 1e-12 * f.normal);
-        assert!((turn * spring - spring_turned).norm() < 1e-18);
+        assert!((rotation * spring - rotated_spring).norm() < 1e-18);
     }
 }

@@ -1,20 +1,20 @@
-//! Contact laws: what two bodies do to each other where they touch.
+//! Contact laws: the force between two bodies that touch.
 //!
-//! A law consists of three parts: a force along the normal, a tangential force, and cohesion, which may act
-//! beyond contact. Passes over contacts are generic over the law. `PairLaw::with` selects it once per pass, so
-//! no law slows another one down. A new law is a file beside `hertz_mindlin` and an arm of that `match`.
+//! A law has three parts: a force along the normal, a tangential force, and cohesion, which may act beyond
+//! contact. Passes over contacts are generic over the law. `PairLaw::with` selects the law once per pass, so no
+//! law slows down another. To add a law, add a file next to `hertz_mindlin` and an arm to that `match`.
 //!
-//! The history of a contact is its tangential spring, which rotates with the bodies, and the numbers that the
-//! law declares as its `Memory`, for example whether a liquid bridge exists or how much liquid it holds.
+//! The history of a contact consists of its tangential spring, which rotates with the bodies, and the numbers that
+//! the law declares as its `Memory`, for example whether a liquid bridge exists or how much liquid it contains.
 
 mod hertz_mindlin;
-mod pair_law; // constants of two materials, and the choice of their law
+mod pair_law; // constants of two materials; selects their law
 mod parts; // normal, tangential and cohesive forces
 #[cfg(test)]
 pub(in crate::physics) mod tests;
 
 pub use hertz_mindlin::{Hertz, HertzMindlin, Mindlin};
-pub use pair_law::{Cohesion, PairLaw, Surface, UnderLaw};
+pub use pair_law::{Cohesion, PairLaw, Surface, WithLaw};
 pub use parts::{
     CohesiveForce, CohesivePart, NoCohesion, NormalForce, NormalPart, Parts, TangentialForce,
     TangentialPart,
@@ -27,14 +27,14 @@ use crate::base::{
 
 /// A contact law.
 pub trait ContactLaw: Copy + Send + Sync {
-    /// History of a contact besides its tangential spring.
+    /// History of a contact in addition to its tangential spring.
     type Memory: Memory;
 
-    /// How far beyond contact a force may act (m).
+    /// Distance beyond contact up to which a force may act (m).
     fn range(&self) -> Real;
 
-    /// Force on the first body; `history` is carried on by one substep of `dt` (s). Lanes of bodies that
-    /// neither touch nor are within range hold numbers without meaning.
+    /// Force on the first body. Updates `history` by one substep of `dt` (s). Lanes of bodies that are out of
+    /// range contain meaningless numbers.
     fn force<L: Lanes>(
         &self,
         contact: &ContactState<L>,
@@ -43,24 +43,24 @@ pub trait ContactLaw: Copy + Send + Sync {
     ) -> Force<L>;
 
     /// Normal stiffness dF/dξ (N/m) of a contact that carries `force` (N), with the effective radius
-    /// `radius` (m): what a stable substep must bear.
+    /// `radius` (m). The critical step depends on it.
     fn stiffness(&self, radius: Real, force: Real) -> Real;
 }
 
-/// History of a contact besides its spring: `[Real; N]`, all zero if there is none.
+/// History of a contact in addition to its spring: `[Real; N]`, all zero if there is none.
 pub trait Memory: bytemuck::Pod + Send + Sync {
-    /// The same in lanes.
+    /// The history of one contact per lane.
     type Lanes<L: Lanes>: Copy;
-    /// How many numbers.
+    /// Number of numbers per contact.
     const WIDTH: usize;
 
-    /// `n` memories in a list of all their numbers; those that are missing are zero.
+    /// Views a list of numbers as the history of `n` contacts. Resizes the list; new numbers are zero.
     fn rows(numbers: &mut Vec<Real>, n: usize) -> &mut [Self];
-    /// Nothing to remember.
+    /// The history of a new contact: all zero.
     fn nothing<L: Lanes>() -> Self::Lanes<L>;
-    /// The first `L::N` memories in lanes.
+    /// Loads the first `L::N` rows into lanes.
     fn load<L: Lanes>(rows: &[Self]) -> Self::Lanes<L>;
-    /// Writes lanes to the first `L::N` memories, zero where `mask` does not hold.
+    /// Stores lanes in the first `L::N` rows, zero where `mask` is false.
     fn store<L: Lanes>(lanes: Self::Lanes<L>, mask: L::Mask, rows: &mut [Self]);
 }
 
@@ -74,7 +74,7 @@ where
     fn rows(numbers: &mut Vec<Real>, n: usize) -> &mut [Self] {
         numbers.resize(n * N, 0.0);
         if N == 0 {
-            // Arrays of nothing take no memory: nothing is allocated, and nothing leaks.
+            // Empty arrays take no memory: nothing is allocated, and nothing leaks.
             return Vec::leak(vec![[0.0; N]; n]);
         }
         bytemuck::cast_slice_mut(numbers)
@@ -104,7 +104,7 @@ where
     }
 }
 
-/// Where and how fast two bodies meet, in each lane.
+/// Geometry and relative velocity of two bodies, in each lane.
 #[derive(Clone, Copy)]
 pub struct ContactState<L: Lanes> {
     /// True where the bodies touch.
@@ -121,12 +121,12 @@ pub struct ContactState<L: Lanes> {
     pub mass: L,
 }
 
-/// What a contact remembers, in each lane.
+/// History of a contact, in each lane.
 #[derive(Clone, Copy)]
 pub struct History<L: Lanes, M: Memory> {
     /// Tangential spring ξ_t (m).
     pub spring: Vector<L>,
-    /// What else the law remembers.
+    /// What else the law stores.
     pub memory: M::Lanes<L>,
 }
 
@@ -137,14 +137,14 @@ pub struct Force<L: Lanes> {
     pub normal: L,
     /// Tangential force (N).
     pub tangential: Vector<L>,
-    /// True where the bodies are in contact: they touch, or a bridge holds them.
+    /// True where the bodies are in contact: they touch, or cohesion acts between them.
     pub acts: L::Mask,
     /// True where the contact slides.
     pub slides: L::Mask,
 }
 
-/// Force on the first body of a single contact of bodies that touch, under the law without cohesion;
-/// `spring` (m) is carried on by one substep of `dt` (s).
+/// Force on the first body of a single contact of bodies that touch, without cohesion. Updates `spring` (m) by
+/// one substep of `dt` (s).
 #[inline(always)]
 pub fn scalar(
     law: &PairLaw,
@@ -172,7 +172,7 @@ pub struct ScalarForce {
 }
 
 impl ScalarForce {
-    /// That of the only lane.
+    /// Converts from a single lane.
     #[inline(always)]
     pub fn of(force: &Force<Real>) -> Self {
         let &Force { normal, tangential, acts, slides } = force;

@@ -1,4 +1,4 @@
-//! Constants of the contact between two materials, and the choice of their law.
+//! Constants of contacts between two materials, and the selection of their law.
 
 use super::{ContactLaw, Hertz, HertzMindlin, Mindlin, NoCohesion, Parts};
 use crate::{
@@ -6,38 +6,38 @@ use crate::{
     scene::{self, Material},
 };
 
-/// Constants of one pair of materials, and the choice of their law.
+/// Constants of contacts between two materials. `with` selects their law.
 #[derive(Clone, Copy, Debug)]
 pub struct PairLaw {
     /// Effective Young's modulus E* (Pa).
     pub modulus: Real,
     /// Effective shear modulus G* (Pa).
     pub shear_modulus: Real,
-    /// Coulomb friction μ.
+    /// Coefficient of Coulomb friction μ.
     pub friction: Real,
     /// Dissipation time A (s).
     pub dissipation_time: Real,
-    /// Tangential damping γ_t.
+    /// Tangential damping ratio γ_t.
     pub tangential_damping: Real,
-    /// What pulls the two together, between grains and at walls.
+    /// Cohesion between grains and at walls.
     pub cohesion: Cohesion,
 }
 
 /// The cohesive part of a law.
 #[derive(Clone, Copy, Debug)]
 pub enum Cohesion {
-    /// Nothing pulls: Hertz and Mindlin alone.
+    /// No cohesion: Hertz and Mindlin only.
     None,
-    /// Bridges of constant force: a law that tests run through the passes.
+    /// Bridges of constant force, for tests.
     #[cfg(test)]
     Bridge(super::tests::Bridge),
 }
 
-/// Work that can be done under any law: what a pass over contacts is.
-pub trait UnderLaw {
-    /// What comes out.
+/// A computation that is generic over the contact law, such as a pass over contacts.
+pub trait WithLaw {
+    /// Its result.
     type Output;
-    /// Does it under `law`.
+    /// Runs with `law`.
     fn run<C: ContactLaw>(self, law: &C) -> Self::Output;
 }
 
@@ -58,15 +58,15 @@ impl PairLaw {
         }
     }
 
-    /// The law of one material against something much stiffer.
+    /// The law between a material and something much stiffer.
     pub fn against_rigid(material: &Material, surface: Surface) -> Self {
         let rigid = Material { youngs_modulus: Real::INFINITY, ..*material };
         Self::between(material, &rigid, surface)
     }
 
-    /// Does `work` under the law that was chosen: one `match` for all contacts of a pass.
+    /// Runs `work` with the selected law: one `match` for all contacts of a pass.
     #[inline]
-    pub fn with<W: UnderLaw>(&self, work: W) -> W::Output {
+    pub fn with<W: WithLaw>(&self, work: W) -> W::Output {
         match self.cohesion {
             Cohesion::None => work.run(&self.hertz_mindlin()),
             #[cfg(test)]
@@ -77,7 +77,7 @@ impl PairLaw {
         }
     }
 
-    /// The law without cohesion: that of grains on the membrane and of the membrane on bodies.
+    /// The law without cohesion, which acts between grains and membrane and between membrane and bodies.
     #[inline(always)]
     pub fn hertz_mindlin(&self) -> HertzMindlin {
         let &Self { modulus, shear_modulus, friction, dissipation_time, .. } = self;
@@ -92,7 +92,7 @@ impl PairLaw {
         }
     }
 
-    /// How far beyond contact a force may act (m): what lists of neighbors must know.
+    /// Distance beyond contact up to which a force may act (m). Neighbor lists include this range.
     pub fn range(&self) -> Real {
         self.with(Range)
     }
@@ -105,7 +105,7 @@ impl PairLaw {
 
 struct Range;
 
-impl UnderLaw for Range {
+impl WithLaw for Range {
     type Output = Real;
     fn run<C: ContactLaw>(self, law: &C) -> Real {
         law.range()
@@ -117,26 +117,26 @@ struct Stiffness {
     force: Real,
 }
 
-impl UnderLaw for Stiffness {
+impl WithLaw for Stiffness {
     type Output = Real;
     fn run<C: ContactLaw>(self, law: &C) -> Real {
         law.stiffness(self.radius, self.force)
     }
 }
 
-/// What two surfaces have in common.
+/// Surface properties of a pair of materials.
 #[derive(Clone, Copy, Debug)]
 pub struct Surface {
-    /// Coulomb friction μ.
+    /// Coefficient of Coulomb friction μ.
     pub friction: Real,
     /// Dissipation time A (s).
     pub dissipation_time: Real,
-    /// Tangential damping γ_t.
+    /// Tangential damping ratio γ_t.
     pub tangential_damping: Real,
 }
 
 impl Surface {
-    /// Among the grains of a scene, and of grains with walls.
+    /// Between the grains of a scene, and between grains and walls.
     pub fn of_grains(grains: &scene::Grains) -> Self {
         Self {
             friction: grains.friction,
@@ -145,7 +145,7 @@ impl Surface {
         }
     }
 
-    /// Of a scene's membrane with something, with which it has this friction.
+    /// Between a scene's membrane and something else, with this coefficient of friction.
     pub fn of_membrane(membrane: &scene::Membrane, friction: Real) -> Self {
         Self {
             friction,

@@ -1,4 +1,4 @@
-//! A law made of parts: models of the normal, the tangential and the cohesive force.
+//! A law composed of parts: models of the normal, the tangential and the cohesive force.
 
 use super::{ContactLaw, ContactState, Force, History, Memory};
 use crate::base::{
@@ -6,28 +6,28 @@ use crate::base::{
     lanes::{Lanes, Mask, Vector},
 };
 
-/// A model of the force along the normal while bodies touch.
+/// A model of the force along the normal between bodies that touch.
 pub trait NormalForce: Copy + Send + Sync {
-    /// Force in each lane; the overlap is not negative where it matters.
+    /// Force in each lane. Lanes with a negative overlap may return any number.
     fn force<L: Lanes>(&self, contact: &ContactState<L>) -> NormalPart<L>;
     /// See `ContactLaw::stiffness`.
     fn stiffness(&self, radius: Real, force: Real) -> Real;
 }
 
-/// What the normal part hands to the tangential one.
+/// The normal part of a force, and what the tangential part needs.
 #[derive(Clone, Copy)]
 pub struct NormalPart<L> {
     /// Repulsive force (N), at least zero.
     pub force: L,
     /// Radius of the contact area √(R* ξ) (m).
     pub contact_radius: L,
-    /// Normal velocity (m/s), positive when parting.
+    /// Normal velocity (m/s), positive when separating.
     pub velocity: L,
 }
 
-/// A model of the tangential force while bodies touch.
+/// A model of the tangential force between bodies that touch.
 pub trait TangentialForce: Copy + Send + Sync {
-    /// Force in each lane; `spring` (m) is carried on by one substep of `dt` (s).
+    /// Force in each lane. Updates `spring` (m) by one substep of `dt` (s).
     fn force<L: Lanes>(
         &self,
         contact: &ContactState<L>,
@@ -46,15 +46,15 @@ pub struct TangentialPart<L: Lanes> {
     pub slides: L::Mask,
 }
 
-/// A model of what pulls bodies together.
+/// A model of cohesion between bodies.
 pub trait CohesiveForce: Copy + Send + Sync {
-    /// What it remembers of a contact.
+    /// History of a contact.
     type Memory: Memory;
     /// False if it never acts beyond contact.
     const ACTS_BEYOND_CONTACT: bool;
-    /// How far beyond contact it may act (m).
+    /// Distance beyond contact up to which it may act (m).
     fn range(&self) -> Real;
-    /// Pull in each lane; `memory` is carried on by one substep.
+    /// Attractive force in each lane. Updates `memory` by one substep.
     fn force<L: Lanes>(
         &self,
         contact: &ContactState<L>,
@@ -62,16 +62,16 @@ pub trait CohesiveForce: Copy + Send + Sync {
     ) -> CohesivePart<L>;
 }
 
-/// What pulls bodies together.
+/// The cohesive part of a force.
 #[derive(Clone, Copy)]
 pub struct CohesivePart<L: Lanes> {
     /// Attractive force (N), zero where it does not act.
     pub pull: L,
-    /// True where it acts, or the bodies touch.
+    /// True where cohesion acts, or the bodies touch.
     pub acts: L::Mask,
 }
 
-/// Nothing pulls.
+/// No cohesion.
 #[derive(Clone, Copy, Debug)]
 pub struct NoCohesion;
 
@@ -90,14 +90,14 @@ impl CohesiveForce for NoCohesion {
     }
 }
 
-/// A law made of its parts. Friction is limited by the repulsive part of the normal force.
+/// A law composed of parts. Friction is limited by the repulsive part of the normal force.
 #[derive(Clone, Copy, Debug)]
 pub struct Parts<N, T, C> {
-    /// Along the normal.
+    /// Model of the normal force.
     pub normal: N,
-    /// In the tangent plane.
+    /// Model of the tangential force.
     pub tangential: T,
-    /// What pulls the bodies together.
+    /// Model of cohesion.
     pub cohesion: C,
 }
 
@@ -117,15 +117,15 @@ impl<N: NormalForce, T: TangentialForce, C: CohesiveForce> ContactLaw for Parts<
         history: &mut History<L, C::Memory>,
     ) -> Force<L> {
         let zero = L::splat(0.0);
-        let mut pressed = *contact;
+        let mut touching = *contact;
         if C::ACTS_BEYOND_CONTACT {
-            pressed.overlap = contact.overlap.or_where(contact.touches, zero);
+            touching.overlap = contact.overlap.or_where(contact.touches, zero);
         }
-        let mut normal = self.normal.force(&pressed);
+        let mut normal = self.normal.force(&touching);
         if C::ACTS_BEYOND_CONTACT {
             normal.force = normal.force.or_where(contact.touches, zero);
         }
-        let mut tangential = self.tangential.force(&pressed, &normal, dt, &mut history.spring);
+        let mut tangential = self.tangential.force(&touching, &normal, dt, &mut history.spring);
         if C::ACTS_BEYOND_CONTACT {
             let none = Vector::zero();
             tangential.force = tangential.force.or_where(contact.touches, none);

@@ -1,9 +1,9 @@
-//! A second law, which holds grains together by bridges: everything that a law may do beyond Hertz and
-//! Mindlin, so that tests can run it through the passes.
+//! A second law, with bridges between grains. It uses everything that a law can do beyond Hertz and Mindlin, so
+//! that tests can run it through the passes.
 
 use super::{
     Cohesion, CohesiveForce, CohesivePart, ContactLaw, ContactState, Force, History, PairLaw,
-    Surface, UnderLaw,
+    Surface, WithLaw,
 };
 use crate::{
     base::{
@@ -35,8 +35,8 @@ impl CohesiveForce for Bridge {
     fn force<L: Lanes>(&self, contact: &ContactState<L>, memory: &mut [L; 1]) -> CohesivePart<L> {
         let (zero, one) = (L::splat(0.0), L::splat(1.0));
         let is_near = (-contact.overlap).lt(L::splat(self.rupture));
-        let goes_on = zero.lt(memory[0]).and(is_near);
-        memory[0] = one.or_where(contact.touches, one.or_where(goes_on, zero));
+        let persists = zero.lt(memory[0]).and(is_near);
+        memory[0] = one.or_where(contact.touches, one.or_where(persists, zero));
         let acts = zero.lt(memory[0]);
         CohesivePart { pull: L::splat(self.pull).or_where(acts, zero), acts }
     }
@@ -49,14 +49,14 @@ pub(crate) fn bridged(surface: Surface, pull: Real, rupture: Real) -> PairLaw {
     PairLaw { cohesion, ..PairLaw::between(&grain, &grain, surface) }
 }
 
-/// One contact under any law; what it remembers is kept as numbers.
-struct Once<'a> {
+/// Evaluates one contact with any law.
+struct SingleContact<'a> {
     overlap: Real,
     spring: &'a mut Vec3,
     memory: &'a mut Vec<Real>,
 }
 
-impl UnderLaw for Once<'_> {
+impl WithLaw for SingleContact<'_> {
     type Output = Force<Real>;
 
     fn run<C: ContactLaw>(self, law: &C) -> Force<Real> {
@@ -80,39 +80,42 @@ impl UnderLaw for Once<'_> {
 }
 
 #[test]
-fn a_bridge_forms_at_touch_holds_and_breaks() {
-    // Oracle: the law's own definition; at touch the forces of Hertz and Mindlin, to the bit, and the pull.
+fn a_bridge_forms_on_contact_persists_and_breaks() {
+    // Oracle: the definition of the law; in contact, the forces of Hertz and Mindlin to the bit, minus the pull.
     let surface = Surface { friction: 0.5, dissipation_time: 1e-6, tangential_damping: 0.3 };
     let (pull, rupture) = (0.02, 1e-5);
     let law = bridged(surface, pull, rupture);
     let plain = PairLaw { cohesion: Cohesion::None, ..law };
     let (mut spring, mut memory) = (Vec3::zeros(), Vec::new());
     let mut at = |law: &PairLaw, overlap: Real| {
-        let force = law.with(Once { overlap, spring: &mut spring, memory: &mut memory });
+        let force = law.with(SingleContact { overlap, spring: &mut spring, memory: &mut memory });
         (force, spring)
     };
     let bits = |it: Vector<Real>| [it.x, it.y, it.z].map(Real::to_bits);
 
     let (before, _) = at(&law, -0.5 * rupture);
-    assert!(!before.acts && before.normal.to_bits() == 0, "no bridge has formed yet");
+    assert!(!before.acts && before.normal.to_bits() == 0, "a bridge exists before contact");
     let (held, _) = at(&law, 1e-6);
     let (mut plain_spring, mut none) = (Vec3::zeros(), Vec::new());
-    let once = Once { overlap: 1e-6, spring: &mut plain_spring, memory: &mut none };
-    let expected = plain.with(once);
+    let contact = SingleContact { overlap: 1e-6, spring: &mut plain_spring, memory: &mut none };
+    let expected = plain.with(contact);
     assert!(none.is_empty() && expected.acts && held.acts);
     assert_eq!(held.normal.to_bits(), (expected.normal - pull).to_bits());
     assert_eq!(bits(held.tangential), bits(expected.tangential));
-    let (apart, spring) = at(&law, -0.9 * rupture);
-    assert!(apart.acts && !apart.slides);
-    assert_eq!(apart.normal.to_bits(), (-pull).to_bits());
-    assert!(bits(apart.tangential) == [0; 3] && spring == Vec3::zeros(), "friction needs touch");
-    assert!(!at(&law, -1.1 * rupture).0.acts, "it has broken");
-    assert!(!at(&law, -0.5 * rupture).0.acts, "a broken bridge does not form again");
+    let (separated, spring) = at(&law, -0.9 * rupture);
+    assert!(separated.acts && !separated.slides);
+    assert_eq!(separated.normal.to_bits(), (-pull).to_bits());
+    assert!(
+        bits(separated.tangential) == [0; 3] && spring == Vec3::zeros(),
+        "friction without contact"
+    );
+    assert!(!at(&law, -1.1 * rupture).0.acts, "the bridge has not broken");
+    assert!(!at(&law, -0.5 * rupture).0.acts, "a broken bridge forms again without contact");
 }
 
 #[test]
 fn a_law_has_a_range_and_the_stiffness_of_its_normal_part() {
-    // Oracle: by hand; Hertz, F = 4/3 E* √R* ξ^3/2, so dF/dξ = 3/2 F/ξ, to rounding.
+    // Oracle: by hand. Hertz: F = 4/3 E* √R* ξ^3/2, so dF/dξ = 3/2 F/ξ, to rounding.
     let surface = Surface { friction: 0.5, dissipation_time: 0.0, tangential_damping: 0.0 };
     let law = bridged(surface, 0.01, 2e-5);
     let plain = PairLaw { cohesion: Cohesion::None, ..law };

@@ -1,11 +1,11 @@
-//! A closed bar with a square cross-section and rounded edges, of nearly equilateral triangles.
+//! Mesh of a closed bar with a square cross-section and rounded edges, of nearly equilateral triangles.
 //!
-//! Rows of vertices go around it as around a tube. Each end is closed by rings one within the other,
-//! each with a place less at both ends of every side, and a strip across the last one:
+//! Rows of vertices run around the bar as around a tube. Each end is closed by nested rings, each with two
+//! vertices fewer per side than the ring around it, and a strip across the innermost one:
 //!
 //! ```text
 //!     o---o---o---o---o
-//!     |  o--o--o--o   |      n places per side:  4 n vertices in a row,
+//!     |  o--o--o--o   |      n vertices per side: 4 n vertices in a row,
 //!     |  | o--o--o |  |      4 (n − 2), 4 (n − 4), … in the rings of an end
 //!     o  o | /| /| o  o
 //!     |  | o--o--o |  |
@@ -16,25 +16,25 @@
 use std::ops::Range;
 
 use super::icosphere::coherent;
-use super::mesh::{Mesh, MeshFault, index};
+use super::mesh::{Mesh, MeshError, index};
 use super::tube::cosine_and_sine;
 use crate::base::{Real, Vec3};
 
-/// Places per side of a ring within another: one less at either end.
-const FEWER: usize = 2;
+/// Difference of the vertices per side between a ring and the next inner one.
+const SIDE_STEP: usize = 2;
 
-/// Size and net of a bar along z, centred on the origin.
+/// Size and resolution of a bar along z, centered on the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bar {
     /// Width of each side (m).
     pub width: Real,
     /// Length (m).
     pub length: Real,
-    /// Radius of the rounded edges along the bar (m), half the width at most.
+    /// Radius of the rounded edges along the bar (m), at most half the width.
     pub edge_radius: Real,
-    /// Vertices of a row on each side.
+    /// Number of vertices of a row on each side.
     pub n_side: usize,
-    /// Rows.
+    /// Number of rows.
     pub n_rows: usize,
 }
 
@@ -43,51 +43,51 @@ impl Mesh {
     ///
     /// # Errors
     /// If there are fewer than two vertices on a side or fewer than two rows.
-    pub fn bar(bar: &Bar) -> Result<Self, MeshFault> {
+    pub fn bar(bar: &Bar) -> Result<Self, MeshError> {
         let Bar { length, n_side, n_rows, .. } = *bar;
         if n_side < 2 || n_rows < 2 {
-            return Err(MeshFault::TooFew { n_around: 4 * n_side, n_rows });
+            return Err(MeshError::TooFew { n_around: 4 * n_side, n_rows });
         }
-        let mut net = Net { bar, positions: Vec::new(), triangles: Vec::new() };
+        let mut builder = Builder { bar, positions: Vec::new(), triangles: Vec::new() };
         let z_of = |row: usize| length * (row as Real / (n_rows - 1) as Real - 0.5);
-        let first = net.ring(n_side, 0, z_of(0));
+        let first = builder.ring(n_side, 0, z_of(0));
         let mut last = first.clone();
         for row in 1..n_rows {
-            let next = net.ring(n_side, row % 2, z_of(row));
-            // Seen from outside the bar, with the row below at the outer rim.
-            net.zip((&last, (row - 1) % 2), (&next, row % 2), true);
+            let next = builder.ring(n_side, row % 2, z_of(row));
+            // Seen from outside the bar, the row below is the outer ring.
+            builder.join((&last, (row - 1) % 2), (&next, row % 2), true);
             last = next;
         }
-        net.close((last, (n_rows - 1) % 2), z_of(n_rows - 1), true);
-        net.close((first, 0), z_of(0), false);
-        let (positions, triangles) = coherent(&net.positions, net.triangles);
+        builder.close((last, (n_rows - 1) % 2), z_of(n_rows - 1), true);
+        builder.close((first, 0), z_of(0), false);
+        let (positions, triangles) = coherent(&builder.positions, builder.triangles);
         Self::new(positions, triangles)
     }
 }
 
-/// A mesh as it comes to be.
-struct Net<'a> {
+/// A mesh under construction.
+struct Builder<'a> {
     bar: &'a Bar,
     positions: Vec<Vec3>,
     triangles: Vec<[u32; 3]>,
 }
 
-impl Net<'_> {
-    /// Adds a ring with `n_side` places on each side, turned by `half_places`, at height `z` (m).
-    fn ring(&mut self, n_side: usize, half_places: usize, z: Real) -> Range<usize> {
+impl Builder<'_> {
+    /// Adds a ring with `n_side` vertices on each side at height `z` (m), rotated by `half_steps` half steps.
+    fn ring(&mut self, n_side: usize, half_steps: usize, z: Real) -> Range<usize> {
         let begin = self.positions.len();
         let shrunk = n_side as Real / self.bar.n_side as Real;
         let (half, radius) = (0.5 * self.bar.width * shrunk, self.bar.edge_radius * shrunk);
-        for place in 0..4 * n_side {
-            let (x, y) = on_contour(2 * place + half_places, 8 * n_side, half, radius);
+        for k in 0..4 * n_side {
+            let (x, y) = on_contour(2 * k + half_steps, 8 * n_side, half, radius);
             self.positions.push(Vec3::new(x, y, z));
         }
         begin..self.positions.len()
     }
 
-    /// Joins two rings, each with how many half places it is turned: always on from the one that is
-    /// behind. `is_up` if the normals of a ring within another point upward.
-    fn zip(
+    /// Joins two rings by triangles, advancing on the ring that is behind. Each ring is given with its rotation in
+    /// half steps. `is_up` is true if normals point up when the inner ring is inside the outer one.
+    fn join(
         &mut self,
         (outer, outer_turn): (&Range<usize>, usize),
         (inner, inner_turn): (&Range<usize>, usize),
@@ -96,10 +96,10 @@ impl Net<'_> {
         let (n_outer, n_inner) = (outer.len(), inner.len());
         let (mut i, mut j) = (0, 0);
         while i < n_outer || j < n_inner {
-            // Twice the middle of the next edge of either, as a share of the way around.
-            let ahead = |k: usize, turn: usize, n: usize| (2 * k + 1 + turn) as Real / n as Real;
+            // Middle of the next edge, as a fraction of the circumference, times two.
+            let middle = |k: usize, turn: usize, n: usize| (2 * k + 1 + turn) as Real / n as Real;
             let outer_is_next = j == n_inner
-                || i < n_outer && ahead(i, outer_turn, n_outer) <= ahead(j, inner_turn, n_inner);
+                || i < n_outer && middle(i, outer_turn, n_outer) <= middle(j, inner_turn, n_inner);
             let at = [outer.start + i % n_outer, inner.start + j % n_inner];
             let third = if outer_is_next {
                 i += 1;
@@ -112,51 +112,51 @@ impl Net<'_> {
         }
     }
 
-    /// Closes the end at height `z` (m) whose last ring is `outer`.
+    /// Closes the end at height `z` (m) whose outermost ring is `outer`.
     fn close(&mut self, (mut outer, mut turn): (Range<usize>, usize), z: Real, is_up: bool) {
-        while outer.len() / 4 > FEWER {
-            let inner = self.ring(outer.len() / 4 - FEWER, 0, z);
-            self.zip((&outer, turn), (&inner, 0), is_up);
+        while outer.len() / 4 > SIDE_STEP {
+            let inner = self.ring(outer.len() / 4 - SIDE_STEP, 0, z);
+            self.join((&outer, turn), (&inner, 0), is_up);
             (outer, turn) = (inner, 0);
         }
-        // A strip that goes to and fro between both sides of what is left. It begins at a corner: three
-        // vertices along a side would make no triangle.
+        // A strip that alternates between both halves of the innermost ring. It starts at a corner, because three
+        // vertices of one side do not form a triangle.
         let n = outer.len();
         let at = |k: usize| outer.start + (k + 1) % n;
         let (mut i, mut j) = (0, n - 1);
-        let mut is_low = true;
+        let mut is_first_half = true;
         while i + 1 < j {
-            if is_low {
+            if is_first_half {
                 self.triangle([at(i), at(i + 1), at(j)], is_up);
                 i += 1;
             } else {
                 self.triangle([at(i), at(j - 1), at(j)], is_up);
                 j -= 1;
             }
-            is_low = !is_low;
+            is_first_half = !is_first_half;
         }
     }
 
     fn triangle(&mut self, [a, b, c]: [usize; 3], is_up: bool) {
-        let turned = if is_up { [a, b, c] } else { [a, c, b] };
-        self.triangles.push(turned.map(index));
+        let oriented = if is_up { [a, b, c] } else { [a, c, b] };
+        self.triangles.push(oriented.map(index));
     }
 }
 
-/// The point `part`/`whole` of the way around a square with rounded corners, from the middle of a side,
-/// counterclockwise: x and y (m); its sides are `half` (m) from the centre.
+/// Point (x, y) (m) on a square with rounded corners, at the fraction `part`/`whole` of its circumference from
+/// the middle of a side, counterclockwise. The sides are `half` (m) from the center.
 fn on_contour(part: usize, whole: usize, half: Real, radius: Real) -> (Real, Real) {
     let quarter = whole / 4;
     let straight = half - radius;
     let arc = std::f64::consts::FRAC_PI_2 * radius;
-    let way = (2.0 * straight + arc) * (part % quarter) as Real / quarter as Real;
-    let (x, y) = if way < straight {
-        (half, way)
-    } else if way < straight + arc {
-        let (cosine, sine) = cosine_and_sine((way - straight) / arc / 4.0);
+    let along = (2.0 * straight + arc) * (part % quarter) as Real / quarter as Real;
+    let (x, y) = if along < straight {
+        (half, along)
+    } else if along < straight + arc {
+        let (cosine, sine) = cosine_and_sine((along - straight) / arc / 4.0);
         (straight + radius * cosine, straight + radius * sine)
     } else {
-        (2.0 * straight + arc - way, half)
+        (2.0 * straight + arc - along, half)
     };
     match part / quarter % 4 {
         0 => (x, y),
@@ -171,12 +171,12 @@ mod tests {
     use super::*;
     use crate::physics::membrane::pressure;
 
-    /// Oracles: the beam of Götz, Santarossa, Sack, Pöschel & Müller: 8 cm x 8 cm x 40 cm, 1792 vertices, 3580
-    /// triangles, 2 V − 4 of a closed surface, and what is left of an 8 cm square when corners of
-    /// 1 cm are rounded. Chords a = 9.5 mm lie inside the corners: 1.7 of them at each, and each cuts off
-    /// 2/3 a · a²/8R; that is 0.75 % of the section.
+    /// Oracles: the beam of Götz, Santarossa, Sack, Pöschel & Müller: 8 cm × 8 cm × 40 cm, 1792 vertices, 3580
+    /// triangles, which is 2 V − 4 of a closed surface; the area of an 8 cm square with corners rounded by
+    /// 1 cm. Tolerance: chords a = 9.5 mm cut the corners: 1.7 chords at each corner, each cutting off
+    /// 2/3 a · a²/8R, together 0.75 % of the section.
     #[test]
-    fn the_sources_beam_has_its_vertices_and_its_volume() {
+    fn the_beam_of_the_source_has_the_published_vertices_and_volume() {
         let bar = Bar { width: 0.08, length: 0.4, edge_radius: 0.01, n_side: 8, n_rows: 53 };
         let mesh = Mesh::bar(&bar).unwrap();
         assert_eq!((mesh.n_vertices(), mesh.triangles.len()), (1792, 3580));
@@ -190,8 +190,8 @@ mod tests {
             .map(|[a, b]| (mesh.positions[*a as usize] - mesh.positions[*b as usize]).norm())
             .collect();
         lengths.sort_by(Real::total_cmp);
-        // Oracle: 3580 equilateral triangles on that surface have edges of 9.5 mm. Their shapes
-        // vary where rings meet: none is shorter than half of that, and the longest lie across the last
+        // Oracle: 3580 equilateral triangles on that surface have edges of 9.5 mm. Edges vary where
+        // rings meet: none is shorter than half of that, and the longest lie across the innermost
         // rings, squares of 20 mm with a diagonal of 28.3 mm.
         let median = lengths[lengths.len() / 2];
         assert!((median / 9.5e-3 - 1.0).abs() < 0.05, "{median}");
@@ -199,15 +199,15 @@ mod tests {
         assert!(4.7e-3 < shortest && longest < 28.3e-3, "{shortest} {longest}");
     }
 
-    /// Oracle: the box itself, exactly: sharp edges, and places on them.
+    /// Oracle: the volume of the box, exactly, with vertices on the sharp edges.
     #[test]
     fn a_bar_with_sharp_edges_is_a_box() {
         for n_side in [2, 4, 6] {
             let bar = Bar { width: 0.02, length: 0.05, edge_radius: 0.0, n_side, n_rows: 3 };
             let mesh = Mesh::bar(&bar).unwrap();
             let volume = pressure::volume(&mesh, &mesh.positions);
-            // The middle row is turned by half a place and so cuts the edges: a corner with legs of half a
-            // place, 0.01/n, is missing there and fades out towards both ends, a third of it on the whole.
+            // The middle row is rotated by half a step and so cuts the edges: a triangle with legs of half a
+            // step, 0.01/n, is missing there. It vanishes towards both ends: a third of a prism in total.
             let cut = 4.0 * 0.5 * (0.01 / n_side as Real).powi(2) * 0.05 / 3.0;
             assert!((volume - (0.02 * 0.02 * 0.05 - cut)).abs() < 1e-12, "{volume} {cut}");
             assert!(mesh.is_closed());
@@ -215,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn too_few_vertices_make_no_bar() {
+    fn bars_with_too_few_vertices_are_rejected() {
         let bar = Bar { width: 1.0, length: 1.0, edge_radius: 0.1, n_side: 1, n_rows: 5 };
         assert!(Mesh::bar(&bar).is_err());
         assert!(Mesh::bar(&Bar { n_side: 4, n_rows: 1, ..bar }).is_err());

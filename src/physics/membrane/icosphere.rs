@@ -1,17 +1,17 @@
-//! Spheres, half spheres and flat patches of nearly equilateral triangles.
+//! Meshes of spheres, half spheres and flat patches of nearly equilateral triangles.
 //!
-//! The icosahedron stands on a vertex. Its equator then crosses the ten side faces along the lines
-//! that halve their edges; at an even frequency these are grid lines, so the ring of 5·frequency
-//! vertices at z = 0 cuts the sphere in two halves without cutting a triangle.
+//! The icosahedron has a vertex at each pole. Its equator crosses the ten side faces along the lines
+//! that bisect their edges. At an even frequency these are grid lines, so the ring of 5·frequency
+//! vertices at z = 0 divides the sphere into two halves without dividing a triangle.
 //!
-//! Only square roots are used, no sines: every machine builds the same bits.
+//! Only square roots are used, no sines, so every machine computes the same bits.
 
 use std::collections::BTreeMap;
 
-use super::mesh::{Mesh, MeshFault, index};
+use super::mesh::{Mesh, MeshError, index};
 use crate::base::{Real, Vec3};
 
-/// A point of a face of the icosahedron: corners with their whole-number weights, ascending.
+/// A point on a face of the icosahedron: corners with their integer weights, in ascending order.
 type Weights = [(usize, usize); 3];
 
 impl Mesh {
@@ -20,9 +20,9 @@ impl Mesh {
     ///
     /// # Errors
     /// If the frequency is odd or zero.
-    pub fn half_icosphere(radius: Real, frequency: usize) -> Result<Self, MeshFault> {
+    pub fn half_icosphere(radius: Real, frequency: usize) -> Result<Self, MeshError> {
         if frequency == 0 || !frequency.is_multiple_of(2) {
-            return Err(MeshFault::Frequency { frequency });
+            return Err(MeshError::Frequency { frequency });
         }
         let (positions, triangles) = geodesic(radius, frequency);
         let is_low = |triangle: &[u32; 3]| triangle.iter().all(|&v| positions[v as usize].z <= 0.0);
@@ -31,27 +31,27 @@ impl Mesh {
         Self::new(positions, triangles)
     }
 
-    /// The whole icosphere: 10·frequency² + 2 vertices.
+    /// The complete icosphere: 10·frequency² + 2 vertices.
     ///
     /// # Errors
     /// If the frequency is zero.
-    pub fn icosphere(radius: Real, frequency: usize) -> Result<Self, MeshFault> {
+    pub fn icosphere(radius: Real, frequency: usize) -> Result<Self, MeshError> {
         if frequency == 0 {
-            return Err(MeshFault::Frequency { frequency });
+            return Err(MeshError::Frequency { frequency });
         }
         let (positions, triangles) = geodesic(radius, frequency);
         let (positions, triangles) = coherent(&positions, triangles);
         Self::new(positions, triangles)
     }
 
-    /// A flat hexagon of equilateral triangles with sides `edge`, `rings` deep around its centre,
+    /// A flat hexagon of equilateral triangles with sides `edge`, with `rings` rings around its center,
     /// in the plane z = 0 with normals along +z.
     ///
     /// # Errors
-    /// If it has no ring.
-    pub fn hexagonal_patch(edge: Real, rings: usize) -> Result<Self, MeshFault> {
+    /// If `rings` is 0.
+    pub fn hexagonal_patch(edge: Real, rings: usize) -> Result<Self, MeshError> {
         if rings == 0 {
-            return Err(MeshFault::Frequency { frequency: rings });
+            return Err(MeshError::Frequency { frequency: rings });
         }
         let rows = 2 * rings;
         let is_inside = |q: usize, r: usize| (rings..=3 * rings).contains(&(q + r));
@@ -93,14 +93,14 @@ fn corners() -> [Vec3; 12] {
     for (k, (x, y)) in upper.into_iter().enumerate() {
         let up = Vec3::new(2.0 * x, 2.0 * y, 1.0) / root5;
         corners[1 + k] = up;
-        // The lower ring is the upper one seen in a mirror point: 3 places on, half a place turned.
+        // The lower ring is the upper one reflected through the center: shifted by 2.5 vertices.
         corners[6 + (k + 2) % 5] = -up;
     }
     corners
 }
 
-/// Faces of the icosahedron, counterclockwise from outside. Lower corner k lies half a place
-/// after upper corner k.
+/// Faces of the icosahedron, counterclockwise seen from outside. Lower corner k lies half a step after upper
+/// corner k.
 fn faces() -> Vec<[usize; 3]> {
     let mut faces = Vec::with_capacity(20);
     for k in 0..5 {
@@ -114,7 +114,7 @@ fn faces() -> Vec<[usize; 3]> {
     faces
 }
 
-/// Every face cut into frequency² triangles, all points pulled to the sphere.
+/// Divides every face into frequency² triangles and projects all vertices onto the sphere.
 fn geodesic(radius: Real, frequency: usize) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let corners = corners();
     let mut number: BTreeMap<Weights, u32> = BTreeMap::new();
@@ -162,15 +162,15 @@ fn on_sphere(corners: &[Vec3; 12], weights: &Weights) -> Vec3 {
             _ => below += weight,
         }
     }
-    // As much weight above as below happens only on the side faces, half way down: z is exactly 0.
+    // Equal weights above and below occur only on the side faces, on the equator: z is exactly 0.
     if above == below {
         point.z = 0.0;
     }
     point.normalize()
 }
 
-/// Renumbers vertices and triangles so that neighbours in space are neighbours in memory, and
-/// drops vertices without triangle.
+/// Renumbers vertices and triangles so that those close in space are close in memory, and drops vertices without
+/// triangle.
 pub(super) fn coherent(positions: &[Vec3], triangles: Vec<[u32; 3]>) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let mut order: Vec<u32> = triangles.iter().flatten().copied().collect();
     order.sort_unstable();
@@ -179,14 +179,14 @@ pub(super) fn coherent(positions: &[Vec3], triangles: Vec<[u32; 3]>) -> (Vec<Vec
     order.sort_by_cached_key(|&v| (morton(&(positions[v as usize] / extent)), v));
 
     let mut new_number = vec![0; positions.len()];
-    for (place, &old) in order.iter().enumerate() {
-        new_number[old as usize] = index(place);
+    for (new, &old) in order.iter().enumerate() {
+        new_number[old as usize] = index(new);
     }
     let mut triangles: Vec<[u32; 3]> = triangles
         .into_iter()
         .map(|triangle| {
             let mut renumbered = triangle.map(|v| new_number[v as usize]);
-            // The smallest number first; turning keeps the orientation.
+            // The smallest number comes first; rotating preserves the orientation.
             while renumbered[0] > renumbered[1].min(renumbered[2]) {
                 renumbered.rotate_left(1);
             }
@@ -197,7 +197,7 @@ pub(super) fn coherent(positions: &[Vec3], triangles: Vec<[u32; 3]>) -> (Vec<Vec
     (order.iter().map(|&v| positions[v as usize]).collect(), triangles)
 }
 
-/// Place on the Z-order curve of a point of the cube [−1, 1]³, 10 bits for each axis.
+/// Index on the Z-order curve of a point in the cube \[−1, 1\]³, with 10 bits for each axis.
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to 10 bits")]
 fn morton(point: &Vec3) -> u32 {
     let mut code = 0;

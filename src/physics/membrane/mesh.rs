@@ -1,23 +1,23 @@
-//! A triangle mesh with its connectivity: edges, hinges, rims, and what meets at each vertex.
+//! A triangle mesh with its connectivity: edges, hinges, rims, and incidence lists of the vertices.
 //!
 //! ```text
 //!            r1                triangle 1 = (r1, r3, r4), triangle 2 = (r2, r4, r3),
 //!          /    \              both with outward normals, so
 //!        /   1    \              n1 = (r1 − r3) × (r1 − r4)
 //!      r3 -------- r4            n2 = (r2 − r4) × (r2 − r3)
-//!        \   2    /            as in Götz (2024) eqs. 17, 18.
+//!        \   2    /            as in Götz (2024), eqs. 17, 18.
 //!          \    /
 //!            r2
 //! ```
 //!
-//! Every edge between two triangles is a hinge. Edges are numbered so that these come first:
-//! hinge `h` folds about edge `h`, and edges from `hinges.len()` on are on the boundary.
+//! Every edge between two triangles is a hinge. Hinges come first in the numbering of edges: hinge `h` folds about
+//! edge `h`, and edges from `hinges.len()` on are boundary edges.
 
 use thiserror::Error;
 
 use crate::base::{Real, Vec3};
 
-/// Stands where a boundary edge has no second triangle.
+/// Marks the missing second triangle of a boundary edge.
 pub const NONE: u32 = u32::MAX;
 
 /// Two triangles that share an edge.
@@ -29,7 +29,7 @@ pub struct Hinge {
     pub triangles: [u32; 2],
 }
 
-/// Which entries belong to each vertex: all lists end to end, and where each begins.
+/// A list of entries for each vertex, stored contiguously.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Incidence {
     starts: Vec<u32>,
@@ -37,7 +37,7 @@ pub struct Incidence {
 }
 
 impl Incidence {
-    /// Sorts `(vertex, entry)` by vertex; the entries of a vertex keep their order.
+    /// Sorts pairs `(vertex, entry)` by vertex. The entries of a vertex keep their order.
     fn new(n_vertices: usize, pairs: &[(u32, u32)]) -> Self {
         let mut starts = vec![0_u32; n_vertices + 1];
         for &(vertex, _) in pairs {
@@ -62,49 +62,51 @@ impl Incidence {
     }
 }
 
-/// A consistently oriented surface of one or more parts, each closed or with rims.
+/// A consistently oriented surface with one or more parts, each closed or with rims.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mesh {
     /// Reference position of each vertex (m).
     pub positions: Vec<Vec3>,
     /// Vertices of each triangle, counterclockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
-    /// Ends of each edge; those of hinges first. A boundary edge runs as its triangle does.
+    /// Ends of each edge, hinges first. A boundary edge has the direction of its triangle.
     pub edges: Vec<[u32; 2]>,
     /// The two triangles at each edge that is not on the boundary.
     pub hinges: Vec<Hinge>,
     /// Triangles on both sides of each edge, the second `NONE` on the boundary.
     pub triangles_of_edge: Vec<[u32; 2]>,
-    /// Edges of each triangle: `k` joins its vertices `k` and `k + 1`.
+    /// Edges of each triangle: edge `k` joins its vertices `k` and `k + 1`.
     pub edges_of_triangle: Vec<[u32; 3]>,
     /// Triangle across each edge of each triangle, `NONE` on the boundary.
-    pub neighbours_of_triangle: Vec<[u32; 3]>,
-    /// Each loop of the boundary: its vertices in order around, right-handed about the outward
-    /// normal of a lid that closes it. None for a closed mesh.
+    pub neighbors_of_triangle: Vec<[u32; 3]>,
+    /// Vertices of each boundary loop, in right-handed order about the outward normal of a lid that closes it.
+    /// Empty for a closed mesh.
     pub rims: Vec<Vec<u32>>,
-    /// True for vertices of the boundary.
+    /// True for boundary vertices.
     pub is_on_rim: Vec<bool>,
     /// Triangles at each vertex.
     pub triangles_of_vertex: Incidence,
-    /// `4 · edge + slot` of each vertex: slots 0 and 1 face a hinge as r1 and r2, slots 2 and 3
-    /// are the ends r3 and r4 of the edge.
+    /// `4 · edge + slot` for each role of a vertex: slots 0 and 1 are r1 and r2 of a hinge, slots 2 and 3 are the
+    /// ends r3 and r4 of the edge.
     pub slots_of_vertex: Incidence,
 }
 
-/// Why triangles do not make a usable surface.
+/// Why triangles do not form a valid surface.
 #[derive(Clone, Debug, Error, PartialEq)]
-pub enum MeshFault {
-    /// A vertex index past the end.
-    #[error("triangle {triangle} names vertex {vertex}, but there are only {n_vertices} vertices")]
+pub enum MeshError {
+    /// A vertex index that does not exist.
+    #[error(
+        "triangle {triangle} refers to vertex {vertex}, but there are only {n_vertices} vertices"
+    )]
     NoSuchVertex {
         /// The triangle.
         triangle: usize,
-        /// The index it names.
+        /// The invalid index.
         vertex: u32,
-        /// How many vertices there are.
+        /// Number of vertices.
         n_vertices: usize,
     },
-    /// A coordinate that is not a number.
+    /// A coordinate that is not finite.
     #[error("vertex {vertex} has a coordinate that is not finite")]
     NotFinite {
         /// The vertex.
@@ -117,18 +119,18 @@ pub enum MeshFault {
         triangle: usize,
     },
     /// More than two triangles at one edge.
-    #[error("edge {from}-{to} belongs to {count} triangles, at most 2 make a surface")]
+    #[error("edge {from}-{to} belongs to {count} triangles; a surface has at most 2 at each edge")]
     Branching {
         /// One end.
         from: u32,
         /// The other end.
         to: u32,
-        /// How many triangles meet there.
+        /// Number of triangles at the edge.
         count: usize,
     },
-    /// Two neighbours that disagree about which side is outside.
+    /// Two adjacent triangles with opposite orientations.
     #[error(
-        "triangles {first} and {second} run the same way along edge {from}-{to}: turn one over"
+        "triangles {first} and {second} have opposite orientations at edge {from}-{to}; flip one of them"
     )]
     Orientation {
         /// One end of the edge.
@@ -140,56 +142,59 @@ pub enum MeshFault {
         /// The other triangle.
         second: usize,
     },
-    /// A vertex of no triangle.
+    /// A vertex without triangle.
     #[error("vertex {vertex} belongs to no triangle; remove it")]
     Unused {
         /// The vertex.
         vertex: usize,
     },
-    /// A boundary that meets itself.
-    #[error("vertex {vertex} is on two rims: take it apart")]
+    /// A boundary that touches itself.
+    #[error("vertex {vertex} is on two rims; split it into two vertices")]
     TwoRims {
         /// The vertex.
         vertex: u32,
     },
-    /// A tube that goes around nothing.
-    #[error("a tube needs 3 vertices around and 2 rows at least, not {n_around} and {n_rows}")]
+    /// A tube or bar with too few vertices.
+    #[error(
+        "{n_around} vertices around and {n_rows} rows are too few; a tube needs at least 3 and 2, a \
+         bar 8 and 2"
+    )]
     TooFew {
-        /// Vertices in a row.
+        /// Number of vertices in a row.
         n_around: usize,
-        /// Rows.
+        /// Number of rows.
         n_rows: usize,
     },
-    /// A disc without a ring of vertices.
-    #[error("a disc needs 1 ring of vertices at least, not {n_rings}")]
+    /// A disc without rings.
+    #[error("a disc needs at least 1 ring of vertices, not {n_rings}")]
     TooFewRings {
-        /// Rings.
+        /// Number of rings.
         n_rings: usize,
     },
-    /// A frequency without a ring of edges on the equator.
+    /// A frequency without edges on the equator.
     #[error("subdivision frequency {frequency} is not an even number of at least 2")]
     Frequency {
-        /// The frequency given.
+        /// The invalid frequency.
         frequency: usize,
     },
 }
 
-/// One side of one triangle, for sorting equal edges together.
+/// One side of one triangle. Sorting brings the sides of an edge together.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Side {
     low: u32,
     high: u32,
-    runs_down: bool,
+    is_descending: bool,
     triangle: u32,
-    place: u32,
+    slot: u32,
 }
 
 impl Mesh {
-    /// Finds edges, hinges and rim of `triangles`.
+    /// Creates a mesh and finds its edges, hinges and rims.
     ///
     /// # Errors
-    /// If the triangles are no consistently oriented surface with rims that do not touch.
-    pub fn new(positions: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Result<Self, MeshFault> {
+    /// If the triangles do not form a consistently oriented surface whose rims do not touch.
+    pub fn new(positions: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Result<Self, MeshError> {
         check_triangles(&positions, &triangles)?;
         let sides = sorted_sides(&triangles);
         let (inner, outer) = pair_sides(&sides)?;
@@ -200,7 +205,7 @@ impl Mesh {
             hinges: Vec::with_capacity(inner.len()),
             triangles_of_edge: Vec::with_capacity(inner.len() + outer.len()),
             edges_of_triangle: vec![[NONE; 3]; triangles.len()],
-            neighbours_of_triangle: vec![[NONE; 3]; triangles.len()],
+            neighbors_of_triangle: vec![[NONE; 3]; triangles.len()],
             is_on_rim: vec![false; positions.len()],
             triangles_of_vertex: triangles_of_vertex(positions.len(), &triangles),
             slots_of_vertex: Incidence { starts: vec![], entries: vec![] },
@@ -224,7 +229,7 @@ impl Mesh {
     fn add_hinge(&mut self, up: Side, down: Side) {
         let edge = index(self.edges.len());
         let opposite =
-            |side: Side| self.triangles[side.triangle as usize][(side.place as usize + 2) % 3];
+            |side: Side| self.triangles[side.triangle as usize][(side.slot as usize + 2) % 3];
         self.hinges.push(Hinge {
             vertices: [opposite(up), opposite(down), up.low, up.high],
             triangles: [up.triangle, down.triangle],
@@ -232,18 +237,18 @@ impl Mesh {
         self.edges.push([up.low, up.high]);
         self.triangles_of_edge.push([up.triangle, down.triangle]);
         for (side, other) in [(up, down), (down, up)] {
-            let (triangle, place) = (side.triangle as usize, side.place as usize);
-            self.edges_of_triangle[triangle][place] = edge;
-            self.neighbours_of_triangle[triangle][place] = other.triangle;
+            let (triangle, slot) = (side.triangle as usize, side.slot as usize);
+            self.edges_of_triangle[triangle][slot] = edge;
+            self.neighbors_of_triangle[triangle][slot] = other.triangle;
         }
     }
 
     fn add_boundary_edge(&mut self, side: Side) {
         let edge = index(self.edges.len());
-        let (triangle, place) = (side.triangle as usize, side.place as usize);
-        self.edges.push(ends(&self.triangles[triangle], place));
+        let (triangle, slot) = (side.triangle as usize, side.slot as usize);
+        self.edges.push(ends(&self.triangles[triangle], slot));
         self.triangles_of_edge.push([side.triangle, NONE]);
-        self.edges_of_triangle[triangle][place] = edge;
+        self.edges_of_triangle[triangle][slot] = edge;
     }
 
     fn find_slots(&self) -> Incidence {
@@ -265,17 +270,17 @@ impl Mesh {
         self.positions.len()
     }
 
-    /// True when the edge belongs to one triangle only.
+    /// True if the edge belongs to only one triangle.
     pub fn is_boundary(&self, edge: usize) -> bool {
         self.hinges.len() <= edge
     }
 
-    /// True when the mesh has no rim.
+    /// True if the mesh has no rim.
     pub fn is_closed(&self) -> bool {
         self.rims.is_empty()
     }
 
-    /// A third of the reference area of the triangles at each vertex (m²).
+    /// A third of the reference area of the triangles at each vertex (m²): the area that a vertex represents.
     pub fn vertex_areas(&self) -> Vec<Real> {
         let mut areas = vec![0.0; self.n_vertices()];
         for triangle in &self.triangles {
@@ -288,22 +293,22 @@ impl Mesh {
     }
 }
 
-/// Outward normal of a triangle, as long as twice its area (m²).
+/// Outward normal of a triangle; its length is twice the area (m²).
 #[inline]
 pub fn area_normal(positions: &[Vec3], triangle: &[u32; 3]) -> Vec3 {
     let [a, b, c] = triangle.map(|v| positions[v as usize]);
     (b - a).cross(&(c - a))
 }
 
-/// A place in a list as the 32-bit number that meshes store.
+/// An index as the 32-bit number that meshes store.
 #[expect(clippy::cast_possible_truncation, reason = "meshes stay far below 2³² entries")]
-pub(super) fn index(place: usize) -> u32 {
-    debug_assert!(place < NONE as usize);
-    place as u32
+pub(super) fn index(i: usize) -> u32 {
+    debug_assert!(i < NONE as usize);
+    i as u32
 }
 
-fn ends(triangle: &[u32; 3], place: usize) -> [u32; 2] {
-    [triangle[place], triangle[(place + 1) % 3]]
+fn ends(triangle: &[u32; 3], slot: usize) -> [u32; 2] {
+    [triangle[slot], triangle[(slot + 1) % 3]]
 }
 
 fn triangles_of_vertex(n_vertices: usize, triangles: &[[u32; 3]]) -> Incidence {
@@ -312,28 +317,28 @@ fn triangles_of_vertex(n_vertices: usize, triangles: &[[u32; 3]]) -> Incidence {
     Incidence::new(n_vertices, &pairs)
 }
 
-fn check_triangles(positions: &[Vec3], triangles: &[[u32; 3]]) -> Result<(), MeshFault> {
+fn check_triangles(positions: &[Vec3], triangles: &[[u32; 3]]) -> Result<(), MeshError> {
     let n_vertices = positions.len();
     if let Some(vertex) = positions.iter().position(|p| !p.iter().all(|x| x.is_finite())) {
-        return Err(MeshFault::NotFinite { vertex });
+        return Err(MeshError::NotFinite { vertex });
     }
     let mut is_used = vec![false; n_vertices];
     for (t, triangle) in triangles.iter().enumerate() {
         for &vertex in triangle {
             if n_vertices <= vertex as usize {
-                return Err(MeshFault::NoSuchVertex { triangle: t, vertex, n_vertices });
+                return Err(MeshError::NoSuchVertex { triangle: t, vertex, n_vertices });
             }
             is_used[vertex as usize] = true;
         }
         let [a, b, c] = triangle.map(|v| positions[v as usize]);
         let longest = (b - a).norm_squared().max((c - a).norm_squared());
-        // A height of 10⁻¹² of the side is rounding, not shape.
+        // A height below 10⁻¹² of the side is rounding.
         if (b - a).cross(&(c - a)).norm() <= 1e-12 * longest {
-            return Err(MeshFault::NoArea { triangle: t });
+            return Err(MeshError::NoArea { triangle: t });
         }
     }
     match is_used.iter().position(|used| !used) {
-        Some(vertex) => Err(MeshFault::Unused { vertex }),
+        Some(vertex) => Err(MeshError::Unused { vertex }),
         None => Ok(()),
     }
 }
@@ -341,14 +346,14 @@ fn check_triangles(positions: &[Vec3], triangles: &[[u32; 3]]) -> Result<(), Mes
 fn sorted_sides(triangles: &[[u32; 3]]) -> Vec<Side> {
     let mut sides = Vec::with_capacity(3 * triangles.len());
     for (t, triangle) in triangles.iter().enumerate() {
-        for place in 0..3 {
-            let [from, to] = ends(triangle, place);
+        for slot in 0..3 {
+            let [from, to] = ends(triangle, slot);
             sides.push(Side {
                 low: from.min(to),
                 high: from.max(to),
-                runs_down: to < from,
+                is_descending: to < from,
                 triangle: index(t),
-                place: index(place),
+                slot: index(slot),
             });
         }
     }
@@ -356,15 +361,15 @@ fn sorted_sides(triangles: &[[u32; 3]]) -> Vec<Side> {
     sides
 }
 
-/// Sides that meet, as [running up, running down], and sides left alone.
-fn pair_sides(sides: &[Side]) -> Result<(Vec<[Side; 2]>, Vec<Side>), MeshFault> {
+/// Pairs of sides at the same edge, as (ascending, descending), and sides without partner.
+fn pair_sides(sides: &[Side]) -> Result<(Vec<[Side; 2]>, Vec<Side>), MeshError> {
     let (mut inner, mut outer) = (Vec::new(), Vec::new());
     for group in sides.chunk_by(|a, b| (a.low, a.high) == (b.low, b.high)) {
         match *group {
             [side] => outer.push(side),
-            [up, down] if !up.runs_down && down.runs_down => inner.push([up, down]),
+            [up, down] if !up.is_descending && down.is_descending => inner.push([up, down]),
             [a, b] => {
-                return Err(MeshFault::Orientation {
+                return Err(MeshError::Orientation {
                     from: a.low,
                     to: a.high,
                     first: a.triangle as usize,
@@ -373,35 +378,34 @@ fn pair_sides(sides: &[Side]) -> Result<(Vec<[Side; 2]>, Vec<Side>), MeshFault> 
             }
             _ => {
                 let (from, to) = (group[0].low, group[0].high);
-                return Err(MeshFault::Branching { from, to, count: group.len() });
+                return Err(MeshError::Branching { from, to, count: group.len() });
             }
         }
     }
     Ok((inner, outer))
 }
 
-/// The loops of boundary sides, against the direction in which their triangles run, in the order of
-/// their first sides.
+/// The loops of boundary sides, against the direction of their triangles, in the order of their first sides.
 fn rim_loops(
     n_vertices: usize,
     triangles: &[[u32; 3]],
     outer: &[Side],
-) -> Result<Vec<Vec<u32>>, MeshFault> {
-    let mut before = vec![NONE; n_vertices];
+) -> Result<Vec<Vec<u32>>, MeshError> {
+    let mut previous = vec![NONE; n_vertices];
     for side in outer {
-        let [from, to] = ends(&triangles[side.triangle as usize], side.place as usize);
-        if before[to as usize] != NONE {
-            return Err(MeshFault::TwoRims { vertex: to });
+        let [from, to] = ends(&triangles[side.triangle as usize], side.slot as usize);
+        if previous[to as usize] != NONE {
+            return Err(MeshError::TwoRims { vertex: to });
         }
-        before[to as usize] = from;
+        previous[to as usize] = from;
     }
     let mut rims = Vec::new();
     for first in outer {
         let mut rim = Vec::new();
         let mut vertex = first.low;
-        while before[vertex as usize] != NONE {
+        while previous[vertex as usize] != NONE {
             rim.push(vertex);
-            vertex = std::mem::replace(&mut before[vertex as usize], NONE);
+            vertex = std::mem::replace(&mut previous[vertex as usize], NONE);
         }
         if !rim.is_empty() {
             rims.push(rim);

@@ -1,6 +1,4 @@
-//! The flexible bag: a mesh of springs and hinges under pressure.
-//!
-//! Its forces stand in `forces`.
+//! Flexible membranes: meshes of springs and hinges under pressure. `forces` computes their forces.
 
 pub mod mesh;
 mod icosphere;
@@ -8,7 +6,7 @@ mod parts;
 mod tube;
 pub mod bar;
 mod disc;
-pub mod shape; // all of them by name
+pub mod shape; // all shapes of membranes
 pub mod stretch;
 pub mod bridson_2003;
 pub mod pressure;
@@ -33,7 +31,7 @@ use crate::{
     scene,
 };
 
-/// What the membrane is made of.
+/// Material of a membrane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MembraneMaterial {
     /// Thickness d (m).
@@ -50,25 +48,25 @@ pub struct MembraneMaterial {
     pub bending_damping: Real,
 }
 
-/// Which surface of the membrane grains touch.
+/// Contact geometry of the membrane for grains.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum MembraneContact {
-    /// Its triangles: a closed surface without thickness.
+    /// Its triangles: a surface without gaps or thickness.
     Triangles,
-    /// Spheres around its vertices, the classic mass-spring membrane. They do not touch each other.
+    /// Spheres around its vertices: the classic mass–spring membrane. They do not touch each other.
     Spheres {
         /// Radius of each sphere (m).
         radius: Real,
     },
 }
 
-/// Stands for the holder of a vertex that no wall holds.
+/// Holder of a vertex that no wall holds.
 pub const FREE: u32 = u32::MAX;
-/// The first wall as a holder.
+/// The carrier, which is the first wall, as a holder.
 pub const CARRIER_ID: u32 = 0;
 
 impl MembraneMaterial {
-    /// That of a scene.
+    /// The material of a scene's membrane.
     pub fn of(membrane: &scene::Membrane) -> Self {
         Self {
             thickness: membrane.thickness,
@@ -81,39 +79,39 @@ impl MembraneMaterial {
     }
 }
 
-/// The parameters of the membrane, which stay during a run.
+/// Parameters of the membrane, which do not change during a run.
 #[derive(Clone, Debug)]
 pub struct MembraneModel {
     /// Connectivity and reference shape.
     pub mesh: Mesh,
-    /// What the membrane is made of; of several parts, the first.
+    /// Material of the membrane; of its first part if there are several.
     pub material: MembraneMaterial,
-    /// Mass of each vertex: ρ d times a third of the areas at it (kg).
+    /// Mass of each vertex (kg): ρ d times a third of the area of the adjacent triangles.
     pub masses: Vec<Real>,
-    /// Which wall holds each vertex, `FREE` for none. Forces on held vertices are computed like all
-    /// others: they are what the membrane exerts on the wall.
+    /// Wall that holds each vertex, or `FREE`. Forces on held vertices are computed like all others; the membrane
+    /// exerts them on the wall.
     pub holders: Vec<u32>,
-    /// What of it grains touch.
+    /// Contact geometry for grains.
     pub contact: MembraneContact,
-    /// Springs and hinges, numbered like the edges.
+    /// Springs and hinges, in the order of the edges.
     links: Vec<Link>,
-    /// Twice the reference areas at each hinge (m²) if these are to be taken; else empty.
-    first_areas: [Vec<Real>; 2],
+    /// Twice the reference areas of the triangles at each hinge (m²) if hinges use them; else empty.
+    reference_areas: [Vec<Real>; 2],
     /// Elastic (N m) and dissipative (N s) bending constant of each hinge if parts differ; else empty.
     bending: [Vec<Real>; 2],
 }
 
-/// An edge with all that its forces need, in one place in memory.
+/// An edge with all parameters of its forces, contiguous in memory.
 #[derive(Clone, Copy, Debug)]
 struct Link {
-    /// r1 to r4; on the boundary r1 and r2 are the ends r3 and r4 once more.
+    /// Vertices r1 to r4. On the boundary, r1 and r2 repeat r3 and r4.
     vertices: [u32; 4],
-    /// Triangles 1 and 2; on the boundary twice 0.
+    /// Triangles 1 and 2. On the boundary, both are 0.
     triangles: [u32; 2],
     law: LinkLaw,
 }
 
-/// What a link's forces depend on besides its shape.
+/// Parameters of the forces of a link.
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 struct LinkLaw {
@@ -122,7 +120,7 @@ struct LinkLaw {
     rest_half_sine: Real,
 }
 
-/// The membrane as it moves.
+/// Motion of the membrane.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MembraneState {
     /// Position of each vertex (m). Written by `integrate`.
@@ -131,18 +129,18 @@ pub struct MembraneState {
     pub velocities: Vec<Vec3>,
 }
 
-/// A triangle's orientation at one instant.
+/// Area and orientation of a triangle at one instant.
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub struct Facet {
-    /// Outward normal, as long as twice the area (m²).
+    /// Outward normal; its length is twice the area (m²).
     pub area_normal: Vec3,
-    /// One over that length (1/m²).
+    /// Inverse of that length (1/m²).
     pub inverse_norm: Real,
 }
 
 impl Facet {
-    /// Of a triangle of `mesh`.
+    /// Computes the facet of a triangle with the vertices at `positions`.
     #[inline(always)]
     fn new(positions: &[Vec3], triangle: &[u32; 3]) -> Self {
         let area_normal = area_normal(positions, triangle);
@@ -156,17 +154,17 @@ impl Facet {
     }
 }
 
-/// Orientations of triangles, one in each lane.
+/// Area and orientation of one triangle in each lane.
 #[derive(Clone, Copy, Debug)]
 pub struct Side<L> {
-    /// Outward normal, as long as twice the area (m²).
+    /// Outward normal; its length is twice the area (m²).
     pub area_normal: Vector<L>,
-    /// One over that length (1/m²).
+    /// Inverse of that length (1/m²).
     pub inverse_norm: L,
 }
 
 impl<L: Lanes> Side<L> {
-    /// Of the triangle with these corners.
+    /// Computes the side from the corners of its triangle.
     #[inline(always)]
     fn new([a, b, c]: [Vector<L>; 3]) -> Self {
         let area_normal = (b - a).cross(c - a);
@@ -180,26 +178,26 @@ impl From<&Facet> for Side<Real> {
     }
 }
 
-/// Position (m) and velocity (m/s) of a vertex, each with a fourth number without meaning.
+/// Position (m) and velocity (m/s) of a vertex; the fourth numbers are unused.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C, align(64))]
 pub struct VertexRow {
     /// Position (m).
-    pub place: [Real; 4],
+    pub position: [Real; 4],
     /// Velocity (m/s).
     pub velocity: [Real; 4],
 }
 
-/// What `forces` computes in every substep.
+/// Working memory of `forces`.
 #[derive(Clone, Debug)]
 pub struct MembraneScratch {
-    /// Orientation of each triangle. Written by `forces`.
+    /// Area and orientation of each triangle. Written by `forces`.
     pub facets: Vec<Facet>,
-    /// What laws need of each vertex. Written by `forces`.
+    /// Position and velocity of each vertex, contiguous in memory. Written by `forces`.
     pub vertices: Vec<VertexRow>,
-    /// Forces of each link on its first two vertices (N), four numbers each. Written by `forces`.
+    /// Forces of each link on r1 and r2 (N), four numbers each. Written by `forces`.
     wing_forces: Vec<[Real; 8]>,
-    /// The same for the ends of its edge.
+    /// Forces of each link on r3 and r4, the ends of its edge (N), four numbers each. Written by `forces`.
     end_forces: Vec<[Real; 8]>,
     /// Force of springs, hinges and pressure on each vertex (N). Written by `forces`.
     pub forces: Vec<Vec3>,
@@ -208,7 +206,7 @@ pub struct MembraneScratch {
 impl MembraneModel {
     /// No membrane.
     pub fn none() -> Self {
-        let mesh = Mesh::new(Vec::new(), Vec::new()).expect("an empty mesh has no fault");
+        let mesh = Mesh::new(Vec::new(), Vec::new()).expect("an empty mesh is valid");
         let material = MembraneMaterial {
             thickness: 0.0,
             youngs_modulus: 0.0,
@@ -220,8 +218,8 @@ impl MembraneModel {
         Self::new(mesh, material)
     }
 
-    /// A membrane of `material` in the shape of `mesh`, free of stress there. The carrier holds its
-    /// rims, and grains touch its triangles.
+    /// A membrane of `material`, stress-free in the shape of `mesh`. The carrier holds its rims, and grains touch
+    /// its triangles.
     pub fn new(mesh: Mesh, material: MembraneMaterial) -> Self {
         let mass_per_area = material.density * material.thickness;
         let masses: Vec<Real> = mesh.vertex_areas().iter().map(|a| a * mass_per_area).collect();
@@ -258,27 +256,27 @@ impl MembraneModel {
             holders,
             contact: MembraneContact::Triangles,
             links,
-            first_areas: [Vec::new(), Vec::new()],
+            reference_areas: [Vec::new(), Vec::new()],
             bending: [Vec::new(), Vec::new()],
             material,
             mesh,
         }
     }
 
-    /// From now on hinges take the areas of the reference shape, as Götz (2024), section 3.3.1, does.
+    /// Makes hinges use the areas of the reference shape, as in Götz (2024), section 3.3.1.
     pub fn bend_by_first_areas(&mut self) {
         let mesh = &self.mesh;
         let twice = |t: u32| area_normal(&mesh.positions, &mesh.triangles[t as usize]).norm();
-        self.first_areas =
+        self.reference_areas =
             [0, 1].map(|side| mesh.hinges.iter().map(|it| twice(it.triangles[side])).collect());
     }
 
-    /// Makes every spring's rest length `scale` times its length in the reference shape.
+    /// Sets the rest length of every spring to `scale` times its length in the reference shape.
     pub fn scale_rest_lengths(&mut self, scale: Real) {
         self.scale_rest_lengths_of(0..self.mesh.n_vertices(), scale);
     }
 
-    /// The same for the springs of one part: those between the vertices of a range.
+    /// Like `scale_rest_lengths`, for the springs between the vertices of one part.
     pub fn scale_rest_lengths_of(&mut self, part: Range<usize>, scale: Real) {
         for (link, ends) in self.links.iter_mut().zip(&self.mesh.edges) {
             if ends.iter().all(|&v| part.contains(&(v as usize))) {
@@ -288,7 +286,7 @@ impl MembraneModel {
         }
     }
 
-    /// Takes the angles of the hinges in `positions` as those at rest.
+    /// Sets the rest angles of all hinges to their angles at `positions` (m).
     pub fn rest_angles_from(&mut self, positions: &[Vec3]) {
         for link in &mut self.links[..self.mesh.hinges.len()] {
             let facets =
@@ -297,7 +295,7 @@ impl MembraneModel {
         }
     }
 
-    /// Mass of the whole membrane (kg).
+    /// Total mass (kg).
     pub fn mass(&self) -> Real {
         self.masses.iter().sum()
     }
@@ -309,7 +307,7 @@ impl Link {
         self.triangles[0] != self.triangles[1]
     }
 
-    /// r1 to r4 of `vectors`.
+    /// The vectors at r1 to r4.
     #[inline(always)]
     fn corners<'a>(&self, vectors: &'a [Vec3]) -> [&'a Vec3; 4] {
         self.vertices.map(|v| &vectors[v as usize])
@@ -335,7 +333,7 @@ impl MembraneState {
 }
 
 impl MembraneScratch {
-    /// Room for the forces of `model`.
+    /// Working memory for `model`.
     pub fn new(model: &MembraneModel) -> Self {
         let facet = Facet { area_normal: Vec3::zeros(), inverse_norm: 0.0 };
         Self {

@@ -1,26 +1,26 @@
-//! Surfaces put together from parts, and turned inside out.
+//! Joins meshes and membranes, and turns meshes inside out.
 
 use super::{
     Link, MembraneModel,
-    mesh::{Mesh, MeshFault, index},
+    mesh::{Mesh, MeshError, index},
 };
 use crate::base::Real;
 
 impl Mesh {
-    /// The same surface with its outside where the inside was.
+    /// The same surface with inside and outside exchanged.
     ///
     /// # Errors
-    /// None that the mesh did not have before.
-    pub fn inside_out(self) -> Result<Self, MeshFault> {
-        let turned = self.triangles.into_iter().map(|[a, b, c]| [a, c, b]).collect();
-        Self::new(self.positions, turned)
+    /// None if the mesh is valid.
+    pub fn inside_out(self) -> Result<Self, MeshError> {
+        let flipped = self.triangles.into_iter().map(|[a, b, c]| [a, c, b]).collect();
+        Self::new(self.positions, flipped)
     }
 
-    /// Both surfaces as one: the vertices of `self` first, then those of `other`.
+    /// Joins two surfaces: the vertices of `self` come first, then those of `other`.
     ///
     /// # Errors
-    /// None that the meshes did not have before.
-    pub fn joined(self, other: &Self) -> Result<Self, MeshFault> {
+    /// None if the meshes are valid.
+    pub fn joined(self, other: &Self) -> Result<Self, MeshError> {
         let first = index(self.n_vertices());
         let Self { mut positions, mut triangles, .. } = self;
         positions.extend_from_slice(&other.positions);
@@ -36,18 +36,18 @@ impl MembraneModel {
         [0, 1].map(|k| self.bending[k].get(hinge).copied().unwrap_or(of_all[k]))
     }
 
-    /// True if hinges take the areas of the reference shape.
+    /// True if hinges use the areas of the reference shape.
     pub fn bends_by_first_areas(&self) -> bool {
-        !self.first_areas[0].is_empty()
+        !self.reference_areas[0].is_empty()
     }
 
-    /// Both membranes as one, each with its own material, rest lengths and holders: the vertices
-    /// and facets of `self` first, then those of `other`. What grains touch, and whether hinges
-    /// take the areas of the reference shape, is the same for all parts: as in `self`.
+    /// Joins two membranes, each with its own material, rest lengths and holders. The vertices and facets of
+    /// `self` come first, then those of `other`. Contact geometry, and whether hinges use the areas of the
+    /// reference shape, are those of `self`.
     ///
     /// # Errors
-    /// None that the meshes did not have before.
-    pub fn joined(mut self, other: &Self) -> Result<Self, MeshFault> {
+    /// None if the meshes are valid.
+    pub fn joined(mut self, other: &Self) -> Result<Self, MeshError> {
         let bends_by_first_areas = self.bends_by_first_areas();
         let constants = |of: &Self| {
             [of.material.bending_stiffness, of.material.bending_damping].map(Real::to_bits)
@@ -61,7 +61,7 @@ impl MembraneModel {
         }
         let shift = [self.mesh.n_vertices(), self.mesh.triangles.len()].map(index);
         let mesh = self.mesh.joined(&other.mesh)?;
-        // As `Mesh` numbers edges: hinges by their vertices first, then boundary edges.
+        // In the order of the edges of `Mesh`: hinges first, sorted by vertices, then boundary edges.
         let shifted = |link: &Link| {
             let moved = link.triangles.map(|t| t + shift[1]);
             let triangles = if link.is_hinge() { moved } else { link.triangles };
@@ -90,11 +90,10 @@ mod tests {
     };
     use crate::base::Vec3;
 
-    /// Oracle: each membrane alone. In one system they have the same forces to the bit: they are
-    /// summed link by link in the same order. The critical step is the smaller one; 1 % is what
-    /// power iteration may miss.
+    /// Oracle: each membrane alone. Joined, they have the same forces to the bit, because links are summed in
+    /// the same order. The critical step is the smaller one. Tolerance: 1 % for power iteration.
     #[test]
-    fn joined_membranes_have_the_forces_they_have_alone() {
+    fn joined_membranes_have_the_same_forces_as_alone() {
         let material = MembraneMaterial {
             thickness: 3e-4,
             youngs_modulus: 1e6,
@@ -111,7 +110,7 @@ mod tests {
         let moved = |model: &MembraneModel| {
             let mut state = MembraneState::at_rest(&model.mesh);
             for (position, velocity) in state.positions.iter_mut().zip(&mut state.velocities) {
-                // Anything that bends and stretches and depends on the place alone.
+                // Any deformation that bends and stretches and depends only on the position.
                 let p = *position * 200.0;
                 *position +=
                     Vec3::new((p.y + p.z).sin(), (2.0 * p.x).cos(), (p.x * p.y).sin()) * 4e-4;
@@ -129,7 +128,7 @@ mod tests {
         assert!((steps[2] / steps[0].min(steps[1]) - 1.0).abs() < 0.01, "{steps:?}");
     }
 
-    /// Oracle: the volumes of the two meshes alone; the air's load on a closed surface has no sum.
+    /// Oracle: the volumes of the two meshes alone; the pressure on a closed surface has no resultant.
     #[test]
     fn a_shell_between_two_spheres_encloses_the_difference() {
         let (outer, inner) = (Mesh::icosphere(0.04, 6).unwrap(), Mesh::icosphere(0.01, 2).unwrap());
@@ -140,6 +139,6 @@ mod tests {
         assert!(shell.is_closed());
         let gradient = pressure::volume_gradient(&shell, &shell.positions);
         let sum: crate::base::Vec3 = gradient.iter().sum();
-        assert!(sum.norm() < 1e-16, "{sum}: rounding of areas of 1e-6 m²");
+        assert!(sum.norm() < 1e-16, "{sum}: more than rounding of areas of 1e-6 m²");
     }
 }

@@ -1,8 +1,8 @@
-//! The shapes a membrane can have.
+//! Shapes of membranes.
 
 use super::{
     bar::Bar,
-    mesh::{Mesh, MeshFault},
+    mesh::{Mesh, MeshError},
 };
 use crate::base::{Real, Vec3};
 
@@ -13,37 +13,37 @@ pub enum MembraneShape {
     HalfIcosphere {
         /// Radius (m).
         radius: Real,
-        /// Parts into which each edge of the icosahedron is cut, an even number.
+        /// Number of parts into which each edge of the icosahedron is divided; must be even.
         frequency: usize,
     },
     /// A closed icosphere around the origin.
     Icosphere {
         /// Radius (m).
         radius: Real,
-        /// Parts into which each edge of the icosahedron is cut.
+        /// Number of parts into which each edge of the icosahedron is divided.
         frequency: usize,
     },
-    /// A cylinder around z, centred on the origin, with two rims.
+    /// A cylinder around z, centered on the origin, with two rims.
     Tube {
         /// Radius (m).
         radius: Real,
         /// Height (m).
         height: Real,
-        /// Vertices of a row.
+        /// Number of vertices in a row.
         n_around: usize,
-        /// Rows.
+        /// Number of rows.
         n_rows: usize,
     },
-    /// A closed bar along z with a square cross-section, centred on the origin.
+    /// A closed bar along z with a square cross-section, centered on the origin.
     Bar(Bar),
     /// A flat disc around the origin with its normal along z and one rim.
     Disc {
         /// Radius (m).
         radius: Real,
-        /// Rings of vertices around the centre.
+        /// Number of rings of vertices around the center.
         n_rings: usize,
     },
-    /// Any surface of triangles, for example from a file.
+    /// A triangle mesh, for example from a file.
     Mesh {
         /// Position of each vertex (m).
         vertices: Vec<Vec3>,
@@ -53,11 +53,11 @@ pub enum MembraneShape {
 }
 
 impl MembraneShape {
-    /// The mesh of the shape.
+    /// Creates the mesh of the shape.
     ///
     /// # Errors
-    /// If numbers of vertices are too small or triangles are no surface.
-    pub fn mesh(&self) -> Result<Mesh, MeshFault> {
+    /// If there are too few vertices, or the triangles do not form a surface.
+    pub fn mesh(&self) -> Result<Mesh, MeshError> {
         match self {
             Self::HalfIcosphere { radius, frequency } => Mesh::half_icosphere(*radius, *frequency),
             Self::Icosphere { radius, frequency } => Mesh::icosphere(*radius, *frequency),

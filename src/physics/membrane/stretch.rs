@@ -3,17 +3,22 @@
 //! ```text
 //! F_1 = −r̂ [ k (r − r⁰) + 2 γ √(k m*) (r̂ · ṙ) ],   r = r_1 − r_2,   F_2 = −F_1
 //! k = √3/2 E d,   m* = m_1 m_2 / (m_1 + m_2)
-//!
-//! k    stiffness                          (N/m)
-//! r⁰   rest length                        (m)
-//! γ    damping ratio of the pair, 1 is critical
-//! E, d Young's modulus and thickness      (Pa), (m)
 //! ```
 //!
-//! Source: Götz (2024) eqs. 12–16, with the elastic sign such that a stretched spring pulls.
-//! A regular lattice of such springs is an isotropic membrane with modulus E d = 2/√3 k and Poisson's
-//! ratio 1/3. A boundary edge has one triangle instead of two and gets k/2, so that the membrane is
-//! the same up to its border. Valid for small strains on nearly equilateral triangles.
+//! | symbol | meaning | unit |
+//! |---|---|---|
+//! | F_1, F_2 | forces on the two vertices of an edge | N |
+//! | r_1, r_2, m_1, m_2 | their positions and masses | m, kg |
+//! | r, r̂, r⁰ | length and direction of the edge, rest length | m, –, m |
+//! | k | stiffness | N/m |
+//! | γ | damping ratio of the pair; 1 is critical | – |
+//! | E, d | Young's modulus and thickness | Pa, m |
+//!
+//! Source: Götz (2024), eqs. 12–16, with the elastic sign such that a stretched spring pulls.
+//! A regular lattice of such springs is an isotropic membrane with the modulus E d = 2/√3 k and
+//! Poisson's ratio 1/3. A boundary edge has one triangle instead of two and gets k/2, so the
+//! properties of the membrane are the same up to its boundary. Valid for small strains and nearly
+//! equilateral triangles.
 
 use crate::base::{Real, lanes::Lanes};
 
@@ -42,14 +47,14 @@ impl Spring {
     }
 }
 
-/// Tension (N) of springs, given as rest length, stiffness and damping, at `length` (m) growing with
-/// `rate` (m/s); it pulls both ends together.
+/// Tension (N) of springs with the given rest length (m), stiffness (N/m) and damping (N s/m), at `length` (m)
+/// increasing at `rate` (m/s). A positive tension pulls the ends together.
 #[inline(always)]
 pub fn tension<L: Lanes>([rest_length, stiffness, damping]: [L; 3], length: L, rate: L) -> L {
     stiffness * (length - rest_length) + damping * rate
 }
 
-/// Stiffness k = √3/2 E d of an edge inside a membrane (N/m).
+/// Stiffness k = √3/2 E d of an edge between two triangles (N/m).
 pub fn stiffness(youngs_modulus: Real, thickness: Real) -> Real {
     0.75_f64.sqrt() * youngs_modulus * thickness
 }

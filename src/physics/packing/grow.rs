@@ -1,25 +1,30 @@
-//! Growth of all grains by a common factor, until they are as large as wanted or nothing gives way.
+//! Grows all grains by a common factor until they have their final size or jam.
 //!
 //! ```text
 //! R_i = s R_i,final,   d(ln s)/dt = g · clamp(1 − p/p_stop, −1, 1),   g ≤ 0.05 / √(m/(p_stop d))
-//!
-//! s       common factor
-//! p       pressure of the normal forces in the room           (Pa)
-//! p_stop  pressure at which nothing more fits                 (Pa)
-//! m, d    mean final mass and diameter of a grain             (kg), (m)
 //! ```
 //!
-//! Source: Lubachevsky & Stillinger (1990) with soft grains, as Götz (2024), section 3.3.1, takes it:
-//! the ranges of radii are the final ones, and where no size is asked for, growth ends when "the
-//! granulate cannot expand any more". The source gives neither rate nor pressure; g lets grains get
-//! out of each other's way (a twentieth of a radius in the time in which p_stop moves a grain by its
-//! diameter), and near p_stop the growth only follows the rearrangements.
+//! | symbol | meaning | unit |
+//! |---|---|---|
+//! | s | common factor | – |
+//! | g | growth rate far from p_stop | 1/s |
+//! | p | pressure of the normal forces in the container | Pa |
+//! | p_stop | pressure at which the packing counts as jammed | Pa |
+//! | m, d | mean final mass and diameter of a grain | kg, m |
 //!
-//! Grains have their final masses from the start: growing them keeps momentum, and no contact is
-//! faster than those at the end, so one substep suits all. The laws are the caller's: without
-//! friction (`Laws::smooth`) as a rule, and softer than the real ones where those ask for very short
-//! substeps. The model's own laws are put back at the end. If they are stiffer, the grains then shrink
-//! by what the overlaps are too deep (Hertz: (E_soft/E)^(2/3) of each), so that nothing springs apart.
+//! Source: Lubachevsky & Stillinger (1990) with soft grains, as applied by Götz (2024), section 3.3.1: the
+//! ranges of radii are the final ones, and without a given final size growth ends when "the granulate
+//! cannot expand any more". The source specifies neither rate nor pressure. Here g is slow enough for grains
+//! to move out of each other's way (a twentieth of a radius in the time in which p_stop moves a grain by its
+//! diameter), and near p_stop the growth only follows rearrangements.
+//!
+//! Valid for contact laws whose overlaps at p_stop are small. Grains have their final masses from the start:
+//! growth conserves momentum, and no contact is faster than at the end, so one substep suits all sizes.
+//!
+//! The caller chooses the laws during growth: usually without friction (`Laws::smooth`), and softer than the
+//! real ones if those require very short substeps. The laws of the model are restored at the end. If they are
+//! stiffer, the grains then shrink by the excess of the mean overlap (Hertz: overlaps scale with
+//! (E_soft/E)^(2/3)), so that the packing does not expand explosively.
 
 use serde::{Deserialize, Serialize};
 
@@ -29,21 +34,21 @@ use crate::{
         Real,
         real::{real, real_of},
     },
-    physics::{Model, System, law::PairLaw, neighbours::update_pair_masses},
+    physics::{Model, System, law::PairLaw, neighbors::update_pair_masses},
 };
 
 /// Growth per relaxation time √(m/(p d)).
 const GROWTH_PER_RELAXATION: Real = 0.05;
-/// Length of a window in which growth is judged, in relaxation times.
+/// Length of the windows at whose ends growth is evaluated, in relaxation times.
 const WINDOW: Real = 10.0;
-/// Growth of ln s in a window below which nothing gives way any more, as a rule.
-const STUCK: Real = 2e-4;
-/// Share of p_stop that grains at their last size may still exert when they are let go.
-const CALM: Real = 0.01;
-/// Windows for which grains at their last size are given time to get calm.
-const N_CALM_WINDOWS: u32 = 3;
+/// Default growth of ln s in a window below which the packing is jammed.
+const GROWTH_MIN: Real = 2e-4;
+/// Growth to the final size is complete when the pressure is below this fraction of p_stop.
+const RELAXED: Real = 0.01;
+/// Largest number of windows at the final size to wait for that.
+const N_RELAXATION_WINDOWS: u32 = 3;
 
-/// The contact laws that hold while grains grow.
+/// The contact laws during growth.
 #[derive(Clone, Copy, Debug)]
 pub struct Laws {
     /// Between grains.
@@ -57,7 +62,7 @@ pub struct Laws {
 }
 
 impl Laws {
-    /// Those of `model`; without walls theirs are those of the grains.
+    /// The laws of `model`. Without walls, their law is that of the grains.
     pub fn of(model: &Model) -> Self {
         Self {
             grains: model.grain_law,
@@ -67,7 +72,7 @@ impl Laws {
         }
     }
 
-    /// The same without friction.
+    /// The same laws without friction.
     #[must_use]
     pub fn smooth(mut self) -> Self {
         for law in [&mut self.grains, &mut self.walls, &mut self.membrane] {
@@ -77,26 +82,26 @@ impl Laws {
     }
 }
 
-/// How grains grow.
+/// Parameters of growth.
 #[derive(Clone, Copy, Debug)]
 pub struct Recipe {
-    /// The laws while they grow.
+    /// The laws during growth.
     pub laws: Laws,
-    /// Volume of the room, by which forces become a pressure (m³).
+    /// Volume of the container (m³), for the pressure.
     pub volume: Real,
-    /// Pressure at which nothing more fits, p_stop (Pa).
+    /// Pressure p_stop at which the packing counts as jammed (Pa).
     pub pressure_stop: Real,
     /// Growth rate g far from p_stop (1/s).
     pub rate: Real,
-    /// Growth of ln s in ten relaxation times below which nothing gives way any more.
+    /// Growth of ln s in ten relaxation times below which the packing is jammed.
     pub stuck: Real,
-    /// Common factor at which growth ends: 1 for the final radii, more for as large as fits.
+    /// Common factor at which growth ends: 1 for the final radii; larger to grow until the packing jams.
     pub scale_last: Real,
 }
 
 impl Recipe {
-    /// Growth at the advised rate up to the final radii, with the laws of `model` without friction;
-    /// `mass` (kg) and `radius` (m) are those of a mean grain at the end.
+    /// Growth up to the final radii at the largest advisable rate, with the laws of `model` without friction.
+    /// `mass` (kg) and `radius` (m) are those of a mean grain at its final size.
     pub fn new(model: &Model, volume: Real, pressure_stop: Real, mass: Real, radius: Real) -> Self {
         let relaxation = (mass / (pressure_stop * 2.0 * radius)).sqrt();
         Self {
@@ -104,62 +109,62 @@ impl Recipe {
             volume,
             pressure_stop,
             rate: GROWTH_PER_RELAXATION / relaxation,
-            stuck: STUCK,
+            stuck: GROWTH_MIN,
             scale_last: 1.0,
         }
     }
 }
 
-/// What a substep of growth came to.
+/// Status of growth after a substep.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Grown {
-    /// Goes on.
+    /// Growth continues.
     Growing,
-    /// The last size is reached.
+    /// The final size is reached.
     Full,
-    /// The pressure is reached and nothing gives way any more.
+    /// The pressure is reached, and the grains hardly grow any more.
     Jammed,
 }
 
-/// Progress of growth. With the `State` it is all that growth resumes from.
+/// Progress of growth: with the `State`, everything needed to resume it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Progress {
     /// Common factor s.
     pub scale: Real,
-    /// Pressure in the last substep (Pa).
+    /// Pressure after the last substep (Pa).
     pub pressure: Real,
     /// Substeps so far.
     pub n_substeps: u64,
-    /// Whether it is over, and why.
+    /// Whether growth has ended, and why.
     pub grown: Grown,
-    /// Substeps in the present window.
+    /// Substeps in the current window.
     n_in_window: u64,
-    /// Common factor at the begin of the window.
+    /// Common factor at the start of the window.
     window_scale: Real,
     /// Sum of the pressures in the window (Pa).
     window_pressure: Real,
-    /// Windows spent at the last size.
+    /// Number of windows at the final size.
     n_at_last: u32,
 }
 
-/// Grains that grow in a `System`; only this may step it meanwhile.
+/// Grains growing in a `System`. Until growth ends, only `Growth::step` may step the system.
 #[derive(Clone, Debug)]
 pub struct Growth {
     recipe: Recipe,
     final_radii: Vec<Real>,
     progress: Progress,
-    /// The model's own laws while those of the recipe hold.
-    kept: Option<Kept>,
+    /// The laws of the model, while those of the recipe replace them.
+    saved_laws: Option<SavedLaws>,
 }
 
 #[derive(Clone, Debug)]
-struct Kept {
+struct SavedLaws {
     laws: Laws,
     walls: Vec<PairLaw>,
 }
 
 impl Growth {
-    /// Growth of the grains to `final_radii` (m), which are now `scale` times as large.
+    /// Starts growth to `final_radii` (m) of grains whose radii are now `scale` times the final ones.
     pub fn new(recipe: Recipe, final_radii: Vec<Real>, scale: Real) -> Self {
         let progress = Progress {
             scale,
@@ -174,23 +179,22 @@ impl Growth {
         Self::resumed(recipe, final_radii, progress)
     }
 
-    /// Resumes growth at `progress` with the `State` that belongs to it.
+    /// Resumes growth at `progress`, with the `State` of the same substep.
     pub fn resumed(recipe: Recipe, final_radii: Vec<Real>, progress: Progress) -> Self {
-        // Nothing is known about lists: the first substep builds them.
-        Self { recipe, final_radii, progress, kept: None }
+        Self { recipe, final_radii, progress, saved_laws: None }
     }
 
-    /// How far it is.
+    /// The progress, with which growth can be resumed.
     pub fn progress(&self) -> Progress {
         self.progress
     }
 
-    /// One substep; the model's own laws are restored once the result is not `Growing`.
+    /// Advances by one substep. The laws of the model are restored when the result is not `Growing`.
     pub fn step(&mut self, system: &mut System) -> Grown {
         if self.progress.grown != Grown::Growing {
             return self.progress.grown;
         }
-        self.enter(system);
+        self.replace_laws(system);
         let dt = self.recipe.laws.substep;
         let push = 1.0 - self.progress.pressure / self.recipe.pressure_stop;
         let grown = self.progress.scale * (self.recipe.rate * dt * push.clamp(-1.0, 1.0)).exp();
@@ -199,21 +203,21 @@ impl Growth {
         let pressure = normal_pressure(&system.state, &system.scratch, self.recipe.volume);
         self.progress.pressure = pressure;
         self.progress.n_substeps += 1;
-        self.judge();
+        self.update_status();
         if self.progress.grown != Grown::Growing {
-            self.leave(system);
+            self.restore_laws(system);
         }
         self.progress.grown
     }
 
-    /// Puts the laws of the recipe in place of the model's own.
-    fn enter(&mut self, system: &mut System) {
-        if self.kept.is_some() {
+    /// Replaces the laws of the model by those of the recipe.
+    fn replace_laws(&mut self, system: &mut System) {
+        if self.saved_laws.is_some() {
             return;
         }
         let model = &mut system.model;
         let walls = model.walls.iter().map(|wall| wall.law).collect();
-        self.kept = Some(Kept { laws: Laws::of(model), walls });
+        self.saved_laws = Some(SavedLaws { laws: Laws::of(model), walls });
         let laws = &self.recipe.laws;
         model.grain_law = laws.grains;
         model.membrane_law = laws.membrane;
@@ -221,9 +225,9 @@ impl Growth {
         model.walls.iter_mut().for_each(|wall| wall.law = laws.walls);
     }
 
-    /// Puts the model's own laws back.
-    fn leave(&mut self, system: &mut System) {
-        let Some(Kept { laws, walls }) = self.kept.take() else { return };
+    /// Restores the laws of the model.
+    fn restore_laws(&mut self, system: &mut System) {
+        let Some(SavedLaws { laws, walls }) = self.saved_laws.take() else { return };
         let model = &mut system.model;
         model.grain_law = laws.grains;
         model.membrane_law = laws.membrane;
@@ -233,19 +237,19 @@ impl Growth {
         }
         let softness = self.recipe.laws.grains.modulus / laws.grains.modulus;
         if softness < 1.0 {
-            let too_deep = mean_overlap(system) * (1.0 - softness.powf(2.0 / 3.0));
-            self.resize(system, self.progress.scale * (1.0 - too_deep));
+            let excess = mean_overlap(system) * (1.0 - softness.powf(2.0 / 3.0));
+            self.resize(system, self.progress.scale * (1.0 - excess));
         }
     }
 
-    /// Makes all grains `scale` times their final size.
+    /// Sets all radii to `scale` times the final ones.
     fn resize(&mut self, system: &mut System, scale: Real) {
         self.progress.scale = scale;
         resize(system, &self.final_radii, scale);
     }
 
-    /// Looks at the window when it is over.
-    fn judge(&mut self) {
+    /// Updates the status at the end of a window.
+    fn update_status(&mut self) {
         let Recipe { rate, pressure_stop, stuck, scale_last, laws, .. } = self.recipe;
         let window = WINDOW * GROWTH_PER_RELAXATION / rate;
         let it = &mut self.progress;
@@ -258,7 +262,7 @@ impl Growth {
         let grown = (it.scale / it.window_scale).ln();
         if it.scale >= scale_last {
             it.n_at_last += 1;
-            if pressure < CALM * pressure_stop || it.n_at_last >= N_CALM_WINDOWS {
+            if pressure < RELAXED * pressure_stop || it.n_at_last >= N_RELAXATION_WINDOWS {
                 it.grown = Grown::Full;
             }
         } else if grown < stuck && pressure > 0.5 * pressure_stop {
@@ -268,18 +272,18 @@ impl Growth {
     }
 }
 
-/// Makes all grains of `system` `scale` times as large as `final_radii` (m).
+/// Sets all radii of `system` to `scale` times `final_radii` (m).
 pub fn resize(system: &mut System, final_radii: &[Real], scale: Real) {
     let System { model, state, scratch, .. } = system;
     for (radius, last) in state.grains.radii.iter_mut().zip(final_radii) {
         *radius = scale * last;
         model.radius_max = model.radius_max.max(*radius);
     }
-    // The lists of neighbours stay complete only until a grain has grown too far.
-    update_pair_masses(state, &mut scratch.neighbours);
+    // This also records how much of the skin of the neighbor lists the growth has used.
+    update_pair_masses(state, &mut scratch.neighbors);
 }
 
-/// Mean overlap of touching grains over their distance at first touch.
+/// Mean overlap of touching pairs, divided by the sum of their radii.
 pub fn mean_overlap(system: &System) -> Real {
     let radii = &system.state.grains.radii;
     let (mut sum, mut n_contacts) = (0.0, 0);
@@ -310,7 +314,7 @@ mod tests {
 
     const EDGE: Real = 20e-3;
 
-    /// Grains of about 2 mm radius in a box of planes with `edge`.
+    /// Grains of about 2 mm radius in a box of planes.
     fn boxed(n_grains: usize, softness: Real) -> (System, Recipe, Vec<Real>, Real) {
         let stiff = Material { youngs_modulus: 1e8, poisson_ratio: 0.245, density: 2000.0 };
         let soft = Material { youngs_modulus: softness * 1e8, ..stiff };
@@ -324,25 +328,29 @@ mod tests {
         let scale = first_scale(&final_radii, 0.15, room.volume());
         let small: Vec<Real> = final_radii.iter().map(|r| scale * r).collect();
         let mut random = Random::new(11, Stream::Position);
-        let places = scatter(&small, None, &mut random, |it| room.place(2.1e-3, it)).unwrap();
+        let positions = scatter(&small, None, &mut random, |it| room.place(2.1e-3, it)).unwrap();
         let masses: Vec<Real> = final_radii.iter().map(|&r| 2000.0 * sphere_volume(r)).collect();
         let first_mass = masses[0];
         let mut builder = SystemBuilder::new(law);
         builder.substep(5e-6).radii_up_to(2.1e-3, 2e-3).walls(Wall::sides(low, high));
-        builder.grains(Grains::at_rest(places, small, masses));
+        builder.grains(Grains::at_rest(positions, small, masses));
         let system = builder.build().unwrap();
         let mut recipe = Recipe::new(&system.model, room.volume(), 500.0, first_mass, 2e-3);
         recipe.laws.grains.modulus = PairLaw::between(&soft, &soft, surface).modulus;
         (system, recipe, final_radii, scale)
     }
 
-    /// Oracle: what is asked for. 60 grains of 2 mm fill a quarter of the box, so they fit.
+    /// Oracle: the final radii; 60 grains of 2 mm fill a quarter of the box, so they fit.
     #[test]
-    fn grains_that_fit_get_their_final_radii_and_the_laws_come_back() {
+    fn grains_that_fit_reach_their_final_radii_and_the_laws_are_restored() {
         let (mut system, recipe, radii, scale) = boxed(60, 1.0);
         let mut growth = Growth::new(recipe, radii.clone(), scale);
         while growth.step(&mut system) == Grown::Growing {
-            assert_eq!(system.model.grain_law.friction.to_bits(), 0, "smooth while growing");
+            assert_eq!(
+                system.model.grain_law.friction.to_bits(),
+                0,
+                "there is friction during growth"
+            );
         }
         assert_eq!(growth.progress().grown, Grown::Full);
         assert_eq!(system.state.grains.radii, radii);
@@ -354,18 +362,18 @@ mod tests {
         );
     }
 
-    /// Oracle: in a box only five diameters wide smooth grains jam below the 0.64 of a large one, and
-    /// above the simple cubic lattice that any box holds, π/6; the stop pressure itself; the bits of a
-    /// run that was not broken off.
+    /// Oracle: in a box only five diameters wide, smooth grains jam below the solid fraction of 0.64 of large
+    /// systems and above that of a simple cubic lattice, π/6; the stop pressure; the bits of an
+    /// uninterrupted run.
     #[test]
-    fn grains_grow_until_they_jam_and_a_break_costs_no_bit() {
+    fn grains_grow_until_they_jam_and_resuming_changes_no_bit() {
         let (mut system, mut recipe, radii, scale) = boxed(160, 0.1);
         recipe.scale_last = 2.0;
         let mut growth = Growth::new(recipe, radii.clone(), scale);
-        let mut again = None;
+        let mut saved = None;
         while growth.step(&mut system) == Grown::Growing {
             if growth.progress().n_substeps == 5000 {
-                again = Some((system.state.clone(), growth.progress()));
+                saved = Some((system.state.clone(), growth.progress()));
             }
         }
         let jammed = growth.progress();
@@ -374,11 +382,11 @@ mod tests {
         assert_eq!(jammed.grown, Grown::Jammed);
         assert!((std::f64::consts::FRAC_PI_6..0.63).contains(&solid), "{solid}");
         assert!((jammed.pressure / 500.0 - 1.0).abs() < 0.2, "{}", jammed.pressure);
-        let (state, progress) = again.expect("it takes longer than 5000 substeps");
-        let mut other = System::new(system.model.clone(), system.controls.clone(), state);
+        let (state, progress) = saved.expect("growth takes longer than 5000 substeps");
+        let mut resumed = System::new(system.model.clone(), system.controls.clone(), state);
         let mut growth = Growth::resumed(recipe, radii, progress);
-        while growth.step(&mut other) == Grown::Growing {}
+        while growth.step(&mut resumed) == Grown::Growing {}
         assert_eq!(growth.progress(), jammed);
-        assert_eq!(other.state.grains.positions, system.state.grains.positions);
+        assert_eq!(resumed.state.grains.positions, system.state.grains.positions);
     }
 }

@@ -1,6 +1,17 @@
-//! Mean pressure of the normal forces: a third of the trace of the contact stress of spheres.
+//! Mean pressure of the normal forces.
 //!
-//! It steers growth and compression, so it lives below `measure`.
+//! ```text
+//! p = 1/(3 V) Σ F_n l        a third of the trace of the contact stress
+//! ```
+//!
+//! | symbol | meaning | unit |
+//! |---|---|---|
+//! | V | volume | m³ |
+//! | F_n | normal force of a contact | N |
+//! | l | branch: distance of two grains' centers; at membrane and walls, of the center from the contact point | m |
+//!
+//! Source: Love–Weber stress of spheres. Valid for quasi-static packings, without the kinetic part.
+//! Growth and compression are controlled by it, so it belongs to `physics`, not to `measure`.
 
 use crate::{
     base::Real,

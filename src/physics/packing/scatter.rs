@@ -1,6 +1,6 @@
-//! Random places for grains that do not touch each other: random sequential addition on a grid.
+//! Random positions for grains that do not touch each other, by random sequential addition.
 //!
-//! Quick up to a solid fraction of 0.3; beyond 0.38 no place is left (Widom 1966).
+//! Fast up to a solid fraction of 0.3. Above 0.38 no free position is left (Widom 1966).
 
 use std::collections::BTreeMap;
 
@@ -9,30 +9,30 @@ use crate::{
     physics::contact::grains::closest_image,
 };
 
-/// Candidates for one grain before it is given up.
+/// Number of attempts to place one grain.
 const N_TRIES: usize = 100_000;
 
-/// No place is left.
+/// There is no free position for a grain.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("only {n_placed} of {n_grains} grains found a place; scatter them at smaller radii")]
+#[error("only {n_placed} of {n_grains} grains could be placed; scatter them with smaller radii")]
 pub struct NoRoom {
-    /// Grains that have a place.
+    /// Number of grains that were placed.
     pub n_placed: usize,
-    /// How many there are.
+    /// Number of all grains.
     pub n_grains: usize,
 }
 
-/// Where grains may be scattered.
+/// A container in which grains are scattered.
 #[derive(Clone, Copy, Debug)]
 pub enum Room {
-    /// Between six planes.
+    /// A box of six planes.
     Box {
         /// Lowest corner (m).
         low: Vec3,
         /// Highest corner (m).
         high: Vec3,
     },
-    /// Around z, between two planes.
+    /// A cylinder around z, between two planes.
     Tube {
         /// Radius (m).
         radius: Real,
@@ -41,9 +41,9 @@ pub enum Room {
         /// Height of the upper plane (m).
         top: Real,
     },
-    /// Between two spheres around the origin; a ball without the inner one.
+    /// Between two concentric spheres around the origin, or inside the outer one only.
     Shell {
-        /// Radius of the inner sphere, 0 without (m).
+        /// Radius of the inner sphere (m); 0 if there is none.
         inner: Real,
         /// Radius of the outer sphere (m).
         outer: Real,
@@ -67,7 +67,7 @@ impl Room {
         }
     }
 
-    /// Edges of the periodic box (m), if it is one.
+    /// Edges of the box (m) if it is periodic.
     pub fn period(&self) -> Option<Vec3> {
         match self {
             Self::Periodic { period } => Some(*period),
@@ -75,8 +75,8 @@ impl Room {
         }
     }
 
-    /// A uniformly random point at least `margin` (m) away from the walls; `None` if the draw fell
-    /// outside.
+    /// Draws a uniformly distributed point at least `margin` (m) away from the walls. Returns `None` if the draw is
+    /// outside; draw again then.
     pub fn place(&self, margin: Real, random: &mut Random) -> Option<Vec3> {
         let (low, high) = match self {
             Self::Box { low, high } => (low.add_scalar(margin), high.add_scalar(-margin)),
@@ -89,54 +89,54 @@ impl Room {
             }
             Self::Periodic { period } => (Vec3::zeros(), *period),
         };
-        let place = Vec3::from_fn(|axis, _| random.between(low[axis], high[axis]));
+        let point = Vec3::from_fn(|axis, _| random.between(low[axis], high[axis]));
         let is_inside = match self {
             Self::Box { .. } | Self::Periodic { .. } => true,
-            Self::Tube { radius, .. } => place.xy().norm() <= radius - margin,
+            Self::Tube { radius, .. } => point.xy().norm() <= radius - margin,
             Self::Shell { inner, outer } => {
-                let from_centre = place.norm();
-                // A ball has no inner wall to keep away from.
+                let from_center = point.norm();
+                // Without an inner sphere there is no inner wall.
                 let closest = if *inner > 0.0 { inner + margin } else { 0.0 };
-                (closest..=outer - margin).contains(&from_centre)
+                (closest..=outer - margin).contains(&from_center)
             }
         };
-        is_inside.then_some(place)
+        is_inside.then_some(point)
     }
 }
 
-/// Random places for spheres of `radii` (m), none of which touch; candidates come from `offer`, which
-/// gives `None` for those that are of no use. With a `period` (m) the images keep away as well.
+/// Random positions (m) for spheres of `radii` (m) that do not touch each other. `propose` draws candidates, or
+/// `None` for an invalid draw. In a box with edges `period` (m), spheres do not touch the images of others either.
 ///
 /// # Errors
-/// If a sphere finds no place.
+/// If there is no free position for a sphere.
 pub fn scatter(
     radii: &[Real],
     period: Option<Vec3>,
     random: &mut Random,
-    mut offer: impl FnMut(&mut Random) -> Option<Vec3>,
+    mut propose: impl FnMut(&mut Random) -> Option<Vec3>,
 ) -> Result<Vec<Vec3>, NoRoom> {
-    let mut places: Vec<Vec3> = Vec::with_capacity(radii.len());
+    let mut positions: Vec<Vec3> = Vec::with_capacity(radii.len());
     let mut cells = Cells::new(radii, period);
     for (i, &radius) in radii.iter().enumerate() {
         let found = (0..N_TRIES).find_map(|_| {
-            offer(random).filter(|place| cells.is_free(place, radius, radii, &places))
+            propose(random).filter(|candidate| cells.is_free(candidate, radius, radii, &positions))
         });
-        let Some(place) = found else {
+        let Some(position) = found else {
             return Err(NoRoom { n_placed: i, n_grains: radii.len() });
         };
-        cells.taken.entry(cells.key(&place)).or_default().push(i);
-        places.push(place);
+        cells.spheres.entry(cells.key(&position)).or_default().push(i);
+        positions.push(position);
     }
-    Ok(places)
+    Ok(positions)
 }
 
-/// Spheres by the cell of their centre; a cell is as wide as the largest sphere.
+/// Spheres by the cell of their center. A cell is at least as wide as the largest sphere.
 struct Cells {
     width: Vec3,
     /// Number of cells along each edge of a periodic box.
     n_periodic: Option<[i64; 3]>,
     period: Option<Vec3>,
-    taken: BTreeMap<[i64; 3], Vec<usize>>,
+    spheres: BTreeMap<[i64; 3], Vec<usize>>,
 }
 
 impl Cells {
@@ -147,11 +147,11 @@ impl Cells {
             (Some(period), Some(n)) => Vec3::from_fn(|k, _| period[k] / real(count(n[k]))),
             _ => Vec3::repeat(diameter),
         };
-        Self { width, n_periodic, period, taken: BTreeMap::new() }
+        Self { width, n_periodic, period, spheres: BTreeMap::new() }
     }
 
-    fn key(&self, place: &Vec3) -> [i64; 3] {
-        self.wrap([0, 1, 2].map(|k| floor(place[k] / self.width[k])))
+    fn key(&self, position: &Vec3) -> [i64; 3] {
+        self.wrap([0, 1, 2].map(|k| floor(position[k] / self.width[k])))
     }
 
     fn wrap(&self, key: [i64; 3]) -> [i64; 3] {
@@ -161,22 +161,25 @@ impl Cells {
         }
     }
 
-    fn is_free(&self, place: &Vec3, radius: Real, radii: &[Real], places: &[Vec3]) -> bool {
-        let [x, y, z] = self.key(place);
+    fn is_free(&self, candidate: &Vec3, radius: Real, radii: &[Real], positions: &[Vec3]) -> bool {
+        let [x, y, z] = self.key(candidate);
         let keys = (0..27).map(|k| self.wrap([x + k % 3 - 1, y + k / 3 % 3 - 1, z + k / 9 - 1]));
-        keys.filter_map(|key| self.taken.get(&key)).flatten().all(|&other| {
-            let mut apart = place - places[other];
+        keys.filter_map(|key| self.spheres.get(&key)).flatten().all(|&other| {
+            let mut separation = candidate - positions[other];
             if let Some(period) = self.period {
-                apart = closest_image(apart, &period);
+                separation = closest_image(separation, &period);
             }
             let reach = radius + radii[other];
-            apart.norm_squared() > reach * reach
+            separation.norm_squared() > reach * reach
         })
     }
 }
 
-/// The next whole number below.
-#[expect(clippy::cast_possible_truncation, reason = "places are a few thousand diameters away")]
+/// The largest integer not above `value`.
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "coordinates are a few thousand diameters at most"
+)]
 fn floor(value: Real) -> i64 {
     value.floor() as i64
 }
@@ -190,7 +193,7 @@ mod tests {
     use super::*;
     use crate::{base::random::Stream, physics::packing::sphere_volume};
 
-    /// Oracle: the distance of every pair, and the walls' own equations.
+    /// Oracle: the distance of every pair, and the equations of the walls.
     #[test]
     fn scattered_grains_touch_neither_each_other_nor_the_walls() {
         let rooms = [
@@ -202,46 +205,50 @@ mod tests {
         for room in rooms {
             let mut random = Random::new(5, Stream::Position);
             let radii: Vec<Real> = (0..600).map(|_| random.between(0.08, 0.1)).collect();
-            let places = scatter(&radii, room.period(), &mut random, |it| room.place(0.1, it));
-            let places = places.unwrap();
+            let positions = scatter(&radii, room.period(), &mut random, |it| room.place(0.1, it));
+            let positions = positions.unwrap();
             let solid: Real = radii.iter().map(|&r| sphere_volume(r)).sum();
-            assert!(0.05 < solid / room.volume(), "not too easy: {}", solid / room.volume());
-            for (i, a) in places.iter().enumerate() {
-                let (is_free, far) = clearance(&room, a);
-                assert!(is_free >= 0.1 - 1e-12, "{room:?} {far:?}");
-                for (j, b) in places[..i].iter().enumerate() {
-                    let mut apart = a - b;
+            assert!(
+                0.05 < solid / room.volume(),
+                "the test is too easy: {}",
+                solid / room.volume()
+            );
+            for (i, a) in positions.iter().enumerate() {
+                let distance = clearance(&room, a);
+                assert!(distance >= 0.1 - 1e-12, "{room:?} {a:?}");
+                for (j, b) in positions[..i].iter().enumerate() {
+                    let mut separation = a - b;
                     if let Some(period) = room.period() {
                         for k in 0..3 {
-                            let shifted = (-1..=1).map(|n| apart[k] + f64::from(n) * period[k]);
-                            apart[k] = shifted.map(Real::abs).fold(Real::INFINITY, Real::min);
+                            let shifted =
+                                (-1..=1).map(|n| separation[k] + f64::from(n) * period[k]);
+                            separation[k] = shifted.map(Real::abs).fold(Real::INFINITY, Real::min);
                         }
                     }
-                    assert!(apart.norm() > radii[i] + radii[j], "{room:?} {i} {j}");
+                    assert!(separation.norm() > radii[i] + radii[j], "{room:?} {i} {j}");
                 }
             }
         }
     }
 
-    /// Distance from the nearest wall, and where.
-    fn clearance(room: &Room, place: &Vec3) -> (Real, Vec3) {
-        let distance = match room {
-            Room::Box { low, high } => (place - low).min().min((high - place).min()),
+    /// Distance from the nearest wall (m).
+    fn clearance(room: &Room, point: &Vec3) -> Real {
+        match room {
+            Room::Box { low, high } => (point - low).min().min((high - point).min()),
             Room::Tube { radius, bottom, top } => {
-                (radius - place.x.hypot(place.y)).min(place.z - bottom).min(top - place.z)
+                (radius - point.x.hypot(point.y)).min(point.z - bottom).min(top - point.z)
             }
-            Room::Shell { inner, outer } => (place.norm() - inner).min(outer - place.norm()),
+            Room::Shell { inner, outer } => (point.norm() - inner).min(outer - point.norm()),
             Room::Periodic { .. } => Real::INFINITY,
-        };
-        (distance, *place)
+        }
     }
 
-    /// Oracle: five spheres of radius 0.9 cannot be in a cube of edge 2.
+    /// Oracle: five spheres of radius 0.9 do not fit in a cube of edge 2.
     #[test]
-    fn a_full_room_is_an_error() {
+    fn grains_that_do_not_fit_are_an_error() {
         let room = Room::Box { low: Vec3::zeros(), high: Vec3::repeat(2.0) };
         let mut random = Random::new(5, Stream::Position);
-        let refused = scatter(&[0.9; 5], None, &mut random, |it| room.place(0.9, it));
-        assert_eq!(refused, Err(NoRoom { n_placed: 1, n_grains: 5 }));
+        let result = scatter(&[0.9; 5], None, &mut random, |it| room.place(0.9, it));
+        assert_eq!(result, Err(NoRoom { n_placed: 1, n_grains: 5 }));
     }
 }

@@ -865,7 +865,7 @@ pub mod jamgrip_msgs {
         pub r#normal_force: f64,
         /// Tangential part of the force on the object \[N\].
         pub r#tangential_force: super::geometry_msgs::Vector3,
-        /// Force on the object, normal and tangential part together \[N\].
+        /// Total force on the object: normal plus tangential part \[N\].
         pub r#force: super::geometry_msgs::Vector3,
         /// Overlap of membrane and object \[m\].
         pub r#overlap: f64,
@@ -888,7 +888,7 @@ geometry_msgs/Vector3 normal
 float64 normal_force
 # Tangential part of the force on the object [N].
 geometry_msgs/Vector3 tangential_force
-# Force on the object, normal and tangential part together [N].
+# Total force on the object: normal plus tangential part [N].
 geometry_msgs/Vector3 force
 # Overlap of membrane and object [m].
 float64 overlap
@@ -909,9 +909,9 @@ float64 z
     /// All contacts between the gripper's membrane and the objects.
     #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
     pub struct ContactArray {
-        /// Simulated time \[s\]; points and directions are in this frame.
+        /// Simulated time \[s\], and the frame of points and directions.
         pub r#header: super::std_msgs::Header,
-        /// The contacts; none while nothing touches.
+        /// The contacts; empty without contact.
         pub r#contacts: Vec<Contact>,
     }
 
@@ -922,9 +922,9 @@ float64 z
             type_hash: "RIHS01_7fef0e31d2fc0d40570d5afae09abc82d400c52f30a5754cc8a019499a6ae729",
             definition: r##"# All contacts between the gripper's membrane and the objects.
 
-# Simulated time [s]; points and directions are in this frame.
+# Simulated time [s], and the frame of points and directions.
 std_msgs/Header header
-# The contacts; none while nothing touches.
+# The contacts; empty without contact.
 jamgrip_msgs/Contact[] contacts
 ================================================================================
 MSG: std_msgs/Header
@@ -944,7 +944,7 @@ geometry_msgs/Vector3 normal
 float64 normal_force
 # Tangential part of the force on the object [N].
 geometry_msgs/Vector3 tangential_force
-# Force on the object, normal and tangential part together [N].
+# Total force on the object: normal plus tangential part [N].
 geometry_msgs/Vector3 force
 # Overlap of membrane and object [m].
 float64 overlap
@@ -966,19 +966,19 @@ uint32 nanosec
         };
     }
 
-    /// Drives an object along poses, or gives it back to the physics.
+    /// Drives an object along poses, or releases it.
     ///
     /// A pose command, given by MODE_DRIVE of this message or as geometry_msgs/PoseStamped on
     /// ~/object/\<name>/pose_cmd, drives the object kinematically: it moves to the commanded pose within
-    /// the scene's limits of speed and pushes what is in its way. It is driven as long as commands keep
-    /// coming. When none has come for the scene's `drive_timeout` (default 0.5 s of simulated time), or at
-    /// MODE_RELEASE, the object is given back to dynamics with the velocity it has at that moment.
+    /// the speed limits of the scene and pushes other bodies away. It is driven as long as commands
+    /// arrive. After `drive_timeout` of the scene without a command (default 0.5 s of simulated time), or
+    /// with MODE_RELEASE, the object moves freely again, starting with its current velocity.
     ///
-    /// A command with numbers that are not finite, an orientation whose length is not 1 within 0.001,
-    /// an unknown frame, object or mode is refused and counted in ~/statistics.
+    /// A command with a number that is not finite, an orientation whose length differs from 1 by more than
+    /// 0.001, or an unknown frame, object or mode is rejected and counted in ~/statistics.
     #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
     pub struct ObjectCommand {
-        /// Frame of the pose: world (also if empty) or another frame of the scene. The stamp is recorded, not used \[s\].
+        /// Frame of the pose: world (also if empty) or another frame of the scene. The stamp is recorded but not used \[s\].
         pub r#header: super::std_msgs::Header,
         /// Name of the object in the scene.
         pub r#object: String,
@@ -991,7 +991,7 @@ uint32 nanosec
     impl ObjectCommand {
         /// Drive the object to `pose`.
         pub const MODE_DRIVE: u8 = 0;
-        /// Give the object back to dynamics; `pose` is not used.
+        /// Release the object; `pose` is not used.
         pub const MODE_RELEASE: u8 = 1;
     }
 
@@ -1000,23 +1000,23 @@ uint32 nanosec
             name: "jamgrip_msgs/msg/ObjectCommand",
             dds_name: "jamgrip_msgs::msg::dds_::ObjectCommand_",
             type_hash: "RIHS01_3bcaba02d143f6e9e63c5802d4ed6f93224cf683c568559bceb053f2f0bead6e",
-            definition: r##"# Drives an object along poses, or gives it back to the physics.
+            definition: r##"# Drives an object along poses, or releases it.
 #
 # A pose command, given by MODE_DRIVE of this message or as geometry_msgs/PoseStamped on
 # ~/object/<name>/pose_cmd, drives the object kinematically: it moves to the commanded pose within
-# the scene's limits of speed and pushes what is in its way. It is driven as long as commands keep
-# coming. When none has come for the scene's `drive_timeout` (default 0.5 s of simulated time), or at
-# MODE_RELEASE, the object is given back to dynamics with the velocity it has at that moment.
+# the speed limits of the scene and pushes other bodies away. It is driven as long as commands
+# arrive. After `drive_timeout` of the scene without a command (default 0.5 s of simulated time), or
+# with MODE_RELEASE, the object moves freely again, starting with its current velocity.
 #
-# A command with numbers that are not finite, an orientation whose length is not 1 within 0.001,
-# an unknown frame, object or mode is refused and counted in ~/statistics.
+# A command with a number that is not finite, an orientation whose length differs from 1 by more than
+# 0.001, or an unknown frame, object or mode is rejected and counted in ~/statistics.
 
 # Drive the object to `pose`.
 uint8 MODE_DRIVE = 0
-# Give the object back to dynamics; `pose` is not used.
+# Release the object; `pose` is not used.
 uint8 MODE_RELEASE = 1
 
-# Frame of the pose: world (also if empty) or another frame of the scene. The stamp is recorded, not used [s].
+# Frame of the pose: world (also if empty) or another frame of the scene. The stamp is recorded but not used [s].
 std_msgs/Header header
 # Name of the object in the scene.
 string object
@@ -1051,12 +1051,12 @@ uint32 nanosec
         };
     }
 
-    /// Whether the gripper holds something, with the values that drivers of vacuum grippers use.
+    /// Whether the gripper holds an object, with the values that drivers of vacuum grippers use.
     ///
-    /// The simulated gripper has no such sensor; the status is told from contact and pressure:
-    /// no contact between membrane and objects is NO_OBJECT_DETECTED. With contact it depends on the
-    /// share of the commanded vacuum that is reached: from 95 % on OBJECT_DETECTED_AT_MAX_PRESSURE,
-    /// from one sixth on OBJECT_DETECTED_AT_MIN_PRESSURE, below that or without vacuum UNKNOWN.
+    /// The simulated gripper has no such sensor; the status is derived from contact and pressure:
+    /// NO_OBJECT_DETECTED without contact between membrane and objects. With contact it depends on the
+    /// fraction of the commanded vacuum that is reached: OBJECT_DETECTED_AT_MAX_PRESSURE from 95 %,
+    /// OBJECT_DETECTED_AT_MIN_PRESSURE from one sixth, UNKNOWN below that or without vacuum.
     #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
     pub struct ObjectDetectionStatus {
         /// One of the values above \[-\].
@@ -1064,13 +1064,13 @@ uint32 nanosec
     }
 
     impl ObjectDetectionStatus {
-        /// Touched, but not gripped.
+        /// Contact, but not gripped.
         pub const UNKNOWN: i8 = 0;
-        /// Touched, and the vacuum has built up enough to hold.
+        /// Contact, and the vacuum is sufficient to hold the object.
         pub const OBJECT_DETECTED_AT_MIN_PRESSURE: i8 = 1;
-        /// Touched, and the commanded vacuum is reached.
+        /// Contact, and the commanded vacuum is reached.
         pub const OBJECT_DETECTED_AT_MAX_PRESSURE: i8 = 2;
-        /// Nothing touches the membrane.
+        /// No contact with the membrane.
         pub const NO_OBJECT_DETECTED: i8 = 3;
     }
 
@@ -1079,20 +1079,20 @@ uint32 nanosec
             name: "jamgrip_msgs/msg/ObjectDetectionStatus",
             dds_name: "jamgrip_msgs::msg::dds_::ObjectDetectionStatus_",
             type_hash: "RIHS01_a8faf93427d99626ee5aea78e75af0cf633ea47d974d9a6dfaf1048eb540f986",
-            definition: r##"# Whether the gripper holds something, with the values that drivers of vacuum grippers use.
+            definition: r##"# Whether the gripper holds an object, with the values that drivers of vacuum grippers use.
 #
-# The simulated gripper has no such sensor; the status is told from contact and pressure:
-# no contact between membrane and objects is NO_OBJECT_DETECTED. With contact it depends on the
-# share of the commanded vacuum that is reached: from 95 % on OBJECT_DETECTED_AT_MAX_PRESSURE,
-# from one sixth on OBJECT_DETECTED_AT_MIN_PRESSURE, below that or without vacuum UNKNOWN.
+# The simulated gripper has no such sensor; the status is derived from contact and pressure:
+# NO_OBJECT_DETECTED without contact between membrane and objects. With contact it depends on the
+# fraction of the commanded vacuum that is reached: OBJECT_DETECTED_AT_MAX_PRESSURE from 95 %,
+# OBJECT_DETECTED_AT_MIN_PRESSURE from one sixth, UNKNOWN below that or without vacuum.
 
-# Touched, but not gripped.
+# Contact, but not gripped.
 int8 UNKNOWN = 0
-# Touched, and the vacuum has built up enough to hold.
+# Contact, and the vacuum is sufficient to hold the object.
 int8 OBJECT_DETECTED_AT_MIN_PRESSURE = 1
-# Touched, and the commanded vacuum is reached.
+# Contact, and the commanded vacuum is reached.
 int8 OBJECT_DETECTED_AT_MAX_PRESSURE = 2
-# Nothing touches the membrane.
+# No contact with the membrane.
 int8 NO_OBJECT_DETECTED = 3
 
 # One of the values above [-].
@@ -1101,16 +1101,16 @@ int8 status
         };
     }
 
-    /// What became of the ticks' results at one place they go to.
+    /// Counters of one output.
     #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
     pub struct SinkStatistics {
-        /// Name of the place: ros, shm or bag.
+        /// Name of the output: ros, shm or bag.
         pub r#name: String,
         /// Results written \[1\].
         pub r#n_written: u64,
-        /// Results dropped because the place was too slow \[1\].
+        /// Results dropped because the output was too slow \[1\].
         pub r#n_dropped: u64,
-        /// Results that the place failed on \[1\].
+        /// Results that could not be written \[1\].
         pub r#n_failed: u64,
     }
 
@@ -1119,28 +1119,28 @@ int8 status
             name: "jamgrip_msgs/msg/SinkStatistics",
             dds_name: "jamgrip_msgs::msg::dds_::SinkStatistics_",
             type_hash: "RIHS01_2f97f5f1f0484fab6fda62425d4289fd6f6c1b37e98b40d35aed4543682e4b88",
-            definition: r##"# What became of the ticks' results at one place they go to.
+            definition: r##"# Counters of one output.
 
-# Name of the place: ros, shm or bag.
+# Name of the output: ros, shm or bag.
 string name
 # Results written [1].
 uint64 n_written
-# Results dropped because the place was too slow [1].
+# Results dropped because the output was too slow [1].
 uint64 n_dropped
-# Results that the place failed on [1].
+# Results that could not be written [1].
 uint64 n_failed
 "##,
         };
     }
 
-    /// Fingerprint of the whole state at the end of a tick. Only recordings hold it.
+    /// Digest of the complete state at the end of a tick. Only in recordings.
     #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
     pub struct StateDigest {
         /// Ticks since the start of the run \[1\].
         pub r#tick: u64,
-        /// Digest of the whole state; equal digests are equal states, bit by bit.
+        /// Digest of the complete state; equal digests mean equal states, bit for bit.
         pub r#digest: u64,
-        /// Digest of the chain so far: the scene's text, and of every tick its commands and its digest.
+        /// Chained digest of the scene's text and of the commands and the digest of every tick so far.
         pub r#chain: u64,
     }
 
@@ -1149,30 +1149,30 @@ uint64 n_failed
             name: "jamgrip_msgs/msg/StateDigest",
             dds_name: "jamgrip_msgs::msg::dds_::StateDigest_",
             type_hash: "RIHS01_8ace4a29b566a96b4c49aaaef2b97f13b73b877caaa3d473f1e00de9509106b9",
-            definition: r##"# Fingerprint of the whole state at the end of a tick. Only recordings hold it.
+            definition: r##"# Digest of the complete state at the end of a tick. Only in recordings.
 
 # Ticks since the start of the run [1].
 uint64 tick
-# Digest of the whole state; equal digests are equal states, bit by bit.
+# Digest of the complete state; equal digests mean equal states, bit for bit.
 uint64 digest
-# Digest of the chain so far: the scene's text, and of every tick its commands and its digest.
+# Chained digest of the scene's text and of the commands and the digest of every tick so far.
 uint64 chain
 "##,
         };
     }
 
-    /// How the simulation runs, and whether its model is valid.
+    /// Statistics of the simulation, and whether its model is valid.
     #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
     pub struct Statistics {
         /// Simulated time \[s\].
         pub r#header: super::std_msgs::Header,
         /// Simulated time since the start of the run \[s\].
         pub r#sim_time: f64,
-        /// Wall time since the first tick \[s\].
+        /// Wall-clock time since the first tick \[s\].
         pub r#wall_time: f64,
-        /// Simulated over wall time, over the last second of wall time \[-\].
+        /// Simulated time over wall-clock time, during the last second of wall-clock time \[-\].
         pub r#real_time_factor: f64,
-        /// Simulated over wall time, since the first tick \[-\].
+        /// Simulated time over wall-clock time, since the first tick \[-\].
         pub r#real_time_factor_mean: f64,
         /// Ticks since the start of the run \[1\].
         pub r#tick: u64,
@@ -1180,31 +1180,31 @@ uint64 chain
         pub r#substep: f64,
         /// Kinetic energy of grains and membrane \[J\].
         pub r#kinetic_energy: f64,
-        /// Contacts between grains \[1\].
+        /// Number of contacts between grains \[1\].
         pub r#n_grain_contacts: u32,
-        /// Contacts between grains and membrane \[1\].
+        /// Number of contacts between grains and membrane \[1\].
         pub r#n_membrane_contacts: u32,
-        /// Contacts between membrane and objects \[1\].
+        /// Number of contacts between membrane and objects \[1\].
         pub r#n_object_contacts: u32,
-        /// Digest of the whole state; equal digests are equal states, bit by bit.
+        /// Digest of the complete state; equal digests mean equal states, bit for bit.
         pub r#state_digest: u64,
-        /// Seed of the scene's random streams.
+        /// Seed of all random numbers.
         pub r#seed: u64,
-        /// Commands carried out as asked \[1\].
+        /// Commands applied without change \[1\].
         pub r#n_commands_applied: u64,
-        /// Commands carried out within a limit \[1\].
+        /// Commands limited to an allowed range \[1\].
         pub r#n_commands_limited: u64,
-        /// Commands not carried out \[1\].
+        /// Commands rejected \[1\].
         pub r#n_commands_refused: u64,
-        /// What became of the results, place by place.
+        /// Counters of each output.
         pub r#sinks: Vec<SinkStatistics>,
-        /// Largest overlap between grains over their mean diameter; the contact law holds for small ones \[-\].
+        /// Largest overlap between grains over their mean diameter; the contact law is valid for small values \[-\].
         pub r#overlap_ratio_max: f64,
-        /// Largest overlap between a grain and the membrane over the grains' mean diameter \[-\].
+        /// Largest overlap between a grain and the membrane over the mean diameter of the grains \[-\].
         pub r#membrane_overlap_ratio_max: f64,
-        /// False when overlap_ratio_max is beyond 0.1: the contact law is no longer a good description.
+        /// False if overlap_ratio_max exceeds 0.1, the limit of validity of the contact law.
         pub r#is_valid: bool,
-        /// What the built-in controller is doing; empty without one.
+        /// Phase of the built-in controller; empty without one.
         pub r#phase: String,
     }
 
@@ -1213,17 +1213,17 @@ uint64 chain
             name: "jamgrip_msgs/msg/Statistics",
             dds_name: "jamgrip_msgs::msg::dds_::Statistics_",
             type_hash: "RIHS01_5ec922689d3677c948c46f4aff57b7eb06502f87efe527eb40d8611ecc864d09",
-            definition: r##"# How the simulation runs, and whether its model is valid.
+            definition: r##"# Statistics of the simulation, and whether its model is valid.
 
 # Simulated time [s].
 std_msgs/Header header
 # Simulated time since the start of the run [s].
 float64 sim_time
-# Wall time since the first tick [s].
+# Wall-clock time since the first tick [s].
 float64 wall_time
-# Simulated over wall time, over the last second of wall time [-].
+# Simulated time over wall-clock time, during the last second of wall-clock time [-].
 float64 real_time_factor
-# Simulated over wall time, since the first tick [-].
+# Simulated time over wall-clock time, since the first tick [-].
 float64 real_time_factor_mean
 # Ticks since the start of the run [1].
 uint64 tick
@@ -1231,31 +1231,31 @@ uint64 tick
 float64 substep
 # Kinetic energy of grains and membrane [J].
 float64 kinetic_energy
-# Contacts between grains [1].
+# Number of contacts between grains [1].
 uint32 n_grain_contacts
-# Contacts between grains and membrane [1].
+# Number of contacts between grains and membrane [1].
 uint32 n_membrane_contacts
-# Contacts between membrane and objects [1].
+# Number of contacts between membrane and objects [1].
 uint32 n_object_contacts
-# Digest of the whole state; equal digests are equal states, bit by bit.
+# Digest of the complete state; equal digests mean equal states, bit for bit.
 uint64 state_digest
-# Seed of the scene's random streams.
+# Seed of all random numbers.
 uint64 seed
-# Commands carried out as asked [1].
+# Commands applied without change [1].
 uint64 n_commands_applied
-# Commands carried out within a limit [1].
+# Commands limited to an allowed range [1].
 uint64 n_commands_limited
-# Commands not carried out [1].
+# Commands rejected [1].
 uint64 n_commands_refused
-# What became of the results, place by place.
+# Counters of each output.
 jamgrip_msgs/SinkStatistics[] sinks
-# Largest overlap between grains over their mean diameter; the contact law holds for small ones [-].
+# Largest overlap between grains over their mean diameter; the contact law is valid for small values [-].
 float64 overlap_ratio_max
-# Largest overlap between a grain and the membrane over the grains' mean diameter [-].
+# Largest overlap between a grain and the membrane over the mean diameter of the grains [-].
 float64 membrane_overlap_ratio_max
-# False when overlap_ratio_max is beyond 0.1: the contact law is no longer a good description.
+# False if overlap_ratio_max exceeds 0.1, the limit of validity of the contact law.
 bool is_valid
-# What the built-in controller is doing; empty without one.
+# Phase of the built-in controller; empty without one.
 string phase
 ================================================================================
 MSG: std_msgs/Header
@@ -1263,15 +1263,15 @@ builtin_interfaces/Time stamp
 string frame_id
 ================================================================================
 MSG: jamgrip_msgs/SinkStatistics
-# What became of the ticks' results at one place they go to.
+# Counters of one output.
 
-# Name of the place: ros, shm or bag.
+# Name of the output: ros, shm or bag.
 string name
 # Results written [1].
 uint64 n_written
-# Results dropped because the place was too slow [1].
+# Results dropped because the output was too slow [1].
 uint64 n_dropped
-# Results that the place failed on [1].
+# Results that could not be written [1].
 uint64 n_failed
 ================================================================================
 MSG: builtin_interfaces/Time
@@ -1281,26 +1281,26 @@ uint32 nanosec
         };
     }
 
-    /// The air in the membrane and how jammed the grains are.
+    /// State of the air inside the membrane, and jamming of the grains.
     #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
     pub struct VacuumState {
         /// Simulated time \[s\].
         pub r#header: super::std_msgs::Header,
         /// Actual gauge pressure, negative under vacuum \[Pa\].
         pub r#gauge: f64,
-        /// Commanded gauge pressure, after the pump's limits \[Pa\].
+        /// Commanded gauge pressure, within the limits of the pump \[Pa\].
         pub r#gauge_setpoint: f64,
-        /// Volume that membrane and flange enclose \[m^3\].
+        /// Volume enclosed by membrane and flange \[m^3\].
         pub r#volume: f64,
-        /// Share of grains with at least four contacts, those that can carry load \[-\].
+        /// Fraction of grains with at least four contacts, which can carry load \[-\].
         pub r#jammed_fraction: f64,
         /// Mean number of contacts per grain \[-\].
         pub r#coordination_number: f64,
         /// Volume of the grains over the enclosed volume \[-\].
         pub r#solid_fraction: f64,
-        /// Share of sliding contacts among the contacts between grains \[-\].
+        /// Fraction of sliding contacts among the contacts between grains \[-\].
         pub r#sliding_fraction: f64,
-        /// Whether something is held.
+        /// Whether an object is held.
         pub r#object_detection: ObjectDetectionStatus,
     }
 
@@ -1309,25 +1309,25 @@ uint32 nanosec
             name: "jamgrip_msgs/msg/VacuumState",
             dds_name: "jamgrip_msgs::msg::dds_::VacuumState_",
             type_hash: "RIHS01_72a7a4556b7a2097dad83a97e4a7cfa2cb84ae66f86b3f53a80d8bbe4734b29d",
-            definition: r##"# The air in the membrane and how jammed the grains are.
+            definition: r##"# State of the air inside the membrane, and jamming of the grains.
 
 # Simulated time [s].
 std_msgs/Header header
 # Actual gauge pressure, negative under vacuum [Pa].
 float64 gauge
-# Commanded gauge pressure, after the pump's limits [Pa].
+# Commanded gauge pressure, within the limits of the pump [Pa].
 float64 gauge_setpoint
-# Volume that membrane and flange enclose [m^3].
+# Volume enclosed by membrane and flange [m^3].
 float64 volume
-# Share of grains with at least four contacts, those that can carry load [-].
+# Fraction of grains with at least four contacts, which can carry load [-].
 float64 jammed_fraction
 # Mean number of contacts per grain [-].
 float64 coordination_number
 # Volume of the grains over the enclosed volume [-].
 float64 solid_fraction
-# Share of sliding contacts among the contacts between grains [-].
+# Fraction of sliding contacts among the contacts between grains [-].
 float64 sliding_fraction
-# Whether something is held.
+# Whether an object is held.
 jamgrip_msgs/ObjectDetectionStatus object_detection
 ================================================================================
 MSG: std_msgs/Header
@@ -1335,20 +1335,20 @@ builtin_interfaces/Time stamp
 string frame_id
 ================================================================================
 MSG: jamgrip_msgs/ObjectDetectionStatus
-# Whether the gripper holds something, with the values that drivers of vacuum grippers use.
+# Whether the gripper holds an object, with the values that drivers of vacuum grippers use.
 #
-# The simulated gripper has no such sensor; the status is told from contact and pressure:
-# no contact between membrane and objects is NO_OBJECT_DETECTED. With contact it depends on the
-# share of the commanded vacuum that is reached: from 95 % on OBJECT_DETECTED_AT_MAX_PRESSURE,
-# from one sixth on OBJECT_DETECTED_AT_MIN_PRESSURE, below that or without vacuum UNKNOWN.
+# The simulated gripper has no such sensor; the status is derived from contact and pressure:
+# NO_OBJECT_DETECTED without contact between membrane and objects. With contact it depends on the
+# fraction of the commanded vacuum that is reached: OBJECT_DETECTED_AT_MAX_PRESSURE from 95 %,
+# OBJECT_DETECTED_AT_MIN_PRESSURE from one sixth, UNKNOWN below that or without vacuum.
 
-# Touched, but not gripped.
+# Contact, but not gripped.
 int8 UNKNOWN = 0
-# Touched, and the vacuum has built up enough to hold.
+# Contact, and the vacuum is sufficient to hold the object.
 int8 OBJECT_DETECTED_AT_MIN_PRESSURE = 1
-# Touched, and the commanded vacuum is reached.
+# Contact, and the commanded vacuum is reached.
 int8 OBJECT_DETECTED_AT_MAX_PRESSURE = 2
-# Nothing touches the membrane.
+# No contact with the membrane.
 int8 NO_OBJECT_DETECTED = 3
 
 # One of the values above [-].
@@ -1361,15 +1361,15 @@ uint32 nanosec
         };
     }
 
-    /// What was done to the world between two ticks from outside: a reset, something put elsewhere, an object
-    /// added or taken away. Only recordings hold it.
+    /// A change of the world between two ticks: a reset, a teleport, an object inserted or removed. Only in
+    /// recordings.
     #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
     pub struct WorldChange {
-        /// Ticks since the start of the run after which it was done \[1\].
+        /// Ticks since the start of the run, before the change \[1\].
         pub r#tick: u64,
-        /// What was done, in words.
+        /// Description of the change.
         pub r#what: String,
-        /// The same with all its numbers, in a form that only the simulator reads.
+        /// The serialized change, which only the simulator reads.
         #[serde(with = "serde_bytes")]
         pub r#change: Vec<u8>,
     }
@@ -1379,14 +1379,14 @@ uint32 nanosec
             name: "jamgrip_msgs/msg/WorldChange",
             dds_name: "jamgrip_msgs::msg::dds_::WorldChange_",
             type_hash: "RIHS01_22a4a646e7733b7483d705af67570a5da4cb816a79530683d373850e3b9a77e6",
-            definition: r##"# What was done to the world between two ticks from outside: a reset, something put elsewhere, an object
-# added or taken away. Only recordings hold it.
+            definition: r##"# A change of the world between two ticks: a reset, a teleport, an object inserted or removed. Only in
+# recordings.
 
-# Ticks since the start of the run after which it was done [1].
+# Ticks since the start of the run, before the change [1].
 uint64 tick
-# What was done, in words.
+# Description of the change.
 string what
-# The same with all its numbers, in a form that only the simulator reads.
+# The serialized change, which only the simulator reads.
 uint8[] change
 "##,
         };

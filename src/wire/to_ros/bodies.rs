@@ -20,26 +20,26 @@ pub(super) fn frames(snapshot: &Snapshot) -> TFMessage {
     TFMessage { transforms: std::iter::once(flange).chain(objects).collect() }
 }
 
-/// gripper_flange → membrane: the same, because the flange's frame lies in the rim's plane.
+/// gripper_flange → membrane: the identity, because the flange frame lies in the plane of the rim.
 pub(super) fn static_frames(time_ns: u64) -> TFMessage {
     let membrane = parts::transform(FLANGE, MEMBRANE.to_owned(), &Pose::identity(), time_ns);
     TFMessage { transforms: vec![membrane] }
 }
 
-/// The gripper as joints that a robot's tools understand.
+/// The gripper as joints, for robot tools.
 ///
-/// `vacuum`: position 0 is vented, 1 the strongest vacuum of the pump; effort is the gauge
-/// pressure (Pa). `flange_x` … `flange_yaw`: the flange's pose in the world (m, rad) as three
-/// sliding and three turning joints (turns about the fixed axes x, y, z); effort is what these
-/// joints hold against the gripper (N, N m).
+/// `vacuum`: position 0 is vented, 1 is the strongest vacuum of the pump; the effort is the gauge
+/// pressure (Pa). `flange_x` … `flange_yaw`: the pose of the flange in the world (m, rad) as three
+/// prismatic and three revolute joints (rotations about the fixed axes x, y, z); the effort is the
+/// force or torque with which these joints hold the gripper (N, N m).
 pub(super) fn joint_states(snapshot: &Snapshot, chamber: &Chamber) -> JointState {
     let pose = &snapshot.flange.pose;
     let (roll, pitch, yaw) = pose.rotation.euler_angles();
     let p = pose.translation.vector;
     let v = snapshot.flange.twist.linear;
-    let axes = turning_axes(pitch, yaw);
-    let turn_rates = axes
-        .try_inverse() // none where two axes coincide: the rates have no value there
+    let axes = rotation_axes(pitch, yaw);
+    let angle_rates = axes
+        .try_inverse() // singular if two axes coincide; the rates are undefined there
         .map_or(Vec3::zeros(), |inverse| inverse * snapshot.flange.twist.angular);
     let force = -(pose.rotation * snapshot.mount_wrench.force);
     let torque = -(axes.transpose() * (pose.rotation * snapshot.mount_wrench.torque));
@@ -47,29 +47,30 @@ pub(super) fn joint_states(snapshot: &Snapshot, chamber: &Chamber) -> JointState
     JointState {
         header: parts::header(snapshot.time_ns, WORLD),
         name: JOINTS.map(str::to_owned).to_vec(),
-        position: vec![share(air.gauge, chamber), p.x, p.y, p.z, roll, pitch, yaw],
-        velocity: [&[vacuum_rate(air, chamber)], v.as_slice(), turn_rates.as_slice()].concat(),
+        position: vec![vacuum_fraction(air.gauge, chamber), p.x, p.y, p.z, roll, pitch, yaw],
+        velocity: [&[vacuum_rate(air, chamber)], v.as_slice(), angle_rates.as_slice()].concat(),
         effort: [&[air.gauge], force.as_slice(), torque.as_slice()].concat(),
     }
 }
 
 /// Axes of roll, pitch and yaw in the world, as columns.
-fn turning_axes(pitch: Real, yaw: Real) -> Mat3 {
+fn rotation_axes(pitch: Real, yaw: Real) -> Mat3 {
     let roll_axis = Vec3::new(yaw.cos() * pitch.cos(), yaw.sin() * pitch.cos(), -pitch.sin());
     let pitch_axis = Vec3::new(-yaw.sin(), yaw.cos(), 0.0);
     Mat3::from_columns(&[roll_axis, pitch_axis, Vec3::z()])
 }
 
-/// Share of the pump's strongest vacuum; 0 for a pump without vacuum.
-fn share(gauge: Real, chamber: &Chamber) -> Real {
+/// Fraction of the pump's strongest vacuum; 0 for a pump without vacuum.
+fn vacuum_fraction(gauge: Real, chamber: &Chamber) -> Real {
     if chamber.gauge_min < 0.0 { gauge / chamber.gauge_min } else { 0.0 }
 }
 
-/// Rate of `share` (1/s), by the law that the pressure follows: first-order lag, limited rate.
+/// Rate of `vacuum_fraction` (1/s), from the law of the pressure: first-order lag with a limited
+/// rate.
 fn vacuum_rate(air: &ChamberSnapshot, chamber: &Chamber) -> Real {
-    let missing = air.gauge_setpoint - air.gauge;
-    let rate = if 0.0 < chamber.lag { missing / chamber.lag } else { 0.0 };
-    share(rate.clamp(-chamber.rate_max, chamber.rate_max), chamber)
+    let difference = air.gauge_setpoint - air.gauge;
+    let rate = if 0.0 < chamber.lag { difference / chamber.lag } else { 0.0 };
+    vacuum_fraction(rate.clamp(-chamber.rate_max, chamber.rate_max), chamber)
 }
 
 #[cfg(test)]
@@ -78,13 +79,14 @@ mod tests {
     use crate::base::Quat;
 
     #[test]
-    fn turn_rates_are_those_of_the_angles() {
-        // Oracle: finite differences of the angles of a body that turns with a known velocity.
+    fn angle_rates_match_the_angles() {
+        // Oracle: finite differences of the angles of a body that rotates with a known velocity.
         let (roll, pitch, yaw) = (0.3, -0.4, 1.1);
-        let spin = Vec3::new(0.2, -0.5, 0.7);
-        let rates = turning_axes(pitch, yaw).try_inverse().unwrap() * spin;
+        let angular_velocity = Vec3::new(0.2, -0.5, 0.7);
+        let rates = rotation_axes(pitch, yaw).try_inverse().unwrap() * angular_velocity;
         let dt = 1e-6;
-        let later = Quat::from_scaled_axis(spin * dt) * Quat::from_euler_angles(roll, pitch, yaw);
+        let later = Quat::from_scaled_axis(angular_velocity * dt)
+            * Quat::from_euler_angles(roll, pitch, yaw);
         let (roll_later, pitch_later, yaw_later) = later.euler_angles();
         let measured = Vec3::new(roll_later - roll, pitch_later - pitch, yaw_later - yaw) / dt;
         // Tolerance: the error of a one-sided difference is of the order of dt.

@@ -1,4 +1,4 @@
-//! The air in the membrane: pressure, vacuum, and whether something is held.
+//! The air inside the membrane: pressure, vacuum state, and object detection.
 
 use super::{MEMBRANE, parts};
 use crate::{
@@ -9,10 +9,10 @@ use crate::{
     },
 };
 
-/// Share of the commanded vacuum that can hold something.
-const SHARE_THAT_HOLDS: f64 = 1.0 / 6.0;
-/// Share of the commanded vacuum that counts as reached.
-const SHARE_REACHED: f64 = 0.95;
+/// Fraction of the commanded vacuum that can hold an object.
+const HOLDING_FRACTION: f64 = 1.0 / 6.0;
+/// Fraction of the commanded vacuum that counts as reached.
+const REACHED_FRACTION: f64 = 0.95;
 
 /// Absolute pressure.
 pub(super) fn pressure(snapshot: &Snapshot) -> FluidPressure {
@@ -39,16 +39,16 @@ pub(super) fn vacuum_state(snapshot: &Snapshot) -> VacuumState {
     }
 }
 
-/// Told from contact and pressure, as the .msg file says.
+/// Derived from contact and pressure, as defined in the .msg file.
 pub(super) fn object_detection(snapshot: &Snapshot) -> ObjectDetectionStatus {
     let air = &snapshot.chamber;
     let status = if snapshot.jamming.n_object_contacts == 0 {
         ObjectDetectionStatus::NO_OBJECT_DETECTED
     } else if 0.0 <= air.gauge_setpoint {
         ObjectDetectionStatus::UNKNOWN
-    } else if air.gauge <= SHARE_REACHED * air.gauge_setpoint {
+    } else if air.gauge <= REACHED_FRACTION * air.gauge_setpoint {
         ObjectDetectionStatus::OBJECT_DETECTED_AT_MAX_PRESSURE
-    } else if air.gauge <= SHARE_THAT_HOLDS * air.gauge_setpoint {
+    } else if air.gauge <= HOLDING_FRACTION * air.gauge_setpoint {
         ObjectDetectionStatus::OBJECT_DETECTED_AT_MIN_PRESSURE
     } else {
         ObjectDetectionStatus::UNKNOWN

@@ -1,6 +1,6 @@
 //! Grains and membrane as point clouds, and the membrane as a surface.
 //!
-//! A row of a cloud is a plain struct of 32-bit numbers, so that a cloud's bytes are its rows.
+//! A row of a cloud is a plain struct of 32-bit numbers, so the bytes of a cloud are its rows.
 
 use bytemuck::{Pod, Zeroable};
 
@@ -61,7 +61,7 @@ const VERTEX_FIELDS: [(&str, u8); 8] = [
     ("strain", PointField::FLOAT32),
 ];
 
-/// The grains; every k-th of them if there are more than `count_max`.
+/// The grains; only every k-th if there are more than `count_max`.
 pub(super) fn grains(grains: &GrainsSnapshot, count_max: usize, time_ns: u64) -> PointCloud2 {
     let stride = grains.positions.len().div_ceil(count_max.max(1)).max(1);
     let rows: Vec<GrainRow> = (0..grains.positions.len())
@@ -77,7 +77,7 @@ pub(super) fn grains(grains: &GrainsSnapshot, count_max: usize, time_ns: u64) ->
     cloud(&rows, &GRAIN_FIELDS, time_ns)
 }
 
-/// The membrane's vertices in mesh order.
+/// The vertices of the membrane, in mesh order.
 pub(super) fn membrane(membrane: &MembraneSnapshot, time_ns: u64) -> PointCloud2 {
     let rows: Vec<VertexRow> = (0..membrane.positions.len())
         .map(|i| VertexRow {
@@ -136,8 +136,8 @@ pub(super) fn mesh(triangles: &[[u32; 3]], vertices: &[Vec3]) -> Mesh {
     }
 }
 
-/// The membrane as a surface that RViz can show. Its points are rounded to single precision:
-/// enough for the eye, and recordings compress better.
+/// The membrane as a surface for RViz. Its points are rounded to single precision, which is enough
+/// for display and compresses better.
 pub(super) fn surface(membrane: &MembraneSnapshot, triangles: &[[u32; 3]], time_ns: u64) -> Marker {
     let rounded = |v: &Vec3| Point {
         x: f64::from(single(v.x)),

@@ -12,7 +12,7 @@ use crate::{
     },
 };
 
-/// Most arrows at a time; the strongest contacts get them.
+/// Largest number of arrows; they show the strongest contacts.
 const ARROWS_MAX: usize = 200;
 /// Length of an arrow per force (m/N).
 const ARROW_LENGTH: f64 = 0.02;
@@ -20,7 +20,7 @@ const ARROW_LENGTH: f64 = 0.02;
 /// All contacts.
 pub(super) fn array(contacts: &[ContactSnapshot], objects: &[&str], time_ns: u64) -> ContactArray {
     let contact = |it: &ContactSnapshot| {
-        // The normal points from the object to the membrane, so the membrane pushes against it.
+        // The normal points from the object to the membrane; the membrane pushes against it.
         let normal_part: Vec3 = it.normal * it.normal.dot(&it.force);
         Contact {
             object: objects.get(it.object).copied().unwrap_or_default().to_owned(),
@@ -38,8 +38,8 @@ pub(super) fn array(contacts: &[ContactSnapshot], objects: &[&str], time_ns: u64
     }
 }
 
-/// Arrows along the forces on the objects. Their ids are 0, 1, 2 … from the strongest on, and
-/// they fade after two periods, so that none stays when its contact is gone.
+/// Arrows along the forces on the objects. Their IDs are 0, 1, 2 … from the strongest on. They
+/// expire after two periods, so that no arrow outlives its contact.
 pub(super) fn markers(contacts: &[ContactSnapshot], time_ns: u64, rate: f64) -> MarkerArray {
     let mut strongest: Vec<&ContactSnapshot> = contacts.iter().collect();
     strongest.sort_by(|a, b| b.normal_force.total_cmp(&a.normal_force));
@@ -54,7 +54,7 @@ pub(super) fn markers(contacts: &[ContactSnapshot], time_ns: u64, rate: f64) -> 
             orientation: Quaternion { w: 1.0, ..Default::default() },
             ..Default::default()
         },
-        // Of an arrow given by two points: diameters of shaft and head, length of the head [m].
+        // For an arrow between two points: diameters of shaft and head, and length of the head (m).
         scale: Vector3 { x: 0.0006, y: 0.0015, z: 0.002 },
         color: ColorRGBA { r: 0.1, g: 0.5, b: 0.9, a: 1.0 },
         lifetime: parts::duration(2.0 / rate),

@@ -1,4 +1,4 @@
-//! The small messages that others are made of: stamps, headers, vectors, poses, wrenches.
+//! Common parts of messages: stamps, headers, vectors, poses, wrenches.
 
 use crate::{
     base::{
@@ -8,16 +8,16 @@ use crate::{
     wire::messages::{builtin_interfaces, geometry_msgs as ros, std_msgs},
 };
 
-/// Simulated time as a ROS time.
+/// Simulation time as a ROS time.
 pub(super) fn time(time_ns: u64) -> builtin_interfaces::Time {
-    #[expect(clippy::cast_possible_truncation, reason = "68 years of simulated time")]
+    #[expect(clippy::cast_possible_truncation, reason = "68 years of simulation time")]
     builtin_interfaces::Time {
         sec: (time_ns / 1_000_000_000) as i32,
         nanosec: (time_ns % 1_000_000_000) as u32,
     }
 }
 
-/// A span of time as a ROS duration.
+/// A time span as a ROS duration.
 pub(super) fn duration(seconds: f64) -> builtin_interfaces::Duration {
     #[expect(clippy::cast_possible_truncation, reason = "seconds between two messages")]
     #[expect(clippy::cast_sign_loss, reason = "a fraction is not negative")]
@@ -27,7 +27,7 @@ pub(super) fn duration(seconds: f64) -> builtin_interfaces::Duration {
     }
 }
 
-/// Stamp and frame.
+/// A header with time stamp and frame.
 pub(super) fn header(time_ns: u64, frame_id: &str) -> std_msgs::Header {
     std_msgs::Header { stamp: time(time_ns), frame_id: frame_id.to_owned() }
 }
@@ -37,7 +37,7 @@ pub(super) fn vector(v: &Vec3) -> ros::Vector3 {
     ros::Vector3 { x: v.x, y: v.y, z: v.z }
 }
 
-/// A place.
+/// A point.
 pub(super) fn point(v: &Vec3) -> ros::Point {
     ros::Point { x: v.x, y: v.y, z: v.z }
 }
@@ -58,7 +58,7 @@ pub(super) fn pose(pose: &Pose, time_ns: u64, frame_id: &str) -> ros::PoseStampe
     }
 }
 
-/// A velocity in a frame's axes.
+/// A velocity along the axes of a frame.
 pub(super) fn twist(twist: &Twist, time_ns: u64, frame_id: &str) -> ros::TwistStamped {
     ros::TwistStamped {
         header: header(time_ns, frame_id),
@@ -66,7 +66,7 @@ pub(super) fn twist(twist: &Twist, time_ns: u64, frame_id: &str) -> ros::TwistSt
     }
 }
 
-/// A force and a torque in a frame's axes.
+/// A force and a torque along the axes of a frame.
 pub(super) fn wrench(wrench: &Wrench, time_ns: u64, frame_id: &str) -> ros::WrenchStamped {
     ros::WrenchStamped {
         header: header(time_ns, frame_id),
@@ -74,7 +74,7 @@ pub(super) fn wrench(wrench: &Wrench, time_ns: u64, frame_id: &str) -> ros::Wren
     }
 }
 
-/// A frame in its parent.
+/// A frame relative to its parent.
 pub(super) fn transform(
     parent: &str,
     child: String,

@@ -1,4 +1,4 @@
-//! How the run goes: clock, statistics, diagnostics.
+//! Status of the run: clock, statistics, diagnostics.
 
 use super::{WORLD, parts};
 use crate::{
@@ -10,15 +10,15 @@ use crate::{
     },
 };
 
-/// Overlap between grains, over their diameter, beyond which the contact law is a poor description.
+/// Overlap of grains over their diameter, above which the contact law is inaccurate.
 const OVERLAP_RATIO_MAX: f64 = 0.1;
 
-/// Simulated time.
+/// Simulation time.
 pub(super) fn clock(snapshot: &Snapshot) -> Clock {
     Clock { clock: parts::time(snapshot.time_ns) }
 }
 
-/// Everything that is counted.
+/// All counters and statistics.
 pub(super) fn statistics(snapshot: &Snapshot, run: &RunStatistics) -> Statistics {
     let (jamming, commands) = (&snapshot.jamming, &snapshot.command_counts);
     let sink = |it: &SinkCounters| SinkStatistics {
@@ -60,7 +60,7 @@ fn count(n: usize) -> u32 {
     u32::try_from(n).unwrap_or(u32::MAX)
 }
 
-/// The same for the diagnostics tools of ROS, with a verdict on each part.
+/// Diagnostics for ROS tools, with a level for each part.
 pub(super) fn diagnostics(snapshot: &Snapshot, run: &RunStatistics) -> DiagnosticArray {
     let mut status = vec![simulation(snapshot, run), model(snapshot), commands(snapshot)];
     status.extend(run.sinks.iter().map(sink));
@@ -69,12 +69,12 @@ pub(super) fn diagnostics(snapshot: &Snapshot, run: &RunStatistics) -> Diagnosti
 
 fn simulation(snapshot: &Snapshot, run: &RunStatistics) -> DiagnosticStatus {
     let values = [
-        ("simulated time [s]", format!("{:.3}", snapshot.time_ns as f64 * 1e-9)),
+        ("simulation time [s]", format!("{:.3}", snapshot.time_ns as f64 * 1e-9)),
         ("wall time [s]", format!("{:.3}", run.wall_time_s)),
         ("real-time factor", format!("{:.4}", run.real_time_factor)),
         ("phase", run.phase.clone()),
     ];
-    verdict("simulation", DiagnosticStatus::OK, "running", &values)
+    diagnostic_status("simulation", DiagnosticStatus::OK, "running", &values)
 }
 
 fn model(snapshot: &Snapshot) -> DiagnosticStatus {
@@ -92,7 +92,7 @@ fn model(snapshot: &Snapshot) -> DiagnosticStatus {
     } else {
         (DiagnosticStatus::WARN, "grains overlap too much: lower the vacuum or stiffen the grains")
     };
-    verdict("model", level, message, &values)
+    diagnostic_status("model", level, message, &values)
 }
 
 fn commands(snapshot: &Snapshot) -> DiagnosticStatus {
@@ -103,10 +103,10 @@ fn commands(snapshot: &Snapshot) -> DiagnosticStatus {
         ("refused", counts.n_refused.to_string()),
     ];
     let (level, message) = match counts.n_refused {
-        0 => (DiagnosticStatus::OK, "none refused"),
-        _ => (DiagnosticStatus::WARN, "some refused"),
+        0 => (DiagnosticStatus::OK, "none rejected"),
+        _ => (DiagnosticStatus::WARN, "some rejected"),
     };
-    verdict("commands", level, message, &values)
+    diagnostic_status("commands", level, message, &values)
 }
 
 fn sink(counters: &SinkCounters) -> DiagnosticStatus {
@@ -120,10 +120,15 @@ fn sink(counters: &SinkCounters) -> DiagnosticStatus {
         (0, _) => (DiagnosticStatus::WARN, "too slow: results were dropped"),
         _ => (DiagnosticStatus::ERROR, "failed to write"),
     };
-    verdict(counters.name, level, message, &values)
+    diagnostic_status(counters.name, level, message, &values)
 }
 
-fn verdict(part: &str, level: u8, message: &str, values: &[(&str, String)]) -> DiagnosticStatus {
+fn diagnostic_status(
+    part: &str,
+    level: u8,
+    message: &str,
+    values: &[(&str, String)],
+) -> DiagnosticStatus {
     let value =
         |(key, value): &(&str, String)| KeyValue { key: (*key).to_owned(), value: value.clone() };
     DiagnosticStatus {

@@ -1,4 +1,4 @@
-//! Hinges: the geometry of a fold, and plate theory.
+//! Tests of hinges: the geometry of a fold, and plate theory.
 
 use super::super::bridson_2003::{self, Fold};
 use super::super::mesh::Mesh;
@@ -7,7 +7,7 @@ use super::{forces_on, model_of, rubber, shaken, totals};
 use crate::base::random::{Random, Stream};
 use crate::base::{Real, Vec3, lanes::Vector};
 
-/// Two triangles about an edge, arbitrary but not degenerate, with given velocities.
+/// Two random, non-degenerate triangles at an edge, with random velocities.
 fn random_hinge(random: &mut Random) -> MembraneState {
     let corners = [[0.3, 1.0, 0.0], [0.6, -0.8, 0.0], [0.0, 0.0, 0.0], [1.0, 0.0, 0.0]];
     let mut draw = |size: Real| Vec3::from_fn(|_, _| random.between(-size, size));
@@ -22,7 +22,7 @@ fn hinge_model(material: MembraneMaterial) -> MembraneModel {
     MembraneModel::new(mesh.unwrap(), material)
 }
 
-/// Fold of the only hinge, and its angle by the arctangent.
+/// Fold of the only hinge, and its angle (rad) by the arctangent.
 fn fold_of(model: &MembraneModel, positions: &[Vec3]) -> (Fold<Real>, Real) {
     let link = &model.links[0];
     let facets = link.triangles.map(|t| Facet::new(positions, &model.mesh.triangles[t as usize]));
@@ -67,7 +67,7 @@ fn the_fold_vectors_are_the_gradient_of_the_angle() {
 }
 
 #[test]
-fn half_sine_keeps_its_digits_at_both_ends() {
+fn half_sine_is_accurate_at_both_ends() {
     for angle in [1e-9, -1e-9, 1e-3, 1.0, -1.5, 1.6, 3.0, -3.1, 3.13] {
         let angle: Real = angle;
         let found = bridson_2003::half_sine(angle.sin(), angle.cos());
@@ -77,12 +77,12 @@ fn half_sine_keeps_its_digits_at_both_ends() {
 }
 
 #[test]
-fn bending_restores_from_both_sides_and_leaves_lengths_alone() {
+fn bending_restores_the_rest_angle_from_both_sides_without_stretching() {
     for rest in [0.0, 0.4, -0.4] {
         let mut model = hinge_model(rubber(1e-3, 0.0));
         let folded = |angle: Real| {
             let mut positions = model.mesh.positions.clone();
-            // Turn r1 about the x axis. Lifting it turns n1 so that θ has the sign of −angle.
+            // Rotate r1 about the x axis. Lifting it rotates n1 such that θ has the sign of −angle.
             positions[0] = Vec3::new(0.5, angle.cos(), -angle.sin());
             positions
         };
@@ -90,12 +90,12 @@ fn bending_restores_from_both_sides_and_leaves_lengths_alone() {
         let tilted = [rest + 0.2, rest - 0.2].map(folded);
         model.rest_angles_from(&at_rest);
         let (_, angle) = fold_of(&model, &at_rest);
-        // Oracle: construction of the fold. Tolerance: rounding.
+        // Oracle: the construction of the fold. Tolerance: rounding.
         assert!((angle.abs() - rest.abs()).abs() < 1e-15);
         let bend = |positions: &[Vec3]| {
             let (fold, angle) = fold_of(&model, positions);
-            let opened = fold.half_sine - model.links[0].law.rest_half_sine;
-            (fold.spread(1e-3 * fold.slenderness * opened).map(Vec3::from), angle)
+            let opening = fold.half_sine - model.links[0].law.rest_half_sine;
+            (fold.spread(1e-3 * fold.slenderness * opening).map(Vec3::from), angle)
         };
         // Oracle: C3 c, no force at the rest angle. Tolerance: rounding.
         assert!(bend(&at_rest).0[0].norm() < 1e-18);
@@ -106,7 +106,7 @@ fn bending_restores_from_both_sides_and_leaves_lengths_alone() {
                 moved[i] += f[i];
             }
             let (_, angle_after) = bend(&moved);
-            // Oracle: C3 c, following the force brings the angle nearer to rest.
+            // Oracle: C3 c, moving along the force brings the angle closer to that at rest.
             assert!((angle_after - angle).abs() < (angle_before - angle).abs());
             for [of, a, b] in [[0, 0, 2], [0, 0, 3], [0, 2, 3], [1, 1, 2], [1, 1, 3], [1, 2, 3]] {
                 let along = f[of].dot(&(positions[b] - positions[a]));
@@ -163,25 +163,25 @@ fn a_lattice_of_hinges_is_a_plate() {
     }
 }
 
-/// Oracle: eqs. 20 to 25 by dimensions. In a membrane made s times as large, |e|²/(|n1| + |n2|) · u goes with
-/// 1/s for areas that grow with it and with s³ for those it had: the forces differ by s⁴.
+/// Oracle: dimensional analysis of eqs. 20 to 25. In a membrane scaled by s, |e|²/(|n1| + |n2|) · u scales with 1/s
+/// for current areas and with s³ for reference areas: the forces differ by s⁴.
 #[test]
-fn first_areas_keep_a_squeezed_hinge_soft() {
+fn reference_areas_keep_a_compressed_hinge_soft() {
     let scale: Real = 0.5;
     let material = MembraneMaterial { youngs_modulus: 0.0, ..rubber(1e-3, 0.0) };
     let current = model_of(Mesh::hexagonal_patch(4e-3, 2), material);
-    let mut first = current.clone();
-    first.bend_by_first_areas();
+    let mut reference = current.clone();
+    reference.bend_by_first_areas();
     let mut state = shaken(&current, 4e-4, 0.0);
-    let at_first = [&current, &first].map(|model| forces_on(model, &state, 0.0));
+    let at_first = [&current, &reference].map(|model| forces_on(model, &state, 0.0));
     for position in &mut state.positions {
         *position *= scale;
     }
-    let squeezed = [&current, &first].map(|model| forces_on(model, &state, 0.0));
-    let (of_current, of_first) = (totals(&state, &squeezed[0]), totals(&state, &squeezed[1]));
-    // Tolerance: rounding. The shaken areas are not the first ones, so the ratio is not s⁴ itself.
+    let squeezed = [&current, &reference].map(|model| forces_on(model, &state, 0.0));
+    let (of_current, of_reference) = (totals(&state, &squeezed[0]), totals(&state, &squeezed[1]));
+    // Tolerance: rounding. The deformed areas differ from the reference areas, so the ratio itself is not s⁴.
     let ratio = |forces: &[Vec<Vec3>; 2]| forces[1][5].norm() / forces[0][5].norm();
     assert!((ratio(&squeezed) / ratio(&at_first) / scale.powi(4) - 1.0).abs() < 1e-9);
     // Oracle: internal forces have no resultant. Tolerance: rounding.
-    assert!(of_current.0 < 1e-12 * of_current.2 && of_first.0 < 1e-12 * of_first.2);
+    assert!(of_current.0 < 1e-12 * of_current.2 && of_reference.0 < 1e-12 * of_reference.2);
 }

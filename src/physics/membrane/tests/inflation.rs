@@ -1,4 +1,4 @@
-//! Air: resultant, power, volume, and Laplace's law.
+//! Tests of pressure: resultant, power, volume, and Laplace's law.
 
 use super::super::critical_step::critical_step;
 use super::super::mesh::Mesh;
@@ -9,12 +9,12 @@ use super::{forces_on, model_of, power, rubber, run, shaken, totals};
 use crate::base::{Real, Vec3};
 
 #[test]
-fn pressure_on_a_closed_mesh_has_no_resultant_and_the_power_of_the_volume() {
+fn pressure_on_a_closed_mesh_has_no_resultant_and_the_right_power() {
     let model = model_of(Mesh::icosphere(0.04, 6), rubber(1e-3, 0.0));
     let p = -9e4;
     let mut state = shaken(&model, 1e-3, 0.1);
     for position in &mut state.positions {
-        *position += Vec3::new(0.3, -0.2, 0.5); // the origin must not matter
+        *position += Vec3::new(0.3, -0.2, 0.5); // the result must not depend on the origin
     }
     let mut loads = forces_on(&model, &state, p);
     for (load, inner) in loads.iter_mut().zip(forces_on(&model, &state, 0.0)) {
@@ -28,7 +28,7 @@ fn pressure_on_a_closed_mesh_has_no_resultant_and_the_power_of_the_volume() {
 }
 
 #[test]
-fn the_volume_under_a_lid_has_its_gradient() {
+fn the_gradient_of_a_lidded_volume_is_consistent() {
     let model = model_of(Mesh::half_icosphere(0.04, 6), rubber(1e-3, 0.0));
     let state = shaken(&model, 1e-3, 0.1); // the rim as well
     let gradient = pressure::volume_gradient(&model.mesh, &state.positions);
@@ -36,7 +36,7 @@ fn the_volume_under_a_lid_has_its_gradient() {
     let loads: Vec<Vec3> = gradient.iter().map(|g| g * p).collect();
     check_power(&model, &state, &loads, p);
     let (force, torque, size) = totals(&state, &gradient);
-    // Oracle: volume does not change under translation and rotation. Tolerance: rounding.
+    // Oracle: the volume is invariant under translation and rotation. Tolerance: rounding.
     assert!(force < 1e-13 * size && torque < 1e-13 * size);
     let mut scratch = MembraneScratch::new(&model);
     let slack = MembraneModel::new(
@@ -45,16 +45,16 @@ fn the_volume_under_a_lid_has_its_gradient() {
     );
     forces(&slack, &state, p, &mut scratch);
     for v in (0..model.mesh.n_vertices()).filter(|&v| !model.mesh.is_on_rim[v]) {
-        // Oracle: inside the material, load = p · gradient. Tolerance: rounding.
+        // Oracle: away from the rim, load = p · gradient. Tolerance: rounding.
         assert!((scratch.forces[v] - loads[v]).norm() < 1e-13 * loads[v].norm().max(1e-3));
     }
     let lid = pressure::lid_area_vector(&model.mesh.rims[0], &state.positions);
-    let on_sheet: Vec3 = scratch.forces.iter().sum();
-    // Oracle: membrane and lid together are closed. Tolerance: rounding.
-    assert!((on_sheet + lid * p).norm() < 1e-13 * on_sheet.norm());
+    let on_membrane: Vec3 = scratch.forces.iter().sum();
+    // Oracle: membrane and lid form a closed surface. Tolerance: rounding.
+    assert!((on_membrane + lid * p).norm() < 1e-13 * on_membrane.norm());
 }
 
-/// Oracle: C5, power of the load = gauge pressure times rate of volume, by central differences.
+/// Oracle: C5, the power of the load is the gauge pressure times the rate of the volume, by central differences.
 fn check_power(model: &MembraneModel, state: &MembraneState, loads: &[Vec3], p: Real) {
     let h = 1e-6;
     let at = |time: Real| {
@@ -64,13 +64,13 @@ fn check_power(model: &MembraneModel, state: &MembraneState, loads: &[Vec3], p: 
     let rate = (at(h) - at(-h)) / (2.0 * h);
     let oracle = p * rate;
     let found = power(loads, &state.velocities);
-    // Tolerance: the volume is a cubic in time; rounding of V ~ 10⁻⁴ m³ over 2h against the rate.
+    // Tolerance: the volume is cubic in time; rounding of V ~ 10⁻⁴ m³ divided by 2h, relative to the rate.
     let size: Real = loads.iter().zip(&state.velocities).map(|(f, v)| f.dot(v).abs()).sum();
     assert!((found - oracle).abs() < 1e-6 * size, "{found} for {oracle}");
 }
 
 #[test]
-fn the_volume_of_the_whole_and_half_sphere_meet() {
+fn half_a_sphere_has_half_the_volume() {
     let whole = Mesh::icosphere(0.04, 16).unwrap();
     let half = Mesh::half_icosphere(0.04, 16).unwrap();
     let (v_whole, v_half) =
@@ -93,7 +93,7 @@ fn a_sphere_under_pressure_obeys_laplace() {
     for _ in 0..40 {
         run(&model, &mut state, dt, 50, p);
         last = state.velocities.iter().map(|v| v.norm()).fold(0.0, Real::max);
-        // Slow modes are barely damped by springs: take out what they have gained.
+        // Springs hardly damp slow modes: this damps them.
         for velocity in &mut state.velocities {
             *velocity *= 0.3;
         }
@@ -108,8 +108,8 @@ fn a_sphere_under_pressure_obeys_laplace() {
     assert!((found / oracle - 1.0).abs() < 0.01, "{found} for {oracle}");
 }
 
-/// A tube closed by two lids that its end rings pull on: ε_θ = pR/(Ed) (1 − ν/2) and
-/// ε_z = pR/(Ed) (1/2 − ν). The rings are held where that says.
+/// A tube whose end rings are pulled by two lids: ε_θ = pR/(Ed) (1 − ν/2) and ε_z = pR/(Ed) (1/2 − ν). The rings
+/// are held at these strains.
 #[test]
 fn a_closed_cylinder_under_pressure_obeys_laplace() {
     let (p, radius, n_around) = (100.0, 0.04, 40);
@@ -137,16 +137,16 @@ fn a_closed_cylinder_under_pressure_obeys_laplace() {
     let all: Vec<usize> = (0..model.mesh.n_vertices()).filter(middle).collect();
     let found: Real = all.iter().map(|&v| radial(&state.positions[v]) / radius - 1.0).sum::<Real>()
         / all.len() as Real;
-    // Oracle: U13, 8.89·10⁻³ at 100 Pa. Tolerance 2 %: chords of 1/40 of a turn carry p on a
-    // polygon, and strains of 1 % change length and area by as much.
+    // Oracle: U13, 8.89·10⁻³ at 100 Pa. Tolerance: 2 %, because p acts on a polygon of 40 chords, and strains of
+    // 1 % change length and area by 1 %.
     assert!((hoop - 8.89e-3).abs() < 1e-5);
     assert!((found / hoop - 1.0).abs() < 0.02, "{found} for {hoop}");
     let loads = forces_on(&model, &state, p);
     for rim in &model.mesh.rims {
         let lid = pressure::lid_area_vector(rim, &state.positions) * p;
         let ring: Vec3 = rim.iter().map(|&v| loads[v as usize]).sum();
-        // Oracle: the ring's pull and the air on its lid cancel along the axis. Tolerance 3 %: the
-        // same, on top of which the row at the ring feels the turned row beside it.
+        // Oracle: the pull on the ring balances the pressure on its lid along the axis. Tolerance: 3 %, as
+        // above, plus the effect of the rotated row next to the ring.
         assert!((ring.z + lid.z).abs() < 0.03 * lid.z.abs(), "{} and {}", ring.z, lid.z);
     }
 }

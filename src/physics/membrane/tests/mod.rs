@@ -1,4 +1,4 @@
-//! The membrane against lattice elasticity, plate theory, Laplace's law and conservation laws.
+//! Tests of the membrane against lattice elasticity, plate theory, Laplace's law and conservation laws.
 
 mod mesh;
 mod stretching;
@@ -6,12 +6,12 @@ mod bending;
 mod inflation;
 mod motion;
 
-use super::mesh::{Mesh, MeshFault};
+use super::mesh::{Mesh, MeshError};
 use super::{FREE, MembraneMaterial, MembraneModel, MembraneScratch, MembraneState, forces};
 use crate::base::random::{Random, Stream};
 use crate::base::{Real, Vec3};
 
-/// Material of the seeds' gripper; bending can be switched off by 0.
+/// Rubber of the gripper's membrane, with these bending constants.
 fn rubber(bending_stiffness: Real, bending_damping: Real) -> MembraneMaterial {
     MembraneMaterial {
         thickness: 0.3e-3,
@@ -23,7 +23,7 @@ fn rubber(bending_stiffness: Real, bending_damping: Real) -> MembraneMaterial {
     }
 }
 
-fn model_of(mesh: Result<Mesh, MeshFault>, material: MembraneMaterial) -> MembraneModel {
+fn model_of(mesh: Result<Mesh, MeshError>, material: MembraneMaterial) -> MembraneModel {
     MembraneModel::new(mesh.unwrap(), material)
 }
 
@@ -48,14 +48,14 @@ fn power(forces: &[Vec3], velocities: &[Vec3]) -> Real {
     forces.iter().zip(velocities).map(|(f, v)| f.dot(v)).sum()
 }
 
-/// Sum of forces, of torques about the origin, and of their lengths.
+/// Norm of the sum of forces, norm of the sum of torques about the origin, and sum of the norms of forces.
 fn totals(state: &MembraneState, forces: &[Vec3]) -> (Real, Real, Real) {
     let force: Vec3 = forces.iter().sum();
     let torque: Vec3 = state.positions.iter().zip(forces).map(|(r, f)| r.cross(f)).sum();
     (force.norm(), torque.norm(), forces.iter().map(|f| f.norm()).sum())
 }
 
-/// A short semi-implicit Euler run; returns the largest speed at its end.
+/// Integrates the membrane with the semi-implicit Euler method. Returns the largest speed at the end (m/s).
 fn run(model: &MembraneModel, state: &mut MembraneState, dt: Real, steps: usize, p: Real) -> Real {
     let mut scratch = MembraneScratch::new(model);
     for _ in 0..steps {
@@ -65,7 +65,7 @@ fn run(model: &MembraneModel, state: &mut MembraneState, dt: Real, steps: usize,
             state.positions[v] += state.velocities[v] * dt;
         }
     }
-    // Unlike Real::max this keeps a NaN.
+    // Unlike `Real::max`, this propagates NaN.
     let larger = |a: Real, b: Real| if b > a || b.is_nan() { b } else { a };
     state.velocities.iter().map(|v| v.norm()).fold(0.0, larger)
 }

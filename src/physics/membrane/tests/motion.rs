@@ -1,4 +1,4 @@
-//! The whole material: conservation, dissipation, threads, and the longest stable step.
+//! Tests of the complete membrane: conservation, dissipation, threads, and the longest stable substep.
 
 use super::super::critical_step::{critical_step, critical_step_at};
 use super::super::mesh::Mesh;
@@ -7,7 +7,7 @@ use super::{forces_on, model_of, power, rubber, run, shaken, totals};
 use crate::base::{Real, Vec3, parallel};
 
 #[test]
-fn damping_takes_energy_and_internal_forces_keep_momentum() {
+fn damping_dissipates_energy_and_internal_forces_conserve_momentum() {
     let material = rubber(1e-3, 1e-4);
     for mesh in [Mesh::half_icosphere(0.04, 6), Mesh::hexagonal_patch(3e-3, 4)] {
         let model = model_of(mesh, material);
@@ -22,9 +22,9 @@ fn damping_takes_energy_and_internal_forces_keep_momentum() {
                 &mut state.velocities,
                 vec![Vec3::zeros(); model.mesh.n_vertices()],
             );
-            let still = forces_on(&model, &state, 0.0);
+            let at_rest = forces_on(&model, &state, 0.0);
             // Oracle: C3 d, power of the dissipative part is negative for any velocities.
-            assert!(power(&moving, &velocities) - power(&still, &velocities) < 0.0);
+            assert!(power(&moving, &velocities) - power(&at_rest, &velocities) < 0.0);
         }
     }
 }
@@ -44,7 +44,7 @@ fn the_bits_do_not_depend_on_the_number_of_threads() {
 }
 
 #[test]
-fn the_critical_step_of_a_lattice_is_known() {
+fn the_critical_step_of_a_lattice_matches_theory() {
     let material = MembraneMaterial { spring_damping: 0.0, ..rubber(0.0, 0.0) };
     let model = model_of(Mesh::hexagonal_patch(3e-3, 12), material);
     let inner = model.masses.iter().copied().fold(0.0, Real::max);
@@ -56,7 +56,7 @@ fn the_critical_step_of_a_lattice_is_known() {
 }
 
 #[test]
-fn the_critical_step_separates_rest_from_blow_up() {
+fn the_critical_step_separates_stable_from_unstable() {
     for material in [
         MembraneMaterial { spring_damping: 0.0, ..rubber(0.0, 0.0) },
         rubber(0.0, 0.0),
@@ -72,23 +72,23 @@ fn the_critical_step_separates_rest_from_blow_up() {
         };
         let stable = speed_after(0.98);
         let unstable = speed_after(1.05);
-        // Oracle: definition of the limit. A displacement of 10⁻⁸ m at ω ~ 10⁵/s cannot pass
-        // 10⁻² m/s while the scheme is stable; beyond, the stiffest mode grows in every step.
-        // 5 %: power iteration's margin of 1 % in the step, and 3000 steps to be seen.
+        // Oracle: the definition of the limit. A displacement of 10⁻⁸ m at ω ~ 10⁵/s cannot reach
+        // 10⁻² m/s while the scheme is stable; above the limit, the stiffest mode grows in every step.
+        // 5 %: the margin of power iteration is 1 % of the step, and growth must be visible in 3000 steps.
         assert!(stable < 1e-2, "{material:?} at 0.98: {stable} m/s");
         assert!(unstable.is_nan() || unstable > 1.0, "{material:?} at 1.05: {unstable} m/s");
     }
 }
 
 #[test]
-fn a_stretched_sheet_with_first_areas_bears_a_shorter_step() {
+fn stretching_shortens_the_critical_step_of_hinges_with_reference_areas() {
     let stretch = 1.3;
-    // Flat and without bending stiffness: only damping knows of motion across the material.
+    // Flat and without bending stiffness: only damping acts on motion normal to the membrane.
     let mut model = model_of(Mesh::hexagonal_patch(3e-3, 8), rubber(0.0, 1e-2));
     model.bend_by_first_areas();
     let stretched: Vec<Vec3> = model.mesh.positions.iter().map(|r| r * stretch).collect();
     let ratio = critical_step_at(&model, &stretched, 0.0) / critical_step(&model, 0.0);
-    // Oracle: u = |e| n/|n|·1/|n⁰| grows as the edge, so the damping |e| u uᵀ as its cube, and these
-    // hinges are so damped that nothing else counts: dt = 2/rate. Tolerance: springs add 1e-5.
+    // Oracle: u = |e| n/|n|·1/|n⁰| grows like the edge, so the damping |e| u uᵀ grows like its cube. These
+    // hinges are damped so strongly that nothing else matters: dt = 2/rate. Tolerance: springs add 1e-5.
     assert!((ratio * stretch.powi(3) - 1.0).abs() < 1e-3, "{ratio}");
 }

@@ -1,4 +1,4 @@
-//! Springs: lattice elasticity, and a pair that rings down.
+//! Tests of springs: lattice elasticity, and a damped oscillation of two vertices.
 
 use super::super::mesh::Mesh;
 use super::super::stretch::{self, Spring};
@@ -12,7 +12,7 @@ fn a_patch_has_the_modulus_and_poisson_ratio_of_the_lattice() {
     for rings in [3, 10] {
         let model = model_of(Mesh::hexagonal_patch(a, rings), rubber(0.0, 0.0));
         let k = stretch::stiffness(1.25e6, 0.3e-3);
-        // Oracle: k = √3/2 E d, 324.76 N/m in five digits.
+        // Oracle: k = √3/2 E d, 324.76 N/m to five digits.
         assert!((k - 324.76).abs() < 0.005);
         let area = pressure::area(&model.mesh, &model.mesh.positions);
         for direction in [0.0, 0.2, 0.5, 1.0, 1.4_f64] {
@@ -23,7 +23,7 @@ fn a_patch_has_the_modulus_and_poisson_ratio_of_the_lattice() {
                 along * along.transpose() * strain - across * across.transpose() * (strain / 3.0);
             let stress = stress_at(&model, &(Mat3::identity() + pull), area);
             // Oracle: uniaxial tension of an isotropic membrane with E d = 2/√3 k, ν = 1/3: the strain
-            // (ε, −ε/3) makes the stress (E d ε, 0). Tolerance: second order in ε, and rounding of
+            // (ε, −ε/3) causes the stress (E d ε, 0). Tolerance: second order in ε, and rounding of
             // lengths over the strain, 10⁻¹⁰.
             let modulus = stress.dot_along(&along) / strain;
             assert!((modulus / (2.0 / 3.0_f64.sqrt() * k) - 1.0).abs() < 1e-5, "E d = {modulus}");
@@ -62,7 +62,7 @@ fn stress_at(model: &MembraneModel, deformation: &Mat3, area: Real) -> Mat3 {
 }
 
 #[test]
-fn a_pair_rings_down_as_a_damped_oscillator() {
+fn a_pair_is_a_damped_oscillator() {
     let (k, gamma, masses) = (324.76, 0.15, [2e-6, 6e-6]);
     let spring = Spring::new(3e-3, k, gamma, masses);
     let reduced = masses[0] * masses[1] / (masses[0] + masses[1]);
@@ -87,7 +87,7 @@ fn a_pair_rings_down_as_a_damped_oscillator() {
 }
 
 #[test]
-fn rest_lengths_scale() {
+fn a_membrane_scaled_like_its_rest_lengths_is_stress_free() {
     let mut model = model_of(Mesh::hexagonal_patch(3e-3, 3), rubber(0.0, 0.0));
     model.scale_rest_lengths(0.875);
     let state = MembraneState {
@@ -95,6 +95,6 @@ fn rest_lengths_scale() {
         ..MembraneState::at_rest(&model.mesh)
     };
     let (_, _, size) = totals(&state, &forces_on(&model, &state, 0.0));
-    // Oracle: the scaled shape is free of stress. Tolerance: k times rounding of lengths.
+    // Oracle: the scaled shape is stress-free. Tolerance: k times rounding of lengths.
     assert!(size < 1e-12, "{size}");
 }
