@@ -1,4 +1,4 @@
-# What `.ci/run` and `.ci/full` have in common; sourced by both.
+# Shared functions of `.ci/run` and `.ci/full`.
 #
 # A step that cannot run here is listed as `NOT RUN`, never among those that passed.
 
@@ -24,7 +24,7 @@ skip() {
     not_run+=("NOT RUN: $1: $2")
 }
 
-# Printed at the end, however it came.
+# Printed at the end, also after a failure.
 summary() {
     local code=$?
     printf '\n== %s s in all\n' "$SECONDS"

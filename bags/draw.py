@@ -36,7 +36,7 @@ def columns(cloud):
 
 
 def read():
-    seen = {}
+    messages = {}
     with open(glob.glob(f"{folder}/*.mcap")[0], "rb") as file:
         reader = make_reader(file, decoder_factories=[DecoderFactory()])
         scene = next(a for a in reader.iter_attachments() if a.name == "scene.yaml")
@@ -45,8 +45,8 @@ def read():
             name = channel.topic
             if name in names or name.endswith("/pose") and "/object/" in name:
                 key = "object" if "/object/" in name else name.removeprefix("/jamgrip/")
-                seen.setdefault(key, []).append((message.log_time / 1e9, decoded))
-    return YAML().load(io.StringIO(scene.data.decode())), seen
+                messages.setdefault(key, []).append((message.log_time / 1e9, decoded))
+    return YAML().load(io.StringIO(scene.data.decode())), messages
 
 
 def at(series, time):
@@ -68,44 +68,44 @@ def cut(triangles, points):
     return segments
 
 
-def draw(axes, time, scene, seen):
+def draw(axes, time, scene, messages):
     shape = scene["object"]["shape"]["cylinder"]
     length = lambda text: 1e-3 * float(text.removesuffix("mm"))  # noqa: E731
     radius, height = length(shape["radius"]), length(shape["height"])
-    centre = at(seen["object"], time).pose.position
-    corner = (centre.x - radius, centre.z - height / 2)
+    center = at(messages["object"], time).pose.position
+    corner = (center.x - radius, center.z - height / 2)
     axes.add_patch(plt.Rectangle(corner, 2 * radius, height, fc="#9aa5b1", ec="#52606d"))
-    grains = columns(at(seen["grains"], time))
+    grains = columns(at(messages["grains"], time))
     for grain in grains[numpy.abs(grains["y"]) < grains["radius"]]:
         inside = float(numpy.sqrt(grain["radius"] ** 2 - grain["y"] ** 2))
-        colour = plt.cm.plasma(min(1.0, float(grain["fn"]) / 20.0))
-        axes.add_patch(plt.Circle((grain["x"], grain["z"]), inside, fc=colour, ec="none"))
-    sheet = columns(at(seen["membrane"], time))
-    points = numpy.stack([sheet["x"], sheet["y"], sheet["z"]], axis=1)
-    mesh = seen["membrane/mesh"][0][1]
+        color = plt.cm.plasma(min(1.0, float(grain["fn"]) / 20.0))
+        axes.add_patch(plt.Circle((grain["x"], grain["z"]), inside, fc=color, ec="none"))
+    vertices = columns(at(messages["membrane"], time))
+    points = numpy.stack([vertices["x"], vertices["y"], vertices["z"]], axis=1)
+    mesh = messages["membrane/mesh"][0][1]
     triangles = numpy.array([t.vertex_indices for t in mesh.triangles])
     for segment in cut(triangles, points):
         axes.plot(*zip(*segment), color="black", lw=1.4)
-    flange = at(seen["flange/pose"], time).pose.position
+    flange = at(messages["flange/pose"], time).pose.position
     axes.plot([-0.045, 0.045], [flange.z, flange.z], color="#323f4b", lw=4)
     axes.axhline(0.0, color="#7b8794", lw=3)
-    gauge = at(seen["vacuum_state"], time).gauge / 1e3
-    force = at(seen["wrench"], time).wrench.force.z
+    gauge = at(messages["vacuum_state"], time).gauge / 1e3
+    force = at(messages["wrench"], time).wrench.force.z
     axes.set_title(f"{time:.2f} s, {gauge:.0f} kPa, {force:.1f} N", fontsize=10)
     axes.set(aspect="equal", xlim=(-0.06, 0.06), ylim=(-0.005, 0.19))
     axes.axis("off")
 
 
-scene, seen = read()
-times = [time for time, _ in seen["grains"]]
-gauges = [(time, state.gauge) for time, state in seen["vacuum_state"]]
-heights = [(time, pose.pose.position.z) for time, pose in seen["object"]]
+scene, messages = read()
+times = [time for time, _ in messages["grains"]]
+gauges = [(time, state.gauge) for time, state in messages["vacuum_state"]]
+heights = [(time, pose.pose.position.z) for time, pose in messages["object"]]
 jammed = next(time for time, gauge in gauges if gauge < -80e3)
 highest = max(height for _, height in heights)
 held = [time for time, height in heights if height > highest - 1e-3]
 wanted = [times[0], jammed - 0.25, jammed + 0.15, sum(held) / len(held), times[-1]]
 figure, panels = plt.subplots(1, len(wanted), figsize=(13, 4.6))
 for axes, time in zip(panels, wanted):
-    draw(axes, min(times, key=lambda it: abs(it - time)), scene, seen)
+    draw(axes, min(times, key=lambda it: abs(it - time)), scene, messages)
 figure.tight_layout()
 figure.savefig(picture, dpi=110)

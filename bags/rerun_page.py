@@ -1,4 +1,4 @@
-"""Takes a picture of a recording as rerun's viewer shows it, without a display.
+"""Takes a screenshot of a recording in rerun's viewer, without a display.
 
     rerun_page.py BAG.mcap PICTURE.png
 
@@ -17,7 +17,7 @@ import rerun.blueprint as rrb
 from rerun.experimental import ViewerClient
 
 VIEWER = ["rerun", "--headless", "--window-size", "1400x800", "--renderer", "vulkan"]
-# A software renderer takes so long to begin, and to draw what was loaded [s].
+# Times that a software renderer needs to start, and to draw the loaded data [s].
 BEGINNING, DRAWING = 5, 25
 
 
@@ -30,7 +30,7 @@ def main(bag, picture):
     )
     closed = rrb.SelectionPanel(state="hidden"), rrb.TimePanel(state="collapsed")
     blueprint = rrb.Blueprint(views, rrb.BlueprintPanel(state="expanded"), *closed)
-    # The program runs below a script of its own: both end together.
+    # The program is started by a script: both end together.
     viewer = subprocess.Popen(VIEWER, start_new_session=True)
     try:
         time.sleep(BEGINNING)

@@ -135,7 +135,7 @@ impl Inputs {
             && self.gauge_pa.is_some()
     }
 
-    /// The present observation, if time has advanced and every topic has been received.
+    /// The current observation, if time has advanced and every topic has been received.
     fn read(&mut self) -> Result<Option<Observation>, Box<dyn Error>> {
         let time_s = newest(&self.clock)?
             .map(|it| f64::from(it.clock.sec) + 1e-9 * f64::from(it.clock.nanosec));

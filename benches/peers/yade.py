@@ -51,5 +51,5 @@ moving = sum(0.5 * it.state.mass * it.state.vel.squaredNorm() for it in O.bodies
 print("JAMGRIP loop", wall_s)
 print("JAMGRIP contacts", before, n_contacts(), "kinetic_energy", moving)
 sys.stdout.flush()
-# yade asks questions on its way out.
+# YADE prompts for confirmation when it exits.
 os._exit(0)

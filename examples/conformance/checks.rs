@@ -91,7 +91,7 @@ const CHECKS: &[Check] = &[
     (
         "spawn: invalid requests are rejected",
         &[F::SPAWNING, F::SPAWNING_RESOURCE_STRING],
-        spawning::refused,
+        spawning::rejected,
     ),
     ("spawn: many at once", &[F::SPAWNING_ENTITIES, F::SPAWNING_RESOURCE_STRING], spawning::many),
     ("spawn: list of spawnables", &[F::SPAWNABLES, F::SPAWNING], spawning::spawnables),
@@ -116,7 +116,7 @@ const CHECKS: &[Check] = &[
     (
         "worlds: invalid requests are rejected",
         &[F::WORLD_LOADING, F::WORLD_RESOURCE_STRING, F::WORLD_INFO_GETTING],
-        worlds::refused,
+        worlds::rejected,
     ),
     (
         "worlds: each in turn",

@@ -155,9 +155,9 @@ pub(crate) fn filtered_by_tags(client: &mut Client) -> Result<(), String> {
 }
 
 pub(crate) fn filtered_by_sphere(client: &mut Client) -> Result<(), String> {
-    let sphere = |centre: Vector3, radius: f64| Bounds {
+    let sphere = |center: Vector3, radius: f64| Bounds {
         r#type: Bounds::TYPE_SPHERE,
-        points: vec![centre, Vector3 { x: radius, ..Default::default() }],
+        points: vec![center, Vector3 { x: radius, ..Default::default() }],
     };
     for name in all(client)? {
         let p = pose_of(client, &name)?.position;

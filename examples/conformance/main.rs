@@ -1,10 +1,10 @@
-//! Tests a simulator against `simulation_interfaces`: everything that it advertises, from outside.
+//! Tests a simulator against `simulation_interfaces`: all advertised features, as a black box.
 //!
 //! ```text
 //! conformance [--prefix /jamgrip] [--way enhanced|cyclone] [--version 1|2] [--timeout 10]
 //! ```
 //!
-//! It only depends on the standard, so it can test any simulator. `--mapping` selects how requests are
+//! It only depends on the standard, so it can test any simulator. `--way` selects how requests are
 //! identified (rmw_fastrtps or rmw_cyclonedds), `--timeout` is the timeout of responses in
 //! seconds. The simulation is reset and its entities are moved. Exit codes: 0 all advertised
 //! features pass, 1 no response, 2 the command line is invalid, 3 a check fails.

@@ -163,7 +163,7 @@ fn send_goal(client: &mut Client, id: u8, steps: u64) -> Result<bool, String> {
 
 const GET_RESULT: &str = "simulate_steps/_action/get_result";
 
-fn ask_result(client: &mut Client, id: u8) -> Result<(), String> {
+fn request_result(client: &mut Client, id: u8) -> Result<(), String> {
     let request = Cdr::of(&GetResultRequest { goal_id: UUID { uuid: [id; 16] } });
     client.send_raw(GET_RESULT, SimulateSteps::TYPE.get_result, &request)
 }
@@ -176,7 +176,7 @@ pub(crate) fn action_steps(client: &mut Client) -> Result<(), String> {
     paused(client)?;
     let n = 12;
     ensure(send_goal(client, 1, n)?, || "the goal was not accepted".to_owned())?;
-    ask_result(client, 1)?;
+    request_result(client, 1)?;
     let ended = result(client)?;
     let is_done = ended.status == GoalStatus::STATUS_SUCCEEDED;
     ensure(is_done, || format!("the goal ended with status {}", ended.status))?;
@@ -189,7 +189,7 @@ pub(crate) fn action_steps(client: &mut Client) -> Result<(), String> {
 pub(crate) fn action_is_canceled(client: &mut Client) -> Result<(), String> {
     paused(client)?;
     ensure(send_goal(client, 2, 1_000_000)?, || "the goal was not accepted".to_owned())?;
-    ask_result(client, 2)?;
+    request_result(client, 2)?;
     client.idle(Duration::from_millis(100));
     let goal_info = GoalInfo { goal_id: UUID { uuid: [2; 16] }, ..Default::default() };
     let request = Cdr::of(&CancelGoalRequest { goal_info });
@@ -212,7 +212,7 @@ pub(crate) fn action_is_rejected(client: &mut Client) -> Result<(), String> {
     enter(client, S::STATE_PLAYING)?;
     if send_goal(client, 3, 1)? {
         // The standard also allows accepting the goal and aborting it.
-        ask_result(client, 3)?;
+        request_result(client, 3)?;
         let ended = result(client)?;
         must_be("steps while playing", &ended.result.result, SimResult::RESULT_OPERATION_FAILED)?;
     }

@@ -34,7 +34,7 @@ const BALL: &str = r#"<?xml version="1.0"?>
 </robot>
 "#;
 
-/// A request for a ball in free fall, `x` meters aside.
+/// A request for a ball in free fall, at `x` (m).
 fn ball(name: &str, x: f64) -> SpawnEntityRequest {
     let mut initial_pose = PoseStamped::default();
     initial_pose.pose.position.x = x;
@@ -77,7 +77,7 @@ pub(crate) fn spawned_and_deleted(client: &mut Client) -> Result<(), String> {
     must_be("deleting it again", &delete(client, &name)?, SimResult::RESULT_NOT_FOUND)
 }
 
-pub(crate) fn refused(client: &mut Client) -> Result<(), String> {
+pub(crate) fn rejected(client: &mut Client) -> Result<(), String> {
     let before = all(client)?;
     let first = spawn(client, &ball("conformance_ball", 0.75))?;
     must_be_ok("spawn_entity", &first.result)?;
@@ -88,7 +88,7 @@ pub(crate) fn refused(client: &mut Client) -> Result<(), String> {
         request
     };
     let cases: [(&str, SpawnEntityRequest, u8); 7] = [
-        ("a name twice", with(&|it| it.name = "conformance_ball".to_owned()), 101),
+        ("a name in use", with(&|it| it.name = "conformance_ball".to_owned()), 101),
         ("an invalid name", with(&|it| it.name = "a b/!".to_owned()), 102),
         ("no resource", with(&|it| it.entity_resource.resource_string.clear()), 104),
         (
@@ -100,7 +100,7 @@ pub(crate) fn refused(client: &mut Client) -> Result<(), String> {
             104,
         ),
         ("an invalid namespace", with(&|it| it.entity_namespace = "a b".to_owned()), 105),
-        ("half a file", with(&|it| it.entity_resource.resource_string.truncate(90)), 106),
+        ("a truncated file", with(&|it| it.entity_resource.resource_string.truncate(90)), 106),
         ("a pose of NaN", with(&|it| it.initial_pose.pose.position.y = f64::NAN), 109),
     ];
     for (what, request, code) in cases {
@@ -112,7 +112,7 @@ pub(crate) fn refused(client: &mut Client) -> Result<(), String> {
         it.allow_renaming = true;
     });
     let response: R = spawn(client, &renamed)?;
-    must_be_ok("a name twice, with renaming", &response.result)?;
+    must_be_ok("a name in use, with renaming", &response.result)?;
     let is_new = response.entity_name != first.entity_name;
     ensure(is_new, || format!("two entities are called `{}`", response.entity_name))?;
     for name in [first.entity_name, response.entity_name] {
@@ -198,7 +198,7 @@ pub(crate) fn named_poses(client: &mut Client) -> Result<(), String> {
     }
     let request = GetNamedPoseBoundsRequest { name: "no such pose".to_owned() };
     let response = client.call::<srv::GetNamedPoseBounds>("get_named_pose_bounds", &request)?;
-    must_be("bounds of no pose", &response.result, SimResult::RESULT_NOT_FOUND)
+    must_be("bounds of an unknown pose", &response.result, SimResult::RESULT_NOT_FOUND)
 }
 
 /// Corners (m) of a regular tetrahedron, and its faces as seen from outside.

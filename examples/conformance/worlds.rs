@@ -84,18 +84,18 @@ pub(crate) fn loaded_from_text(client: &mut Client) -> Result<(), String> {
     check_loaded(client, &loaded, &before.name)
 }
 
-pub(crate) fn refused(client: &mut Client) -> Result<(), String> {
+pub(crate) fn rejected(client: &mut Client) -> Result<(), String> {
     let before = current(client)?.world;
     let uri = |it: &str| Resource { uri: it.to_owned(), ..Resource::default() };
     let text = |it: &str| Resource { resource_string: it.to_owned(), ..Resource::default() };
     must_be("neither file nor text", &load(client, Resource::default())?.result, R::NO_RESOURCE)?;
     let strange = load(client, text("<conformance/>"))?.result;
-    let is_refused = [R::UNSUPPORTED_FORMAT, R::RESOURCE_PARSE_ERROR].contains(&strange.result);
-    ensure(is_refused, || format!("a text in no format: result {}", strange.result))?;
+    let is_rejected = [R::UNSUPPORTED_FORMAT, R::RESOURCE_PARSE_ERROR].contains(&strange.result);
+    ensure(is_rejected, || format!("a text of unknown format: result {}", strange.result))?;
     for (what, resource) in [
         ("a missing file", uri("file:///no/such/world.yaml")),
         ("an unknown address", uri("conformance://no/such/world")),
-        ("half a text", text("name: [")),
+        ("a truncated text", text("name: [")),
     ] {
         must_fail(what, &load(client, resource)?.result)?;
     }

@@ -1,8 +1,8 @@
-"""Writes knob.obj: a lobed, bent knob that no gripper finger was made for, 45 mm high.
+"""Writes knob.obj: a lobed, bent knob, 45 mm high, which parallel fingers cannot grip well.
 
     python3 launch_configs/meshes/knob.py > launch_configs/meshes/knob.obj
 
-Millimetres, z up, standing on its flat base about the origin.
+Millimeters, z up, with its flat base around the origin.
 """
 
 from math import cos, pi, sin, sqrt
@@ -12,7 +12,7 @@ RINGS, SECTORS = 22, 28
 
 
 def radius(z, angle):
-    """A base, a waist at half height, a head with a rounded rim; three lobes that turn on the way up."""
+    """A base, a waist at half height, a head with a rounded rim; three lobes that twist with the height."""
     s = z / HEIGHT
     body = 17.0 - 1.5 * sin(pi * s) ** 2
     cap = sqrt(max(0.0, 1.0 - max(0.0, (s - 0.9) / 0.1) ** 2))
@@ -21,7 +21,7 @@ def radius(z, angle):
 
 
 def axis(z):
-    """The axis leans and comes back."""
+    """Center of the cross-section at height z: the axis is bent."""
     s = z / HEIGHT
     return 1.5 * sin(pi * s), 1.0 * sin(2.0 * pi * s)
 

@@ -407,7 +407,7 @@ impl<R: Read> Reader<R> {
             Err(error) => reason = Some(text(&error)),
         }
         if reason.is_some() && is_whole {
-            // The checksum does not tell which of the messages are valid.
+            // The checksum does not show which messages are valid.
             records.retain(|it| !matches!(it, Record::Message { .. }));
         }
         let items: Vec<Item> = records.into_iter().filter_map(|it| self.item_of(it)).collect();

@@ -181,7 +181,7 @@ fn record(name: &str, values: impl IntoIterator<Item = (&'static str, String)>) 
     Metadata { name: name.to_owned(), metadata }
 }
 
-/// The message of an error with its causes, because the crate's own message says little.
+/// The message of an error with its causes, because the message of the crate alone is not informative.
 pub fn text(error: &WriteError) -> String {
     let mut text = error.to_string();
     let mut cause = std::error::Error::source(error);

@@ -475,7 +475,7 @@ mod tests {
         let result = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
             lead(&pool, || {
                 let mut out = vec![0_u8; 1000];
-                for_each(&mut out, |i, _| assert!(i != 700, "on purpose"));
+                for_each(&mut out, |i, _| assert!(i != 700, "expected panic"));
             });
         }));
         assert!(result.is_err());

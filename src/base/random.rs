@@ -1,4 +1,4 @@
-//! Named random streams: a seed and a stream always give the same numbers, in whatever order streams are used.
+//! Named random streams: a seed and a stream always give the same numbers, independent of the order in which streams are used.
 //!
 //! The generator is ChaCha with 8 rounds. Its stream number separates the streams of one seed.
 

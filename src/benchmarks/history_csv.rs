@@ -92,7 +92,7 @@ fn row<'a>(origin: &'a Origin, it: &'a BenchResult) -> Row<'a> {
     }
 }
 
-/// When and worigin the rows were measured.
+/// When and where the rows were measured.
 struct Origin {
     date: String,
     commit: String,

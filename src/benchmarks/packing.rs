@@ -283,14 +283,14 @@ mod tests {
     fn copies_hold_each_other() {
         let two = Boxed { n_grains: 300, n_tiles: [2, 1, 1], phase: Phase::Rest };
         let tile = two.closed_tile().grow().unwrap();
-        let unrest = |mut system: System| {
+        let unbalanced = |mut system: System| {
             system.step();
             let System { model, state, scratch, .. } = &system;
             unbalanced_force(model, state, scratch)
         };
-        let alone = unrest(system(tile.grains.clone(), &two.closed_tile().size()));
-        let copies = unrest(system(two.mirrored(&tile.grains), &two.size()));
-        let settled = unrest(two.system(two.of_tile(&tile)));
+        let alone = unbalanced(system(tile.grains.clone(), &two.closed_tile().size()));
+        let copies = unbalanced(system(two.mirrored(&tile.grains), &two.size()));
+        let settled = unbalanced(two.system(two.of_tile(&tile)));
         assert!((copies / alone - 1.0).abs() < 0.05, "{copies} {alone}");
         assert!(settled < 0.25 * copies, "{settled} {copies}");
     }

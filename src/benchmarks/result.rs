@@ -1,4 +1,4 @@
-//! The result of a case, for machines and for people.
+//! The result of a case, as JSON and as text.
 
 use std::{collections::BTreeMap, fmt::Write};
 

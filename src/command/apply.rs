@@ -1,6 +1,8 @@
 //! Applies commands: checks, limits or rejects them, and keeps the setpoints.
 
-use super::{Command, CommandCounts, CommandRecord, JOINTS, Limit, Outcome, PoseCommand, Refusal};
+use super::{
+    Command, CommandCounts, CommandError, CommandRecord, JOINTS, Limit, Outcome, PoseCommand,
+};
 use crate::{
     base::{Pose, Quat, Real, Vec3},
     cosim::Inputs,
@@ -8,7 +10,7 @@ use crate::{
 };
 
 /// Largest deviation of the length of a quaternion from 1.
-const NORMALISED: Real = 1e-3;
+const NORMALIZED: Real = 1e-3;
 /// The world frame.
 pub const WORLD: &str = "world";
 /// The frame of the flange, in the plane of the rim.
@@ -129,12 +131,12 @@ impl CommandProcessor {
             let outcome = match self.apply(command, frames, now_ns) {
                 Ok(None) => Outcome::Applied,
                 Ok(Some(limit)) => Outcome::Limited(limit),
-                Err(refusal) => Outcome::Refused(refusal),
+                Err(error) => Outcome::Rejected(error),
             };
             match outcome {
                 Outcome::Applied => self.counts.n_applied += 1,
                 Outcome::Limited(_) => self.counts.n_limited += 1,
-                Outcome::Refused(_) => self.counts.n_refused += 1,
+                Outcome::Rejected(_) => self.counts.n_rejected += 1,
             }
             records.push(CommandRecord { command: command.clone(), outcome });
         }
@@ -156,7 +158,7 @@ impl CommandProcessor {
         command: &Command,
         frames: &Frames,
         now_ns: u64,
-    ) -> Result<Option<Limit>, Refusal> {
+    ) -> Result<Option<Limit>, CommandError> {
         match command {
             Command::Vacuum { gauge_pa } => {
                 finite("gauge pressure", *gauge_pa)?;
@@ -190,7 +192,7 @@ impl CommandProcessor {
         let set_pa = requested_pa.clamp(min, max);
         self.gauge_setpoint = set_pa;
         let is_limited = requested_pa < min || requested_pa > max;
-        is_limited.then_some(Limit::PumpRange { asked_pa: requested_pa, set_pa })
+        is_limited.then_some(Limit::PumpRange { requested_pa, set_pa })
     }
 
     /// Sets all joints or none: everything is checked first.
@@ -199,24 +201,24 @@ impl CommandProcessor {
         names: &[String],
         positions: &[Real],
         now_ns: u64,
-    ) -> Result<Option<Limit>, Refusal> {
+    ) -> Result<Option<Limit>, CommandError> {
         if names.len() != positions.len() {
             let (n_names, n_positions) = (names.len(), positions.len());
-            return Err(Refusal::JointsWithoutPosition { n_names, n_positions });
+            return Err(CommandError::JointsWithoutPosition { n_names, n_positions });
         }
         let p = self.flange.pose.translation.vector;
         let (roll, pitch, yaw) = self.flange.pose.rotation.euler_angles();
-        let mut wanted = [Real::NAN, p.x, p.y, p.z, roll, pitch, yaw];
+        let mut goals = [Real::NAN, p.x, p.y, p.z, roll, pitch, yaw];
         let mut moves_flange = false;
         for (name, position) in names.iter().zip(positions) {
             finite("joint position, squared,", position * position)?;
             let i = JOINTS.iter().position(|it| it == name).ok_or_else(|| {
-                Refusal::UnknownJoint { joint: name.clone(), known: JOINTS.join(", ") }
+                CommandError::UnknownJoint { joint: name.clone(), known: JOINTS.join(", ") }
             })?;
-            wanted[i] = *position;
+            goals[i] = *position;
             moves_flange |= 0 < i;
         }
-        let [vacuum, x, y, z, roll, pitch, yaw] = wanted;
+        let [vacuum, x, y, z, roll, pitch, yaw] = goals;
         let mut limit = None;
         if moves_flange {
             let rotation = Quat::from_euler_angles(roll, pitch, yaw);
@@ -231,14 +233,13 @@ impl CommandProcessor {
         Ok(limit)
     }
 
-    fn find(&self, object: &str) -> Result<usize, Refusal> {
-        self.names.iter().position(|name| name == object).ok_or_else(|| Refusal::UnknownObject {
-            object: object.to_owned(),
-            known: self.names.join(", "),
+    fn find(&self, object: &str) -> Result<usize, CommandError> {
+        self.names.iter().position(|name| name == object).ok_or_else(|| {
+            CommandError::UnknownObject { object: object.to_owned(), known: self.names.join(", ") }
         })
     }
 
-    fn pose_in_world(&self, command: &PoseCommand, frames: &Frames) -> Result<Pose, Refusal> {
+    fn pose_in_world(&self, command: &PoseCommand, frames: &Frames) -> Result<Pose, CommandError> {
         for value in command.position {
             finite("position", value)?;
         }
@@ -248,8 +249,8 @@ impl CommandProcessor {
         let [x, y, z, w] = command.orientation;
         let quaternion = nalgebra::Quaternion::new(w, x, y, z);
         let length = quaternion.norm();
-        if (length - 1.0).abs() > NORMALISED {
-            return Err(Refusal::NotNormalised { length });
+        if (length - 1.0).abs() > NORMALIZED {
+            return Err(CommandError::NotNormalized { length });
         }
         let rotation = Quat::from_quaternion(quaternion);
         let local = Pose::from_parts(Vec3::from(command.position).into(), rotation);
@@ -260,7 +261,7 @@ impl CommandProcessor {
             other => match object_frames.iter().position(|frame| frame == other) {
                 Some(i) => frames.objects[i] * local,
                 None => {
-                    return Err(Refusal::UnknownFrame {
+                    return Err(CommandError::UnknownFrame {
                         frame_id: other.to_owned(),
                         known: format!("{WORLD}, {FLANGE}, {}", object_frames.join(", ")),
                     });
@@ -291,6 +292,6 @@ fn drive_timeout_ns(object: &Object) -> u64 {
     u64::try_from(nanoseconds).unwrap_or(u64::MAX)
 }
 
-fn finite(field: &'static str, value: Real) -> Result<(), Refusal> {
-    if value.is_finite() { Ok(()) } else { Err(Refusal::NotFinite { field, value }) }
+fn finite(field: &'static str, value: Real) -> Result<(), CommandError> {
+    if value.is_finite() { Ok(()) } else { Err(CommandError::NotFinite { field, value }) }
 }

@@ -79,7 +79,7 @@ pub enum Outcome {
     /// Applied within a limit.
     Limited(Limit),
     /// Rejected.
-    Refused(Refusal),
+    Rejected(CommandError),
 }
 
 /// The limit that a command exceeded.
@@ -88,7 +88,7 @@ pub enum Limit {
     /// The pressure was outside the range of the pump and was clamped.
     PumpRange {
         /// Requested (Pa).
-        asked_pa: f64,
+        requested_pa: f64,
         /// Applied (Pa).
         set_pa: f64,
     },
@@ -104,7 +104,7 @@ pub enum Limit {
 
 /// Why a command was rejected.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum Refusal {
+pub enum CommandError {
     /// A value is NaN or infinite.
     #[error("{field} is {value}: send finite numbers")]
     NotFinite {
@@ -115,7 +115,7 @@ pub enum Refusal {
     },
     /// The length of the quaternion is not one.
     #[error("orientation has length {length}, more than 1e-3 from 1: normalize the quaternion")]
-    NotNormalised {
+    NotNormalized {
         /// Length of the quaternion.
         length: f64,
     },
@@ -170,5 +170,5 @@ pub struct CommandCounts {
     /// Applied within a limit.
     pub n_limited: u64,
     /// Rejected.
-    pub n_refused: u64,
+    pub n_rejected: u64,
 }

@@ -13,9 +13,9 @@ use crate::{
     scene::{self, Controller, Material, Object, Scene, Shape},
 };
 
-/// The bytes are not a change that this version knows.
+/// The bytes are not a change supported by this version.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{n_bytes} bytes are not a change that this version knows")]
+#[error("{n_bytes} bytes are not a change supported by this version")]
 pub struct UnknownChange {
     n_bytes: usize,
 }
@@ -197,7 +197,7 @@ mod tests {
 
     /// Oracle: the identity, for numbers that no decimal has.
     #[test]
-    fn changes_come_back_bit_by_bit() {
+    fn changes_come_back_bit_for_bit() {
         let third = Vec3::new(1.0 / 3.0, -0.1, 2e-300);
         let pose = Pose::from_parts(third.into(), Quat::from_euler_angles(0.1, 0.2, 0.3));
         let twist = Twist { linear: third, angular: -third };

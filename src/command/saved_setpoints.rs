@@ -1,4 +1,4 @@
-//! Setpoints as bytes, so that they still hold after a session is resumed.
+//! Setpoints as bytes, to restore them when a session is resumed.
 
 use serde::{Deserialize, Serialize};
 
@@ -14,7 +14,7 @@ use crate::{
 /// A pose and when it was commanded (ns).
 type SavedTarget = ([Real; 7], u64);
 
-/// All of a desk that evolves.
+/// All setpoints that change during a run.
 #[derive(Serialize, Deserialize)]
 struct Numbers {
     gauge_setpoint: Real,
@@ -27,30 +27,30 @@ impl CommandProcessor {
     /// The setpoints as bytes.
     pub fn save(&self) -> Vec<u8> {
         let saved = |target: &Target| (pose_row(&target.pose), target.time_ns);
-        let CommandCounts { n_applied, n_limited, n_refused } = self.counts;
+        let CommandCounts { n_applied, n_limited, n_rejected } = self.counts;
         let numbers = Numbers {
             gauge_setpoint: self.gauge_setpoint,
             flange: saved(&self.flange),
             drives: self.drives.iter().map(|drive| drive.as_ref().map(saved)).collect(),
-            counts: [n_applied, n_limited, n_refused],
+            counts: [n_applied, n_limited, n_rejected],
         };
-        postcard::to_stdvec(&numbers).expect("a list of numbers always serialises")
+        postcard::to_stdvec(&numbers).expect("a list of numbers always serializes")
     }
 
     /// Restores saved setpoints.
     ///
     /// # Errors
-    /// If the bytes are no desk, or that of a scene with another number of objects.
+    /// If the bytes are corrupt, or belong to a scene with another number of objects.
     pub fn restore(&mut self, bytes: &[u8]) -> Result<(), SavedStateError> {
         let corrupt = SavedStateError::Corrupt { n_bytes: bytes.len() };
         let numbers: Numbers = postcard::from_bytes(bytes).map_err(|_| corrupt)?;
         check_counts(&[("driven objects", numbers.drives.len(), self.drives.len())])?;
         let target = |(row, time_ns): &SavedTarget| Target { pose: pose(row), time_ns: *time_ns };
-        let [n_applied, n_limited, n_refused] = numbers.counts;
+        let [n_applied, n_limited, n_rejected] = numbers.counts;
         self.gauge_setpoint = numbers.gauge_setpoint;
         self.flange = target(&numbers.flange);
         self.drives = numbers.drives.iter().map(|drive| drive.as_ref().map(target)).collect();
-        self.counts = CommandCounts { n_applied, n_limited, n_refused };
+        self.counts = CommandCounts { n_applied, n_limited, n_rejected };
         Ok(())
     }
 }

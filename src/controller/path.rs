@@ -27,7 +27,7 @@ impl Path {
         self.speed = 0.0;
     }
 
-    /// Moves towards `goal` for `dt` (s), at most at `speed_max` (m/s). True on arrival.
+    /// Moves toward `goal` for `dt` (s), at most at `speed_max` (m/s). True on arrival.
     pub(super) fn advance(&mut self, goal: &Vec3, speed_max: Real, dt: Real) -> bool {
         let delta = goal - self.position;
         let distance = delta.norm();
@@ -49,10 +49,10 @@ impl Path {
 mod tests {
     use super::*;
 
-    /// Oracles: the speed limit, the length of the way, and the time of a trapezoidal profile,
+    /// Oracles: the speed limit, the length of the path, and the time of a trapezoidal profile,
     /// distance / speed + ramp, within two steps and the last asymptotic one.
     #[test]
-    fn walks_the_way_in_the_expected_time_and_never_too_fast() {
+    fn the_goal_is_reached_in_the_expected_time_below_the_speed_limit() {
         let goal = Vec3::new(0.0, 0.03, 0.1);
         let mut path = Path::at(Vec3::zeros());
         let (dt, speed_max) = (0.01, 0.05);

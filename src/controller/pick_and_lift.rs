@@ -143,16 +143,18 @@ impl PickAndLift {
 
     /// Returns the commands for an observation. Call it at 100 Hz or faster; it returns pose
     /// commands at 100 Hz at most.
-    pub fn decide(&mut self, seen: &Observation) -> Vec<Command> {
-        let Some(mut run) = self.run.take().or_else(|| self.begin(seen)) else { return Vec::new() };
-        self.react(&mut run, seen);
-        let dt = seen.time_s - run.commanded_at;
+    pub fn decide(&mut self, observation: &Observation) -> Vec<Command> {
+        let Some(mut run) = self.run.take().or_else(|| self.begin(observation)) else {
+            return Vec::new();
+        };
+        self.react(&mut run, observation);
+        let dt = observation.time_s - run.commanded_at;
         let mut commands = Vec::new();
         // Simulated time is in whole milliseconds here; a millionth of one is round-off.
         if PERIOD - 1e-9 <= dt && !self.is_done() {
-            self.move_on(&mut run, seen, dt);
-            run.commanded_at = seen.time_s;
-            commands.push(pose_command(seen, &run.path.position));
+            self.move_on(&mut run, observation, dt);
+            run.commanded_at = observation.time_s;
+            commands.push(pose_command(observation, &run.path.position));
             if run.n_commands % PRESSURE_EVERY == 0 {
                 commands.push(Command::Vacuum { gauge_pa: run.pressure });
             }
@@ -162,10 +164,10 @@ impl PickAndLift {
         commands
     }
 
-    fn begin(&mut self, seen: &Observation) -> Option<Run> {
-        let start = seen.flange_pose.translation.vector;
-        let object = seen.object_pose.translation.vector;
-        self.since = seen.time_s;
+    fn begin(&mut self, observation: &Observation) -> Option<Run> {
+        let start = observation.flange_pose.translation.vector;
+        let object = observation.object_pose.translation.vector;
+        self.since = observation.time_s;
         self.goal = Vec3::new(object.x, object.y, start.z);
         Some(Run {
             path: Path::at(start),
@@ -173,15 +175,15 @@ impl PickAndLift {
             rest_height: object.z,
             gripped_at: None,
             pressure: 0.0,
-            commanded_at: seen.time_s - PERIOD,
+            commanded_at: observation.time_s - PERIOD,
             n_commands: 0,
         })
     }
 
     /// Enters a phase. A new pressure is commanded with the next pose.
-    fn enter(&mut self, phase: Phase, run: &mut Run, seen: &Observation, pressure: Real) {
+    fn enter(&mut self, phase: Phase, run: &mut Run, observation: &Observation, pressure: Real) {
         self.phase = phase;
-        self.since = seen.time_s;
+        self.since = observation.time_s;
         self.goal = run.path.position;
         run.path.stop();
         if run.pressure.to_bits() != pressure.to_bits() {
@@ -191,42 +193,42 @@ impl PickAndLift {
     }
 
     /// Ends phases by force, position or time.
-    fn react(&mut self, run: &mut Run, seen: &Observation) {
+    fn react(&mut self, run: &mut Run, observation: &Observation) {
         let p = self.parameters.clone();
-        let waited = seen.time_s - self.since;
+        let waited = observation.time_s - self.since;
         let position = run.path.position;
-        let object_height = seen.object_pose.translation.vector.z;
-        let push_force = (seen.flange_pose.rotation * seen.contact_force).z;
+        let object_height = observation.object_pose.translation.vector.z;
+        let push_force = (observation.flange_pose.rotation * observation.contact_force).z;
         match self.phase {
-            Phase::Approach if p.touch_force <= seen.contact_force.norm() => {
+            Phase::Approach if p.touch_force <= observation.contact_force.norm() => {
                 run.touch_height = position.z;
-                self.enter(Phase::Push, run, seen, 0.0);
+                self.enter(Phase::Push, run, observation, 0.0);
                 self.goal.z = position.z - p.push_depth;
             }
             Phase::Push if p.push_force_max <= push_force => {
-                run.path = Path::at(seen.flange_pose.translation.vector);
-                self.enter(Phase::Settle, run, seen, 0.0);
+                run.path = Path::at(observation.flange_pose.translation.vector);
+                self.enter(Phase::Settle, run, observation, 0.0);
             }
             Phase::Settle if p.settle_time <= waited => {
-                self.enter(Phase::Evacuate, run, seen, p.grip_pressure);
+                self.enter(Phase::Evacuate, run, observation, p.grip_pressure);
             }
-            Phase::Evacuate => self.wait_for_grip(run, seen, &p),
+            Phase::Evacuate => self.wait_for_grip(run, observation, &p),
             Phase::Hold if p.hold_time <= waited => {
                 let lifted = object_height - run.rest_height;
                 if lifted < p.lift_height / 2.0 {
                     // The object fell: there is nothing to put back.
-                    self.enter(Phase::Vent, run, seen, p.vent_pressure);
+                    self.enter(Phase::Vent, run, observation, p.vent_pressure);
                 } else {
-                    self.enter(Phase::Lower, run, seen, p.grip_pressure);
+                    self.enter(Phase::Lower, run, observation, p.grip_pressure);
                     self.goal.z = position.z - lifted - SEARCH_DEPTH;
                 }
             }
             Phase::Lower if p.touch_force <= push_force => {
-                run.path = Path::at(seen.flange_pose.translation.vector);
-                self.enter(Phase::Vent, run, seen, p.vent_pressure);
+                run.path = Path::at(observation.flange_pose.translation.vector);
+                self.enter(Phase::Vent, run, observation, p.vent_pressure);
             }
             Phase::Vent if p.vent_time <= waited => {
-                self.enter(Phase::Retreat, run, seen, 0.0);
+                self.enter(Phase::Retreat, run, observation, 0.0);
                 self.goal.z = position.z + p.retreat_height;
             }
             _ => {}
@@ -234,25 +236,25 @@ impl PickAndLift {
     }
 
     /// Lifts once the pressure was reached and the grains have settled under it.
-    fn wait_for_grip(&mut self, run: &mut Run, seen: &Observation, p: &scene::PickAndLift) {
-        if seen.gauge_pa <= p.grip_pressure * p.grip_pressure_reached {
-            run.gripped_at.get_or_insert(seen.time_s);
+    fn wait_for_grip(&mut self, run: &mut Run, observation: &Observation, p: &scene::PickAndLift) {
+        if observation.gauge_pa <= p.grip_pressure * p.grip_pressure_reached {
+            run.gripped_at.get_or_insert(observation.time_s);
         }
         match run.gripped_at {
-            Some(since) if p.settle_time <= seen.time_s - since => {
-                run.rest_height = seen.object_pose.translation.vector.z;
-                self.enter(Phase::Lift, run, seen, p.grip_pressure);
+            Some(since) if p.settle_time <= observation.time_s - since => {
+                run.rest_height = observation.object_pose.translation.vector.z;
+                self.enter(Phase::Lift, run, observation, p.grip_pressure);
                 self.goal.z += p.lift_height;
             }
-            None if TIMEOUT <= seen.time_s - self.since => {
-                self.enter(Phase::Vent, run, seen, p.vent_pressure);
+            None if TIMEOUT <= observation.time_s - self.since => {
+                self.enter(Phase::Vent, run, observation, p.vent_pressure);
             }
             _ => {}
         }
     }
 
     /// Advances the setpoint and ends phases on arrival.
-    fn move_on(&mut self, run: &mut Run, seen: &Observation, dt: Real) {
+    fn move_on(&mut self, run: &mut Run, observation: &Observation, dt: Real) {
         let speed = self.speed(run);
         let arrived = run.path.advance(&self.goal, speed, dt);
         if !arrived {
@@ -260,19 +262,21 @@ impl PickAndLift {
         }
         match self.phase {
             Phase::Travel => {
-                self.enter(Phase::Approach, run, seen, 0.0);
+                self.enter(Phase::Approach, run, observation, 0.0);
                 // The center of the object: contact must happen long before.
-                self.goal.z = seen.object_pose.translation.vector.z;
+                self.goal.z = observation.object_pose.translation.vector.z;
             }
             // No contact all the way down.
             Phase::Approach => {
-                self.enter(Phase::Retreat, run, seen, 0.0);
+                self.enter(Phase::Retreat, run, observation, 0.0);
                 self.goal.z += self.parameters.retreat_height;
             }
-            Phase::Push => self.enter(Phase::Settle, run, seen, 0.0),
-            Phase::Lift => self.enter(Phase::Hold, run, seen, self.parameters.grip_pressure),
-            Phase::Lower => self.enter(Phase::Vent, run, seen, self.parameters.vent_pressure),
-            Phase::Retreat => self.enter(Phase::Done, run, seen, 0.0),
+            Phase::Push => self.enter(Phase::Settle, run, observation, 0.0),
+            Phase::Lift => self.enter(Phase::Hold, run, observation, self.parameters.grip_pressure),
+            Phase::Lower => {
+                self.enter(Phase::Vent, run, observation, self.parameters.vent_pressure)
+            }
+            Phase::Retreat => self.enter(Phase::Done, run, observation, 0.0),
             _ => {}
         }
     }
@@ -290,10 +294,10 @@ impl PickAndLift {
 }
 
 /// The flange keeps its observed orientation.
-fn pose_command(seen: &Observation, position: &Vec3) -> Command {
-    let q = seen.flange_pose.rotation.coords;
+fn pose_command(observation: &Observation, position: &Vec3) -> Command {
+    let q = observation.flange_pose.rotation.coords;
     #[expect(clippy::cast_possible_truncation, reason = "2^63 ns are 292 years")]
-    let stamp_ns = (seen.time_s * 1e9).round() as i64;
+    let stamp_ns = (observation.time_s * 1e9).round() as i64;
     Command::FlangePose(PoseCommand {
         frame_id: "world".to_owned(),
         stamp_ns,
@@ -347,7 +351,7 @@ mod tests {
         Vec3::new(0.0, 0.0, 0.15)
     }
 
-    /// Oracles: the lift height asked for, the original position of the object, and the speed limit times
+    /// Oracles: the requested lift height, the original position of the object, and the speed limit times
     /// the command period.
     #[test]
     fn lifts_holds_and_puts_back() {

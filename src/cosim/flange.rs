@@ -68,12 +68,12 @@ fn approach(offset: Vec3, velocity: Vec3, (fastest, acceleration): (Real, Real),
         (2.0 * braking * (distance - near / 2.0)).sqrt()
     };
     let speed = fastest.min(approach);
-    // Below any distance that matters, standing still keeps the bits of the pose.
-    let wanted = if distance > 1e-12 { offset * (speed / distance) } else { Vec3::zeros() };
-    let change = wanted - velocity;
+    // Below any distance that matters, a flange at rest keeps the bits of the pose.
+    let target = if distance > 1e-12 { offset * (speed / distance) } else { Vec3::zeros() };
+    let change = target - velocity;
     let size = change.norm();
     let allowed = acceleration * dt;
-    if size > allowed { velocity + change * (allowed / size) } else { wanted }
+    if size > allowed { velocity + change * (allowed / size) } else { target }
 }
 
 #[cfg(test)]

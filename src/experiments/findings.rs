@@ -17,7 +17,7 @@ pub struct Findings {
     pub plots: Vec<Plot>,
     /// Measured values compared with expected ones.
     pub rows: Vec<Row>,
-    /// What a reader must know.
+    /// Notes for the reader.
     pub notes: Vec<String>,
 }
 

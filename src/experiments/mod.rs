@@ -5,16 +5,16 @@
 //! | file | holds |
 //! |---|---|
 //! | `scene.rs` | the keys of its scene, one line each (`scene_keys!`), and the rules that join them |
-//! | `cases.rs` | the list of cases: independent runs, which may go side by side, and their names |
+//! | `cases.rs` | the list of cases: independent runs, which may run in parallel, and their names |
 //! | `build.rs` | the physical system of a case at its start |
-//! | `measure.rs` | what is read from a system while it runs, and from records afterwards |
+//! | `measure.rs` | what is read from a system while it runs, and from records afterward |
 //! | `run.rs` | a `Run`: the phases of a case, slice by slice, how it is saved and resumed |
 //! | `plots.rs` | plots and tables of the report |
 //! | `evaluate.rs` | rows that compare measured values with their oracles, and notes |
 //! | `mod.rs` | the `Experiment` and its `Plan`, which tie these together |
 //!
 //! A file may use those above it. To add an experiment, write
-//! `launch_configs/experiments/NAME.yaml`, these files, and a line in `EXPERIMENTS`. Findings are
+//! a scene in `launch_configs/experiments`, these files, and a line in `EXPERIMENTS`. Findings are
 //! computed from records alone, without clock or files; tests, reports and benchmarks run the same
 //! cases.
 
@@ -126,7 +126,7 @@ pub trait Plan: Send + Sync {
 
 /// A running case.
 pub trait Run: Send {
-    /// Advances by a slice of work of at most some tenths of a second.
+    /// Advances by a slice of work of at most a few tenths of a second.
     ///
     /// # Errors
     /// If the simulation diverges.

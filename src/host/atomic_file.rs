@@ -50,7 +50,7 @@ pub fn replace(path: &Path, parts: &[&[u8]]) -> io::Result<()> {
     let draft = path.with_extension(format!("{}.draft", std::process::id()));
     let written = write_synced(&draft, parts).and_then(|()| fs::rename(&draft, path));
     if written.is_err() {
-        // Best effort: a remaining draft does no harm.
+        // Best effort: a remaining temporary file is harmless.
         drop(fs::remove_file(&draft));
     }
     written

@@ -1,6 +1,6 @@
 //! The only file that reads a clock: the speed of the run, and waiting in real time.
 
-#![expect(clippy::disallowed_methods, reason = "this is the one file that may read clocks")]
+#![expect(clippy::disallowed_methods, reason = "only this file may read clocks")]
 
 use std::{
     collections::VecDeque,
@@ -163,7 +163,7 @@ impl Playhead {
         self.is_paused
     }
 
-    /// Waits for `time_ns`, but at most for a time that users do not notice. Returns true if it was
+    /// Waits for `time_ns`, but at most for a time too short to notice. Returns true if it was
     /// reached.
     pub fn wait_for(&self, time_ns: u64) -> bool {
         const SLEEP_MAX: Duration = Duration::from_millis(20);

@@ -26,7 +26,7 @@ impl RequestQueue {
         }
     }
 
-    /// Takes at n_max `n_max` requests, oldest first.
+    /// Takes at most `n_max` requests, oldest first.
     pub fn take(&mut self, n_max: usize) -> Vec<ServiceRequest> {
         let n = n_max.min(self.requests.len());
         self.requests.drain(..n).collect()

@@ -72,10 +72,10 @@ pub struct ServerCounters {
 
 /// Receives requests and sends responses.
 pub trait ServiceServer: Send {
-    /// Takes at n_max `n_max` waiting requests, oldest first. Never blocks.
+    /// Takes at most `n_max` waiting requests, oldest first. Never blocks.
     fn take(&mut self, n_max: usize) -> Vec<ServiceRequest>;
 
-    /// Waits until a request arrives, at n_max `timeout`.
+    /// Waits until a request arrives, at most `timeout`.
     fn wait(&mut self, timeout: Duration);
 
     /// Sends a message once packet `after_packet` has been published, or has timed out.

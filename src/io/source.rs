@@ -11,7 +11,7 @@ pub trait Source: Send {
     fn name(&self) -> &'static str;
 
     /// Takes all commands that arrived since the last call, oldest first. `snapshot` is the system
-    /// at the end of the last tick, for sources that decide by it. Never blocks.
+    /// at the end of the last tick, for sources whose commands depend on it. Never blocks.
     fn drain(&mut self, snapshot: &Snapshot) -> Vec<Command>;
 
     /// True once a command has arrived, drained or not.

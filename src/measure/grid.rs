@@ -147,8 +147,8 @@ pub(super) fn index_of(value: Real) -> usize {
     value as usize
 }
 
-/// The translations (m) by integer multiples of the period that bring a copy of the interval from `low` to `high` (m)
-/// into the interval from 0 to `extent` (m).
+/// The translations (m) by integer multiples of the period that bring a copy of the interval from
+/// `low` to `high` (m) into the interval from 0 to `extent` (m).
 fn shifts_along(low: Real, high: Real, extent: Real, period: Real) -> Vec<Real> {
     let first = (-high / period).ceil();
     let n = ((extent - low) / period).floor() - first + 1.0;

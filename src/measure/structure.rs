@@ -293,7 +293,7 @@ mod tests {
         }
     }
 
-    /// Oracle: φ = π/√18 for touching spheres on the lattice. Because the cuts are exact, it contains for any
+    /// Oracle: φ = π/√18 for touching spheres on the lattice. Because the cuts are exact, it holds for any
     /// cell of the lattice, to rounding.
     #[test]
     fn a_lattice_has_its_solid_fraction_wherever_it_is_cut() {

@@ -27,7 +27,7 @@ pub(super) struct Sizes {
     pub(super) n_vertices: usize,
 }
 
-/// Opens the connections of a scene. One that cannot be opened is logged and left out, unless the
+/// Opens the connections of a scene. One that cannot be opened is logged and skipped, unless the
 /// run depends on it.
 pub(super) struct Connections<'a> {
     /// The scene.
@@ -62,7 +62,7 @@ pub(super) enum ConnectError {
     Disabled,
     /// Built without it.
     #[cfg(not(feature = "ros"))]
-    #[error("ROS 2 needs a jamgrip that was built with feature `ros`")]
+    #[error("ROS 2 needs a build with feature `ros`")]
     NoFeature,
     /// The environment selects no usable discovery range.
     #[cfg(feature = "ros")]
@@ -147,7 +147,7 @@ impl Connections<'_> {
 
     #[cfg(not(feature = "bag"))]
     fn open_bag(&self, _outputs: &mut OutputSinks) -> Result<(), RunError> {
-        let reason = "recordings need a jamgrip that was built with feature `bag`".to_owned();
+        let reason = "recordings need a build with feature `bag`".to_owned();
         if self.scene.outputs.bag.on_error == OnError::Stop {
             return Err(RunError::Recording(reason));
         }
@@ -182,7 +182,7 @@ impl Connections<'_> {
         crate::bag::RunDescription { scene_text, scene_files: self.scene_files(), facts, format }
     }
 
-    /// The mesh files of the scene. One that can no longer be read is logged and left out.
+    /// The mesh files of the scene. One that can no longer be read is logged and skipped.
     #[cfg(feature = "bag")]
     fn scene_files(&self) -> Vec<(String, Vec<u8>)> {
         let mut files = Vec::new();
@@ -237,7 +237,7 @@ impl Connections<'_> {
     fn open_stream(&self, _outputs: &mut OutputSinks, sizes: Sizes) {
         let Sizes { n_grains, n_vertices } = sizes;
         self.progress.say(&format!(
-            "streams need a jamgrip that was built with feature `shm`; {n_grains} grains and \
+            "streams need a build with feature `shm`; {n_grains} grains and \
              {n_vertices} vertices are not streamed"
         ));
     }
@@ -270,7 +270,7 @@ impl Connections<'_> {
         let sink = RosSink::new(&node, self.encoder)?;
         let sink = sink.reporting_to(&published);
         let source = RosSource::new(&node, self.encoder)?;
-        // Old states are of no use to a controller, but half a second bridges a short stall.
+        // Controllers do not need old states, but half a second covers a short stall.
         let delivery = Delivery::Latest { depth: 500 };
         outputs.fanout.add(Box::new(sink), delivery)?;
         external.sources.push(Box::new(source));
@@ -282,7 +282,7 @@ impl Connections<'_> {
         }
         let ros = &self.scene.outputs.ros;
         let prefix = ros.interfaces_prefix.as_deref();
-        let (mut offers, asked) = services::endpoints(&ros.node, prefix);
+        let (mut offers, endpoints) = services::endpoints(&ros.node, prefix);
         let mut channels = services::action_topics(&ros.node, prefix);
         offers.iter_mut().for_each(|it| it.name = full_name(ros, &it.name));
         channels.iter_mut().for_each(|it| it.name = full_name(ros, &it.name));
@@ -294,7 +294,7 @@ impl Connections<'_> {
             Some(2) => Version::Two,
             _ => Version::of_distribution(&std::env::var("ROS_DISTRO").unwrap_or_default()),
         };
-        let simulator = Simulator::new(self.scene, asked, is_stopped)
+        let simulator = Simulator::new(self.scene, endpoints, is_stopped)
             .with_n_topics(channels.len())
             .with_scene_file(self.scene_file)
             .with_version(version);

@@ -74,31 +74,31 @@ impl Default for LiftMonitor {
 
 impl LiftMonitor {
     /// Takes the results of a tick of `tick` seconds.
-    pub fn update(&mut self, seen: &Snapshot, tick: Real) {
-        let time = std::time::Duration::from_nanos(seen.time_ns).as_secs_f64();
-        let flange = seen.flange.pose.translation.vector.z;
-        let force = seen.contact_force_world();
+    pub fn update(&mut self, snapshot: &Snapshot, tick: Real) {
+        let time = std::time::Duration::from_nanos(snapshot.time_ns).as_secs_f64();
+        let flange = snapshot.flange.pose.translation.vector.z;
+        let force = snapshot.contact_force_world();
         let metrics = &mut self.metrics;
         metrics.peak_push_force = metrics.peak_push_force.max(force.z);
         metrics.peak_pull_force = metrics.peak_pull_force.max(-force.z);
-        let overlap = seen.jamming.overlap_ratio_max;
+        let overlap = snapshot.jamming.overlap_ratio_max;
         metrics.overlap_ratio_max = metrics.overlap_ratio_max.max(overlap);
-        let overlap = seen.jamming.membrane_overlap_ratio_max;
+        let overlap = snapshot.jamming.membrane_overlap_ratio_max;
         metrics.membrane_overlap_ratio_max = metrics.membrane_overlap_ratio_max.max(overlap);
         self.flange_lowest = self.flange_lowest.min(flange);
-        let Some(object) = seen.objects.first() else { return };
+        let Some(object) = snapshot.objects.first() else { return };
         let height = object.body.pose.translation.vector.z;
         self.object_lowest = self.object_lowest.min(height);
         let lifted = height - self.object_lowest;
         metrics.lift_height = metrics.lift_height.max(lifted);
         let raised = flange - self.flange_lowest;
-        let is_still = seen.flange.twist.linear.norm() < STILL_SPEED;
+        let is_still = snapshot.flange.twist.linear.norm() < STILL_SPEED;
         let since = *self.still_since.get_or_insert(time);
         if !is_still {
             self.still_since = None;
         } else if STILL_TIME <= time - since
             && RAISED <= raised
-            && seen.chamber.gauge_setpoint < VACUUM
+            && snapshot.chamber.gauge_setpoint < VACUUM
         {
             let share = lifted / raised;
             let is_first = metrics.hold_time == 0.0;

@@ -143,39 +143,39 @@ enum NextStep {
     Wait { is_waiting: bool },
 }
 
-/// Runs `plant` until there is a reason to end. The outputs are still open afterwards.
+/// Runs `plant` until there is a reason to end. The outputs are still open afterward.
 pub fn run<P: Plant>(plant: &mut P, context: &mut RunContext) -> Report<P::Error> {
-    let mut seen = Arc::new(Packet::new(plant.snapshot(Parts::ALL), None));
+    let mut packet = Arc::new(Packet::new(plant.snapshot(Parts::ALL), None));
     let mut pacer =
-        Pacer::start_at(context.run_time_ns(&seen.snapshot), context.scene.outputs.real_time);
+        Pacer::start_at(context.run_time_ns(&packet.snapshot), context.scene.outputs.real_time);
     context.substep_s = plant.substep_s();
     // The start is recorded whatever the checkpoint rate.
     context.save_checkpoint(plant, true);
     context.announce_waiting();
     let ending = loop {
-        if let Some(ending) = context.ending(&seen.snapshot) {
+        if let Some(ending) = context.ending(&packet.snapshot) {
             break Ok(ending);
         }
-        seen = context.handle_requests(plant, seen); // between two ticks
-        if let NextStep::Wait { is_waiting } = context.next_step(&seen.snapshot) {
-            context.wait_paused(plant, &seen, &mut pacer, is_waiting);
+        packet = context.handle_requests(plant, packet); // between two ticks
+        if let NextStep::Wait { is_waiting } = context.next_step(&packet.snapshot) {
+            context.wait_paused(plant, &packet, &mut pacer, is_waiting);
             continue;
         }
         if let Err(error) = plant.tick(&context.inputs.gate.pass()) {
             break Err(error);
         }
-        let time_ns = seen.snapshot.time_ns + context.tick_ns();
+        let time_ns = packet.snapshot.time_ns + context.tick_ns();
         let snapshot = plant.snapshot(context.schedule.parts(time_ns));
         let run_time_ns = context.run_time_ns(&snapshot);
         context.pace(&mut pacer, run_time_ns); // the only clock
         context.save_checkpoint(plant, context.schedule.checkpoint(run_time_ns));
-        seen = Arc::new(context.pack(snapshot, &pacer));
-        context.outputs.publish(&plant.view(&seen.snapshot), &seen); // errors are collected
-        context.ticked(&seen);
+        packet = Arc::new(context.pack(snapshot, &pacer));
+        context.outputs.publish(&plant.view(&packet.snapshot), &packet); // errors are collected
+        context.ticked(&packet);
     };
     context.supervision.progress.end();
     let (wall_time_s, real_time_factor) = (pacer.wall_time_s(), pacer.real_time_factor_mean());
-    Report { ending, last: seen, wall_time_s, real_time_factor }
+    Report { ending, last: packet, wall_time_s, real_time_factor }
 }
 
 impl RunContext {
@@ -231,7 +231,7 @@ impl RunContext {
 
     /// Takes the commands that have arrived and decides what to do next. While paused, commands
     /// stay in their queues, where the oldest are dropped; a lockstep needs to see them.
-    fn next_step(&mut self, seen: &Snapshot) -> NextStep {
+    fn next_step(&mut self, snapshot: &Snapshot) -> NextStep {
         // Read once: a first command that arrives after this is for the next call.
         let is_waiting = self.is_waiting();
         let Inputs { command_sources, gate, server } = &mut self.inputs;
@@ -240,22 +240,22 @@ impl RunContext {
             Some(server) => (server.simulator().may_tick(), server.simulator().is_stepping()),
         };
         if is_playing {
-            let mut commands = command_sources.drain(seen);
+            let mut commands = command_sources.drain(snapshot);
             commands.extend(server.iter_mut().flat_map(SimulationServer::take_commands));
-            gate.offer(commands, seen.time_ns);
+            gate.offer(commands, snapshot.time_ns);
         }
-        let may_tick = is_playing && gate.is_open(is_stepping, seen.time_ns);
+        let may_tick = is_playing && gate.is_open(is_stepping, snapshot.time_ns);
         if may_tick { NextStep::Tick } else { NextStep::Wait { is_waiting } }
     }
 
     /// Serves requests and publishes what they changed.
-    fn handle_requests<P: Plant>(&mut self, plant: &mut P, seen: Arc<Packet>) -> Arc<Packet> {
-        let Some(server) = &mut self.inputs.server else { return seen };
+    fn handle_requests<P: Plant>(&mut self, plant: &mut P, packet: Arc<Packet>) -> Arc<Packet> {
+        let Some(server) = &mut self.inputs.server else { return packet };
         if !self.inputs.command_sources.is_waiting() || server.has_commands() {
             server.first_command();
         }
         let changed = {
-            let mut world = World { access: plant, snapshot: &seen.snapshot };
+            let mut world = World { access: plant, snapshot: &packet.snapshot };
             server.handle_requests(&mut world, self.n_packets)
         };
         let scene = Arc::clone(server.simulator().scene());
@@ -263,11 +263,11 @@ impl RunContext {
             self.replace_scene(scene, plant, changed.is_scene_loaded);
         }
         if changed.changes.is_empty() {
-            return seen;
+            return packet;
         }
         if changed.is_scene_loaded {
             self.inputs.gate.forget();
-            self.inputs.command_sources.discard(&seen.snapshot);
+            self.inputs.command_sources.discard(&packet.snapshot);
             self.supervision.progress.say(&format!("scene `{}` is loaded", self.scene.name));
         }
         if changed.is_state_reset || changed.is_time_reset {
@@ -314,16 +314,16 @@ impl RunContext {
     }
 
     /// Waits a moment while no tick may run. While the run waits for its first command, the start
-    /// is published again and again.
+    /// is published repeatedly.
     fn wait_paused<P: Plant>(
         &mut self,
         plant: &P,
-        seen: &Arc<Packet>,
+        packet: &Arc<Packet>,
         pacer: &mut Pacer,
         is_waiting: bool,
     ) {
         if is_waiting && pacer.is_due(WAITING_RATE) {
-            self.outputs.publish(&plant.view(&seen.snapshot), seen);
+            self.outputs.publish(&plant.view(&packet.snapshot), packet);
         }
         let Inputs { gate, server, .. } = &mut self.inputs;
         let timeout = if gate.is_lockstep() { clock::POLL_PERIOD } else { clock::IDLE_SLEEP };
@@ -353,9 +353,9 @@ impl RunContext {
         pacer.wait_until(run_time_ns);
     }
 
-    fn ticked(&mut self, seen: &Packet) {
+    fn ticked(&mut self, packet: &Packet) {
         if let Some(server) = &mut self.inputs.server {
-            server.ticked(&seen.snapshot, self.n_packets);
+            server.ticked(&packet.snapshot, self.n_packets);
         }
     }
 
@@ -373,11 +373,11 @@ impl RunContext {
     }
 
     /// Simulated time since the start of the run; not reset with simulated time.
-    fn run_time_ns(&self, seen: &Snapshot) -> u64 {
-        seen.run_tick.time_ns(self.tick_ns())
+    fn run_time_ns(&self, snapshot: &Snapshot) -> u64 {
+        snapshot.run_tick.time_ns(self.tick_ns())
     }
 
-    fn ending(&mut self, seen: &Snapshot) -> Option<Ending> {
+    fn ending(&mut self, snapshot: &Snapshot) -> Option<Ending> {
         let Inputs { command_sources, server, .. } = &self.inputs;
         if self.supervision.shutdown.is_requested() {
             return Some(Ending::Interrupted);
@@ -391,7 +391,7 @@ impl RunContext {
         if command_sources.is_done() {
             return Some(Ending::Finished);
         }
-        if self.supervision.end_ns.is_some_and(|end_ns| end_ns <= self.run_time_ns(seen)) {
+        if self.supervision.end_ns.is_some_and(|end_ns| end_ns <= self.run_time_ns(snapshot)) {
             return Some(Ending::TimeUp);
         }
         let (errors, must_stop) = self.outputs.take_errors();

@@ -41,8 +41,8 @@ pub trait Plant: WorldAccess {
         0.0
     }
 
-    /// Borrows the results of the last tick. `seen` is the snapshot of the same tick.
-    fn view<'a>(&'a self, seen: &'a Snapshot) -> View<'a>;
+    /// Borrows the results of the last tick. `snapshot` is the snapshot of the same tick.
+    fn view<'a>(&'a self, snapshot: &'a Snapshot) -> View<'a>;
 }
 
 impl Plant for Session {
@@ -69,8 +69,8 @@ impl Plant for Session {
         self.coupled().system.model.substep
     }
 
-    fn view<'a>(&'a self, seen: &'a Snapshot) -> View<'a> {
-        Self::view(self, seen)
+    fn view<'a>(&'a self, snapshot: &'a Snapshot) -> View<'a> {
+        Self::view(self, snapshot)
     }
 }
 

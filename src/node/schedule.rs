@@ -55,7 +55,10 @@ struct Interval {
 
 impl Interval {
     fn new(rate: f64, tick_ns: u64) -> Self {
-        #[expect(clippy::cast_possible_truncation, reason = "it saturates: slower than ever seen")]
+        #[expect(
+            clippy::cast_possible_truncation,
+            reason = "it saturates: slower than ever snapshot"
+        )]
         #[expect(clippy::cast_sign_loss, reason = "rates are checked to be positive")]
         let period_ns = (1e9 / rate).round() as u64;
         Self { period_ns: period_ns.max(tick_ns), tick_ns }
@@ -72,7 +75,7 @@ impl Interval {
 mod tests {
     use super::*;
 
-    /// Oracle: counting. 30 Hz over 10 s are 300 times, though 33.3 ms is no whole tick.
+    /// Oracle: counting. 30 Hz over 10 s are 300 times, although 33.3 ms is not a whole number of ticks.
     #[test]
     fn rates_are_kept_on_average() {
         let count = |rate| {

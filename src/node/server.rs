@@ -57,8 +57,8 @@ impl SimulationServer {
 
     /// Passes scenes to the loader and takes the settled ones.
     fn load(&mut self, world: &mut World<'_>) {
-        let wanted = self.simulator.take_scene_to_settle();
-        match (&mut self.loader, wanted) {
+        let requested = self.simulator.take_scene_to_settle();
+        match (&mut self.loader, requested) {
             (Some(loader), Some(scene)) => loader.begin(scene),
             (None, Some(_)) => {
                 let why = "this run cannot load other scenes".to_owned();
@@ -72,8 +72,8 @@ impl SimulationServer {
     }
 
     /// A tick has ended; packet `n_packets` holds its results.
-    pub fn ticked(&mut self, seen: &Snapshot, n_packets: u64) {
-        self.simulator.finish_tick(seen);
+    pub fn ticked(&mut self, snapshot: &Snapshot, n_packets: u64) {
+        self.simulator.finish_tick(snapshot);
         self.send(n_packets);
         if self.simulator.is_stepping() {
             self.published.wait_for(n_packets.saturating_sub(LEAD_MAX), TIMEOUT);

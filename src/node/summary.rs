@@ -83,7 +83,7 @@ impl Summary {
             "commands": {
                 "applied": self.commands.n_applied,
                 "limited": self.commands.n_limited,
-                "refused": self.commands.n_refused,
+                "refused": self.commands.n_rejected,
             },
             "validity": {
                 "is_within_limits": self.metrics.is_valid(),

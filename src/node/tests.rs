@@ -62,15 +62,15 @@ impl Plant for Counter {
     }
 
     fn snapshot(&self, _parts: Parts) -> Snapshot {
-        let mut seen = snapshot(self.n_ticks);
+        let mut snapshot = snapshot(self.n_ticks);
         let zero = self.restarts_at.filter(|it| *it <= self.n_ticks).unwrap_or(0);
-        seen.time_ns -= zero * TICK_NS;
-        seen
+        snapshot.time_ns -= zero * TICK_NS;
+        snapshot
     }
 
-    fn view<'a>(&'a self, seen: &'a Snapshot) -> View<'a> {
+    fn view<'a>(&'a self, snapshot: &'a Snapshot) -> View<'a> {
         View {
-            snapshot: seen,
+            snapshot: snapshot,
             grain_positions: &[],
             grain_velocities: &[],
             grain_spins: &[],
@@ -111,7 +111,7 @@ pub(super) fn snapshot(tick: u64) -> Snapshot {
     }
 }
 
-/// Sends one command after `after` calls of `has_heard`.
+/// Sends one command after `after` calls of `has_received`.
 struct Late {
     after: Mutex<u32>,
     command: Option<Command>,
@@ -122,7 +122,7 @@ impl Source for Late {
         "late"
     }
 
-    fn drain(&mut self, _seen: &Snapshot) -> Vec<Command> {
+    fn drain(&mut self, _snapshot: &Snapshot) -> Vec<Command> {
         self.command.take().into_iter().collect()
     }
 
@@ -192,9 +192,13 @@ fn run_waits_for_first_command_and_loses_no_tick() {
     assert_eq!(plant.commands, [(1, Command::Vacuum { gauge_pa: -5.0 })], "before the first tick");
     let closed = context.outputs.close();
     assert!(closed.errors.is_empty(), "{:?}", closed.errors);
-    let mut seen = ticks.lock().unwrap().clone();
-    seen.dedup();
-    assert_eq!(seen, (0..=100).collect::<Vec<_>>(), "the start while it waits, then every tick");
+    let mut snapshot = ticks.lock().unwrap().clone();
+    snapshot.dedup();
+    assert_eq!(
+        snapshot,
+        (0..=100).collect::<Vec<_>>(),
+        "the start while it waits, then every tick"
+    );
 }
 
 /// Oracle: counting. The duration of a run counts its ticks, whatever resets simulated time.
@@ -243,17 +247,17 @@ fn object_is_held_above_nine_tenths() {
     for (sag, is_held) in [(0.005, true), (0.02, false)] {
         let mut lift_monitor = LiftMonitor::default();
         for tick in 0..1000 {
-            let mut seen = snapshot(tick);
+            let mut snapshot = snapshot(tick);
             let up = if tick < 100 { 0.0 } else { 0.1 };
             let sagged = if tick < 500 { 0.0 } else { sag };
-            seen.flange.pose.translation.vector = Vec3::new(0.0, 0.0, 0.2 + up);
+            snapshot.flange.pose.translation.vector = Vec3::new(0.0, 0.0, 0.2 + up);
             if tick == 100 {
-                seen.flange.twist.linear.z = 1.0;
+                snapshot.flange.twist.linear.z = 1.0;
             }
-            seen.objects[0].body.pose.translation.vector.z = 0.035 + up - sagged * up / 0.1;
-            seen.chamber.gauge_setpoint = -90e3;
-            seen.contact_wrench.force.z = if tick < 100 { 7.0 } else { -2.5 };
-            lift_monitor.update(&seen, 1e-3);
+            snapshot.objects[0].body.pose.translation.vector.z = 0.035 + up - sagged * up / 0.1;
+            snapshot.chamber.gauge_setpoint = -90e3;
+            snapshot.contact_wrench.force.z = if tick < 100 { 7.0 } else { -2.5 };
+            lift_monitor.update(&snapshot, 1e-3);
         }
         let metrics = lift_monitor.metrics();
         assert_eq!(metrics.is_held(), is_held, "{metrics:?}");

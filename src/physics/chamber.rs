@@ -1,4 +1,4 @@
-//! Pressure of the air inside the membrane: it follows the set-point with a first-order lag and a rate limit.
+//! Pressure of the air inside the membrane: it follows the setpoint with a first-order lag and a rate limit.
 //!
 //! ```text
 //! p ← p + clamp((p_set − p) (1 − e^(−dt/τ)), ±rate_max dt)
@@ -12,7 +12,7 @@
 //! | dt | length of a substep | s |
 //!
 //! Source: no publication; a lag and a limit are the simplest model of a pump and its line, and the
-//! update is exact for a constant set-point while the limit does not act.
+//! update is exact for a constant setpoint while the limit does not act.
 //!
 //! Valid while τ is long compared with the time that sound takes to cross the membrane, 0.2 ms: the
 //! pressure is uniform inside.

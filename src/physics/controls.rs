@@ -6,7 +6,7 @@ use crate::base::Real;
 /// The inputs of a substep. `cosim` sets them.
 #[derive(Clone, Debug)]
 pub struct Controls {
-    /// Set-point of the gauge pressure in the chamber (Pa).
+    /// Setpoint of the gauge pressure in the chamber (Pa).
     pub gauge_setpoint: Real,
     /// Motion of each wall: its pose at the end of this substep, and its velocity during it.
     pub walls: Vec<BodyMotion>,

@@ -378,7 +378,7 @@ fn scatter(scene: &Scene, recipe: &Recipe) -> State {
     let (final_radii, scale) = (&recipe.final_radii, recipe.initial_scale);
     let mut random = Random::new(scene.seed, Stream::Position);
     let pose = scene.flange.pose;
-    // Grains start one final diameter away from membrane and plate and grow towards them.
+    // Grains start one final diameter away from membrane and plate and grow toward them.
     let margin = 2.0 * scene.grains.radius_max;
     let limit = scene.membrane.fill_stretch * scene.membrane.radius - margin;
     let mut local: Vec<Vec3> = Vec::with_capacity(final_radii.len());

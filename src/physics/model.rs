@@ -14,7 +14,7 @@ use crate::base::{Pose, Real, Vec3};
 /// Everything that does not change during a run. `SystemBuilder` creates it.
 #[derive(Clone, Debug)]
 pub struct Model {
-    /// Inertia of grains and membrane divided by their real inertia; 1 without density scaling.
+    /// Ratio of the inertia of grains and membrane to their real inertia; 1 without density scaling.
     pub density_scaling: Real,
     /// Gravity acting on grains and membrane (m/s²): real gravity divided by `density_scaling`.
     pub gravity: Vec3,
@@ -106,7 +106,7 @@ impl TouchedSurface<'_> {
 /// Pump and line, for one length of substep.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChamberModel {
-    /// Fraction of the distance to the set-point that remains after one substep, e^(−dt/τ).
+    /// Fraction of the distance to the setpoint that remains after one substep, e^(−dt/τ).
     pub lag_factor: Real,
     /// Largest change of the pressure in one substep (Pa).
     pub change_max: Real,

@@ -76,7 +76,8 @@ impl Grains {
 pub struct Springs {
     /// Spring of each listed pair of grains (m), zero without contact. Written by `contact::grains`.
     pub pairs: Vec<Vec3>,
-    /// Other history of each listed pair of grains; empty for a law without cohesion. Written by
+    /// Other history of each listed pair of grains, a number in the units of the law; empty for a law
+    /// without cohesion. Written by
     /// `contact::grains`.
     pub pair_memories: Vec<Real>,
     /// Membrane contacts of each grain. Written by `contact::membrane`.
@@ -114,7 +115,7 @@ pub struct ListedSprings {
     pub ids: Vec<[u32; 2]>,
     /// Spring of each contact (m), zero without contact.
     pub springs: Vec<Vec3>,
-    /// Other history of each contact; empty for a law without cohesion.
+    /// Other history of each contact, a number in the units of the law; empty for a law without cohesion.
     pub memories: Vec<Real>,
 }
 
@@ -148,7 +149,7 @@ pub struct SurfaceHistory {
     pub spring: Vec3,
     /// Unit normal in the last substep, from the surface to the grain.
     pub normal: Vec3,
-    /// Other history; empty for a law without cohesion.
+    /// Other history, numbers in the units of the law; empty for a law without cohesion.
     pub memory: Vec<Real>,
 }
 

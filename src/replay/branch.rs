@@ -137,7 +137,7 @@ pub fn branch(
     Ok(launch::launch_with(&scene, &options, begin, |_| Inputs::of_script(script))?)
 }
 
-/// Rejects changes of the world after `tick` and before `end_s`, because a branch leaves them out.
+/// Rejects changes of the world after `tick` and before `end_s`, because a branch does not repeat them.
 fn reject_later_changes(run: &RecordedRun, tick: u64, end_s: f64) -> Result<(), BranchError> {
     let at_s = |it: &RecordedChange| seconds(it.tick * run.scene.time.tick_ns);
     let mut later = run.history.changes.iter().filter(|it| tick <= it.tick && at_s(it) < end_s);

@@ -47,7 +47,7 @@ pub enum DifferenceKind {
 pub(super) enum Start<'a> {
     /// A recorded checkpoint.
     Recorded(&'a CheckpointLocation),
-    /// A state saved after this tick in the present process.
+    /// A state saved after this tick in this process.
     Saved(u64, Cow<'a, [u8]>),
 }
 

@@ -72,7 +72,7 @@ pub fn svg(plot: &Plot) -> String {
     text.replacen(&format!("width=\"{}\" height=\"{}\" ", SIZE.0, SIZE.1), "", 1)
 }
 
-/// The plot as a file of its own: on white, with its legend above.
+/// The plot as a standalone file: on white, with its legend above.
 pub fn standalone_svg(plot: &Plot) -> String {
     let positions = legend_positions(plot);
     let n_lines = positions.last().map_or(0, |position| position.1 + 1);
@@ -317,7 +317,7 @@ mod tests {
         }
     }
 
-    /// Oracle: the look of each kind; points that cannot be shown are left out.
+    /// Oracle: the appearance of each kind; points that cannot be shown are left out.
     #[test]
     fn every_kind_is_drawn_and_invalid_points_are_left_out() {
         let points = vec![[1.0, 1.0], [10.0, 20.0], [f64::NAN, 3.0], [5.0, f64::INFINITY]];

@@ -1,7 +1,7 @@
 //! The ROS 2 node `/jamgrip` and its publishers. Messages are encoded once for all sinks.
 //!
 //! The node is built from ros2-client's parts, so that it is listed in `ros_discovery_info` with
-//! all its topics. Two parts are left out on purpose. Its `Spinner` would subscribe to `/clock`
+//! all its topics. Two parts are deliberately not used. Its `Spinner` would subscribe to `/clock`
 //! under a wrong type name, and tools reject a topic that has two types; its other features
 //! (parameter services, and match counts that never decrease) are not needed here. Its typed
 //! messages are replaced by [`Body`], which passes on bytes that are already CDR.

@@ -1,6 +1,6 @@
 //! ROS 2 service servers on plain DDS, so that clients with either mapping of the request identity
 //! are served at the same time: Fast DDS, Connext and RustDDS send it beside the body, Cyclone DDS
-//! in a header of 16 bytes before the body. The sample and the vendor of its writer tell which
+//! in a header of 16 bytes before the body. The sample and the vendor of its writer determine which
 //! mapping the client uses.
 
 use std::{
@@ -425,7 +425,7 @@ fn to_error(name: &str, type_name: &str, reason: &dyn std::fmt::Display) -> RosE
     }
 }
 
-/// Locks the queue. A panic elsewhere does not spoil it: every call leaves it consistent.
+/// Locks the queue. It stays usable after a panic, because every call leaves it consistent.
 fn lock(queue: &Mutex<RequestQueue>) -> MutexGuard<'_, RequestQueue> {
     queue.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -202,7 +202,7 @@ async fn log_malformed(inbox: Arc<Mutex<Inbox>>) {
     }
 }
 
-/// Locks the inbox. A panic elsewhere does not spoil it: every call leaves it consistent.
+/// Locks the inbox. It stays usable after a panic, because every call leaves it consistent.
 fn lock(inbox: &Mutex<Inbox>) -> MutexGuard<'_, Inbox> {
     inbox.lock().unwrap_or_else(PoisonError::into_inner)
 }

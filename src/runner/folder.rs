@@ -68,7 +68,7 @@ pub(super) struct SavedCase {
 pub(super) enum Stored {
     /// The finished case.
     Finished(Box<FinishedCase>),
-    /// A state in between.
+    /// The state of a running case.
     Saved(SavedCase),
     /// A truncated or changed file.
     Damaged(PathBuf),

@@ -6,7 +6,7 @@
 
 mod case; // runs one case
 pub mod error; // errors
-pub mod eta; // estimated time of arrival
+pub mod eta; // estimated remaining time
 pub mod experiment; // an experiment whose scene has been read
 pub mod folder; // files of an experiment
 pub mod outcome; // results of an experiment

@@ -20,7 +20,7 @@ use crate::{
 pub struct Outcome {
     /// Name of the experiment.
     pub experiment: String,
-    /// What is done, and who did the experiment.
+    /// What is simulated, and the authors of the experiment.
     pub about: String,
     /// The size that was run.
     pub size: Size,

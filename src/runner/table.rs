@@ -69,7 +69,7 @@ fn violations(outcome: &Outcome) -> String {
     left.collect()
 }
 
-/// Stands for the tolerance of a relation that is a bound.
+/// Shown instead of a tolerance if the relation is a bound.
 pub(super) const BOUND: &str = "bound";
 
 /// Expected value and tolerance: `5` and `± 0.1`, `≥ 3` and `bound`.

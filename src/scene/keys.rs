@@ -157,7 +157,7 @@ impl<T: Section> Limits<T> for Map {
     }
 }
 
-/// Keys beside the others, without a map of their own; the field's name is no key.
+/// Keys beside the others, without a separate map; the field's name is not a key.
 pub(crate) struct Inline;
 
 impl<T: Section> Limits<T> for Inline {
@@ -166,7 +166,7 @@ impl<T: Section> Limits<T> for Inline {
     }
 }
 
-/// Values of one kind under keys of their own; the field's name is no key.
+/// Values of one kind under separate keys; the field's name is not a key.
 pub(crate) struct Each<L, const N: usize>(pub(crate) [&'static str; N], pub(crate) L);
 
 impl<T, L: Limits<T> + Clone, const N: usize> Limits<[T; N]> for Each<L, N> {
@@ -186,7 +186,7 @@ impl<T, L: Limits<T> + Clone, const N: usize> Limits<[T; N]> for MapOf<L, N> {
     }
 }
 
-/// Parts of the gripper's scene, which `schema` knows.
+/// Parts of the gripper's scene, which `schema` describes.
 macro_rules! sections_of_schema {
     ($($type:ty: $walk:ident),*) => { $(
         impl Section for $type {
@@ -215,7 +215,7 @@ mod tests {
             material: Material = Inline,
             /// A map.
             part: Part = Map,
-            /// Values under keys of their own.
+            /// Values under separate keys.
             ends: [Real; 2] = Each(["left", "right"], Quantity::any(&LENGTH)),
             /// Counted.
             counts: [u64; 2] = MapOf(["a", "b"], 1..=9),

@@ -27,7 +27,7 @@ pub(super) enum MeshError {
     UnknownFormat,
     /// Built without the feature that reads meshes.
     #[cfg(not(feature = "meshes"))]
-    #[error("needs a jamgrip that was built with feature `meshes`")]
+    #[error("needs a build with feature `meshes`")]
     NoFeature,
     /// The file is malformed.
     #[cfg(feature = "meshes")]

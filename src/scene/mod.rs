@@ -130,7 +130,7 @@ pub struct Membrane {
     pub bending_damping: Real,
     /// Fraction by which the rest lengths of the springs shrink after filling.
     pub rest_length_shrink: Real,
-    /// Radius at which the membrane is held while it is filled, relative to `radius`.
+    /// Ratio of the radius at which the membrane is held while it is filled to `radius`.
     pub fill_stretch: Real,
     /// Dissipation time A of the contacts (s).
     pub dissipation_time: Real,

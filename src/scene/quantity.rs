@@ -115,7 +115,7 @@ pub enum QuantityError {
     },
     /// The unit belongs to another dimension.
     #[error(
-        "`{value}` has the unit `{unit}`, which is no unit of {dimension}; use one of: {units}"
+        "`{value}` has the unit `{unit}`, which is not a unit of {dimension}; use one of: {units}"
     )]
     UnknownUnit {
         /// The value as written.
@@ -312,7 +312,7 @@ mod tests {
         assert_eq!(message("2"), "`2` has no unit; use one of: m, cm, mm, um");
         assert_eq!(
             message("2 kPa"),
-            "`2 kPa` has the unit `kPa`, which is no unit of length; use one of: m, cm, mm, um"
+            "`2 kPa` has the unit `kPa`, which is not a unit of length; use one of: m, cm, mm, um"
         );
         for not_a_number in ["mm", "", "inf m", "nan mm", "two mm", "1e999 m"] {
             assert!(

@@ -43,7 +43,7 @@ impl<'a> Reader<'a> {
         reader
     }
 
-    /// All errors, in the order of the text. To be called after all keys have been visited.
+    /// All errors, in the order of the text. Call this after all keys have been visited.
     pub(super) fn finish(mut self) -> Vec<Diagnostic> {
         while !self.open.is_empty() {
             self.close_section();

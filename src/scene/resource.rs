@@ -67,12 +67,12 @@ fn urdf(text: &str, folder: &Path) -> Result<Object, ResourceError> {
 
 #[cfg(not(feature = "meshes"))]
 fn urdf(_: &str, _: &Path) -> Result<Object, ResourceError> {
-    let why = "URDF needs a jamgrip that was built with feature `meshes`";
+    let why = "URDF needs a build with feature `meshes`";
     Err(ResourceError::Unsupported(why.to_owned()))
 }
 
 /// Loads a scene from a file, or from text if no file is named. With `ignores_assets`, an object whose
-/// mesh cannot be loaded is left out.
+/// mesh cannot be loaded is skipped.
 ///
 /// # Errors
 /// If there is no scene that can be simulated.

@@ -81,7 +81,7 @@ fn bag(walk: &mut impl Visitor, bag: &mut Bag) {
         OnError::Continue => "continue",
         OnError::Stop => "stop",
     };
-    walk.doc("When writing fails: go on without recording, or end the run.");
+    walk.doc("When writing fails: continue without recording, or end the run.");
     bag.on_error = match walk.choice("on_error", &["continue", "stop"], on_error) {
         "stop" => OnError::Stop,
         _ => OnError::Continue,

@@ -70,9 +70,9 @@ impl Session {
             return Err(ChangeError::Unusable(why));
         }
         let compiled = Compiled::new(scene, &self.pool)
-            .map_err(|fault| ChangeError::Unusable(fault.to_string()))?;
+            .map_err(|error| ChangeError::Unusable(error.to_string()))?;
         let mut next = Self::from_start_state(compiled, start)
-            .map_err(|fault| ChangeError::Unusable(fault.to_string()))?;
+            .map_err(|error| ChangeError::Unusable(error.to_string()))?;
         next.run_tick = self.run_tick;
         next.is_loaded = true;
         next.processor.count_on(self.processor.counts());

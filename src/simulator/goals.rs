@@ -185,7 +185,7 @@ impl Simulator {
     }
 
     /// Publishes the progress of a goal. The goal's ID comes first; it has 16 bytes, so the
-    /// feedback after it is aligned as if it stood alone.
+    /// feedback after it is aligned as in a separate message.
     pub(super) fn publish_feedback(&mut self, action: Action, goal: GoalId, feedback: &Cdr) {
         let bytes = [&goal[..], &feedback.bytes].concat();
         self.publish(action, 0, &Cdr { bytes, is_big_endian: false });

@@ -3,7 +3,7 @@
 //! A position is a fraction of the strongest vacuum: 0 is vented, 1 is the limit of the pump. An
 //! effort is a pressure below ambient (Pa); as a limit it bounds the vacuum. A goal is reached when
 //! the pressure is within 5 % of the requested one; it is `stalled` if the gripper then touches an
-//! object. A new goal aborts the one before. Canceling a goal keeps the present pressure.
+//! object. A new goal aborts the one before. Canceling a goal keeps the current pressure.
 
 use super::{Simulator, World, goals::GoalId, services::Action};
 use crate::{
@@ -141,7 +141,7 @@ impl Simulator {
         }
     }
 
-    /// Cancels the goal, and keeps the present pressure.
+    /// Cancels the goal, and keeps the current pressure.
     pub(super) fn cancel_grip(&mut self, goal: GoalId, snapshot: &Snapshot) {
         if self.grip.as_ref().is_some_and(|it| it.id == goal) {
             let progress = self.progress(snapshot);

@@ -1,4 +1,4 @@
-//! The simulator as ROS 2 users know it: the services and the action of `simulation_interfaces`,
+//! The simulator as seen from ROS 2: the services and the action of `simulation_interfaces`,
 //! and those of vacuum grippers.
 //!
 //! Requests are handled between two ticks, from the snapshot of the last tick. Changes go to the
@@ -153,7 +153,7 @@ impl Simulator {
         }
     }
 
-    /// The scene, with the present values of the parameters.
+    /// The scene, with the current values of the parameters.
     pub fn scene(&self) -> &Arc<Scene> {
         &self.scene
     }

@@ -234,7 +234,7 @@ impl Simulator {
         let parameters = &request.parameters;
         let checked: Result<Vec<Setting>, String> =
             parameters.iter().map(|it| self.check(it)).collect();
-        // After the check, setting can fail only if the world cannot be changed at all.
+        // After the check, setting can fail only if the world does not support changes.
         let set = checked.and_then(|all| {
             all.into_iter()
                 .zip(parameters)

@@ -68,7 +68,7 @@ pub(super) struct Stepping {
     requester: Requester,
 }
 
-/// Who requested steps.
+/// The client that requested steps.
 enum Requester {
     /// A client of the service.
     Client(RequestId),

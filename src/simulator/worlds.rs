@@ -1,7 +1,7 @@
 //! Worlds, which are scenes: listing, loading and unloading them.
 //!
 //! A requested scene is read at once and settled in the background, which takes a while; until
-//! then, no scene is loaded. If loading fails, the present scene stays as it was. A loaded scene
+//! then, no scene is loaded. If loading fails, the current scene stays loaded. A loaded scene
 //! replaces everything except what belongs to the run: outputs, the kind of controller, and the
 //! length of a tick.
 

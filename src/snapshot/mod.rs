@@ -112,7 +112,7 @@ pub struct JammingSnapshot {
     pub coordination_number: f64,
     /// Fraction of grains with at least four contacts, which can carry load.
     pub jammed_fraction: f64,
-    /// Volume of the grains over the enclosed volume (1).
+    /// Ratio of the volume of the grains to the enclosed volume.
     pub solid_fraction: f64,
     /// Fraction of the grain contacts that slide.
     pub sliding_fraction: f64,

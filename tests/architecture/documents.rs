@@ -1,10 +1,10 @@
-//! What the Markdown files and the comments say is there.
+//! Paths and links in Markdown files and comments exist.
 
 use std::path::{Path, PathBuf};
 
 use crate::{assert_none, files_in, read};
 
-/// Folders of the repository: a word in backticks that begins so is a path.
+/// Folders of the repository: a word in backticks that begins with one is a path.
 const FOLDERS: &[&str] = &[
     "src/",
     "tests/",
@@ -21,32 +21,32 @@ const FOLDERS: &[&str] = &[
 
 #[test]
 fn paths_in_documents_exist() {
-    let mut faults = Vec::new();
+    let mut violations = Vec::new();
     for file in documents() {
         let text = read(&file);
         let missing = paths(&text).into_iter().filter(|it| !Path::new(it).exists());
-        faults.extend(missing.map(|it| format!("{}: `{it}` does not exist", file.display())));
+        violations.extend(missing.map(|it| format!("{}: `{it}` does not exist", file.display())));
         let folder = file.parent().unwrap();
         let missing = links(&text).into_iter().filter(|it| !folder.join(it).exists());
-        faults.extend(missing.map(|it| format!("{}: link to {it} is broken", file.display())));
+        violations.extend(missing.map(|it| format!("{}: link to {it} is broken", file.display())));
     }
-    assert_none(&faults);
+    assert_none(&violations);
 }
 
 #[test]
 fn paths_in_comments_exist() {
-    let mut faults = Vec::new();
+    let mut violations = Vec::new();
     for file in ["src", "tests", "benches", "examples"].iter().flat_map(|it| files_in(it, &["rs"]))
     {
         for (number, line) in read(&file).lines().enumerate() {
             let Some((_, comment)) = line.split_once("//") else { continue };
             for path in paths(comment).iter().filter(|it| !Path::new(it).exists()) {
                 let place = file.display();
-                faults.push(format!("{place}:{}: `{path}` does not exist", number + 1));
+                violations.push(format!("{place}:{}: `{path}` does not exist", number + 1));
             }
         }
     }
-    assert_none(&faults);
+    assert_none(&violations);
 }
 
 #[test]
@@ -58,7 +58,7 @@ fn paths_and_links_are_found() {
     assert_eq!(links(text), ["docs/a.md", "b.svg"]);
 }
 
-/// Every Markdown file for people, but the changelog, which names files of older versions too.
+/// Every Markdown file except the changelog, which also names files of older versions.
 fn documents() -> Vec<PathBuf> {
     let in_root =
         |it: &PathBuf| it.extension().is_some_and(|it| it == "md") && !it.ends_with("CHANGELOG.md");
@@ -78,12 +78,12 @@ fn paths(text: &str) -> Vec<&str> {
         .collect()
 }
 
-/// True for a part of a path that stands for many, such as `NAME`.
+/// True for a placeholder in a path, such as `NAME`.
 fn is_placeholder(part: &str) -> bool {
     !part.is_empty() && part.chars().all(|it| it.is_ascii_uppercase() || it == '_')
 }
 
-/// Targets of links that are files, without the place inside.
+/// Targets of links that are files, without the fragment.
 fn links(text: &str) -> Vec<&str> {
     let targets = text.split("](").skip(1).filter_map(|it| it.split([')', ' ']).next());
     targets

@@ -1,4 +1,4 @@
-//! How source files look: a doc line first, short, a unit with every number, a reason for every crate.
+//! Format of source files: a doc line first, at most 500 lines, units of numbers, a reason for every crate.
 
 use std::path::Path;
 
@@ -10,9 +10,9 @@ use crate::{
 };
 
 const LINES_MAX: usize = 500;
-/// Names of files that say nothing about what is inside.
+/// File names that do not describe the contents.
 const EMPTY_NAMES: &[&str] = &["utils", "util", "helpers", "common", "misc", "manager", "types"];
-/// Numbers without a dimension say so by one of these words.
+/// One of these words marks a number without a dimension.
 const DIMENSIONLESS: &[&str] = &[
     "number",
     "fraction",
@@ -38,30 +38,30 @@ const UNIT: &str =
 
 #[test]
 fn every_file_opens_with_a_doc_line_and_stays_short() {
-    let mut faults = Vec::new();
+    let mut violations = Vec::new();
     let folders = ["src", "tests", "benches", "examples"];
     for file in folders.into_iter().flat_map(|it| files_in(it, &["rs"])) {
         let (text, place) = (read(&file), file.display());
         if !text.starts_with("//!") {
-            faults.push(format!("{place}: first line must be `//! one idea`"));
+            violations.push(format!("{place}: the first line must be a `//!` comment"));
         }
         let n_lines = text.lines().count();
         let is_generated = GENERATED.iter().any(|it| file == Path::new(it));
         if LINES_MAX < n_lines && !is_generated {
-            faults.push(format!("{place}: {n_lines} lines, at most {LINES_MAX}"));
+            violations.push(format!("{place}: {n_lines} lines, at most {LINES_MAX}"));
         }
         let stem = file.file_stem().unwrap().to_str().unwrap();
         if EMPTY_NAMES.contains(&stem) {
-            faults.push(format!("{place}: name the idea, not `{stem}`"));
+            violations.push(format!("{place}: `{stem}` does not describe the contents"));
         }
     }
-    assert_none(&faults);
+    assert_none(&violations);
 }
 
 #[test]
 fn every_number_that_others_read_has_a_unit() {
-    let faults = DATA_FILES.iter().flat_map(|file| without_unit(file, &read(Path::new(file))));
-    assert_none(&faults.collect::<Vec<_>>());
+    let violations = DATA_FILES.iter().flat_map(|file| without_unit(file, &read(Path::new(file))));
+    assert_none(&violations.collect::<Vec<_>>());
 }
 
 #[test]
@@ -95,7 +95,7 @@ fn numbers_without_a_unit_are_found() {
 
 fn without_unit(file: &str, text: &str) -> Vec<String> {
     let unit = Regex::new(UNIT).unwrap();
-    let (mut doc, mut faults) = (String::new(), Vec::new());
+    let (mut doc, mut violations) = (String::new(), Vec::new());
     for (number, line) in text.lines().map(str::trim).enumerate() {
         if let Some(rest) = line.strip_prefix("///") {
             doc.push_str(rest);
@@ -107,25 +107,25 @@ fn without_unit(file: &str, text: &str) -> Vec<String> {
         let lower = doc.to_lowercase();
         let has_unit = unit.is_match(&doc) || DIMENSIONLESS.iter().any(|it| lower.contains(it));
         if is_number && !has_unit {
-            faults.push(format!("{file}:{}: unit missing, such as (m): {line}", number + 1));
+            violations.push(format!("{file}:{}: unit missing, such as (m): {line}", number + 1));
         }
         doc.clear();
     }
-    faults
+    violations
 }
 
 #[test]
 fn every_dependency_says_what_it_is_for() {
     let manifest = read(Path::new("Cargo.toml"));
-    let (mut section, mut faults) = (String::new(), Vec::new());
+    let (mut section, mut violations) = (String::new(), Vec::new());
     for (number, line) in manifest.lines().enumerate() {
         if line.starts_with('[') {
             section = line.to_owned();
         }
         let is_dependency = section.ends_with("dependencies]") && line.contains(" = ");
         if is_dependency && !line.contains(" # ") {
-            faults.push(format!("Cargo.toml:{}: say what for: {line}", number + 1));
+            violations.push(format!("Cargo.toml:{}: the purpose is missing: {line}", number + 1));
         }
     }
-    assert_none(&faults);
+    assert_none(&violations);
 }

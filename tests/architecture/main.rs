@@ -1,15 +1,15 @@
-//! The rules of the house that no compiler checks.
+//! Rules of this project that the compiler does not check.
 //!
-//! `rules.rs` holds the tables, `planted.rs` proves that the rules find what breaks them.
+//! `rules.rs` contains the tables; `planted.rs` tests that violations are found.
 #![expect(clippy::unwrap_used, reason = "a failing unwrap is a failing test")]
 
-mod documents; // what the Markdown files say is there
-mod files; // how source files look
+mod documents; // paths and links in Markdown files and comments
+mod files; // format of source files
 mod paths; // which paths a source file names
-mod planted; // texts that break the rules
-mod rules; // who may use what
-mod violations; // what a source file names although it may not
-mod words; // words that do not come back
+mod planted; // planted violations
+mod rules; // what each module may use
+mod violations; // forbidden names in a source file
+mod words; // words that must not come back
 
 use std::{
     fs,
@@ -37,7 +37,7 @@ fn the_tables_are_up_to_date() {
         (file.clone(), paths::read(&module(file), text).unwrap_or_default())
     };
     let read: Vec<_> = sources.iter().map(read).collect();
-    let mut faults = Vec::new();
+    let mut outdated = Vec::new();
     for (path, places) in FOREIGN {
         for place in *places {
             let is_used = read.iter().any(|(file, paths)| {
@@ -45,19 +45,22 @@ fn the_tables_are_up_to_date() {
                     && paths.mentions.iter().any(|it| foreign(it).is_some_and(|it| it.0 == *path))
             });
             if !is_used {
-                faults.push(format!("FOREIGN: nothing in `{place}` names `{path}`"));
+                outdated.push(format!("FOREIGN: nothing in `{place}` uses `{path}`"));
             }
         }
     }
     for ban in BANS {
-        let rooms = ban.rooms.iter().filter(|it| !order.iter().any(|room| room == *it));
-        faults.extend(rooms.map(|it| format!("BANS: no module `{it}` in src/lib.rs")));
+        let unknown = ban.modules.iter().filter(|it| !order.iter().any(|name| name == *it));
+        outdated.extend(unknown.map(|it| format!("BANS: no module `{it}` in src/lib.rs")));
         for place in ban.except {
             let is_needed = read.iter().any(|(file, paths)| {
                 is_in(file, &[place]) && paths.mentions.iter().any(|it| is_banned(file, it, ban))
             });
             if !is_needed {
-                faults.push(format!("BANS: `{place}` is no exception from \"{}\"", ban.why));
+                outdated.push(format!(
+                    "BANS: `{place}` is not needed as an exception from \"{}\"",
+                    ban.why
+                ));
             }
         }
     }
@@ -65,23 +68,23 @@ fn the_tables_are_up_to_date() {
         let is_needed =
             read.iter().any(|(file, it)| is_in(file, &[place]) && !it.unsafe_lines.is_empty());
         if !is_needed {
-            faults.push(format!("UNSAFE: no unsafe code in `{place}`"));
+            outdated.push(format!("UNSAFE: no unsafe code in `{place}`"));
         }
     }
     let gone = GENERATED.iter().filter(|it| !Path::new(it).exists());
-    faults.extend(gone.map(|it| format!("GENERATED: `{it}` does not exist")));
+    outdated.extend(gone.map(|it| format!("GENERATED: `{it}` does not exist")));
 
     let dependencies = dependencies();
     let crates = FOREIGN.iter().map(|it| it.0.split("::").next().unwrap());
     let listed: Vec<&str> = crates.chain(FREE.iter().copied()).collect();
     let missing = dependencies.iter().filter(|it| !listed.contains(&it.as_str()));
-    faults.extend(missing.map(|it| format!("FOREIGN or FREE must say where `{it}` is used")));
+    outdated.extend(missing.map(|it| format!("FOREIGN or FREE must say where `{it}` is used")));
     let gone = listed.iter().filter(|it| !dependencies.iter().any(|name| name == *it));
-    faults.extend(gone.map(|it| format!("`{it}` is no dependency in Cargo.toml")));
-    assert_none(&faults);
+    outdated.extend(gone.map(|it| format!("`{it}` is not a dependency in Cargo.toml")));
+    assert_none(&outdated);
 }
 
-/// A table of the architecture that leaves a module out misleads whoever reads it.
+/// A table of the architecture that omits a module misleads the reader.
 #[test]
 fn architecture_names_every_module() {
     let text = read(Path::new("ARCHITECTURE.md"));
@@ -92,8 +95,8 @@ fn architecture_names_every_module() {
     assert_none(&missing.map(|it| format!("ARCHITECTURE.md: no `src/{it}`")).collect::<Vec<_>>());
 }
 
-pub(crate) fn assert_none(faults: &[String]) {
-    assert!(faults.is_empty(), "\n{}", faults.join("\n"));
+pub(crate) fn assert_none(violations: &[String]) {
+    assert!(violations.is_empty(), "\n{}", violations.join("\n"));
 }
 
 /// The `pub mod` lines of `src/lib.rs`, top to bottom.

@@ -26,14 +26,14 @@ impl Mention {
     }
 }
 
-/// All that the rules ask about a file.
+/// Everything that the rules check in a file.
 #[derive(Debug, Default)]
 pub(crate) struct Paths {
     /// The paths, in the order of the text.
     pub(crate) mentions: Vec<Mention>,
     /// Lines with the keyword `unsafe`.
     pub(crate) unsafe_lines: Vec<usize>,
-    /// Lines with `include!` or `#[path]`, which bring in code that is not where it seems to be.
+    /// Lines with `include!` or `#[path]`, which include code from other files.
     pub(crate) hidden_lines: Vec<usize>,
 }
 
@@ -43,7 +43,7 @@ pub(crate) fn read(module: &[String], text: &str) -> Result<Paths, String> {
     let mut reader = Reader::default();
     let mut here = vec!["crate".to_owned()];
     here.extend_from_slice(module);
-    // First the names that imports give to things, then what is made of them.
+    // First the names that imports introduce, then the paths that use them.
     reader.read(&here, tokens.clone());
     reader.paths = Paths::default();
     reader.read(&here, tokens);
@@ -77,7 +77,7 @@ impl Reader {
         }
     }
 
-    /// Reads what begins with the word at `i`; how many tokens it has.
+    /// Reads the item that begins with the word at `i`. Returns its number of tokens.
     fn read_word(&mut self, here: &[String], tokens: &[TokenTree], i: usize) -> usize {
         let next = tokens.get(i + 1);
         match word(&tokens[i]).as_str() {
@@ -116,7 +116,7 @@ impl Reader {
         1
     }
 
-    /// Reads a path in code, `a::b::c`, from its first name at `i`; how many tokens it has.
+    /// Reads a path in code, `a::b::c`, from its first name at `i`. Returns its number of tokens.
     fn read_path(&mut self, here: &[String], tokens: &[TokenTree], i: usize) -> usize {
         let is_global = 2 <= i && is_double_colon(tokens, i - 2);
         let mut path = vec![word(&tokens[i])];
@@ -186,7 +186,7 @@ impl Reader {
         self.paths.mentions.push(Mention { line, path });
     }
 
-    /// The absolute path of one that is named in the module `here`.
+    /// The absolute path of a path used in the module `here`.
     fn resolved(&self, here: &[String], path: &[String]) -> Vec<String> {
         let Some((first, rest)) = path.split_first() else { return Vec::new() };
         match first.as_str() {
@@ -202,7 +202,7 @@ impl Reader {
             // The same items under other names.
             "core" | "alloc" => joined(&["std".to_owned()], rest),
             name => match self.names.get(name) {
-                // A crate imported under its own name leads to itself.
+                // A crate imported under its own name resolves to itself.
                 Some(known) if known.first() != Some(first) => joined(known, rest),
                 _ => path.to_vec(),
             },
@@ -234,7 +234,7 @@ fn is_punct(token: &TokenTree, sign: char) -> bool {
     matches!(token, TokenTree::Punct(it) if it.as_char() == sign)
 }
 
-/// True if `::` stands at `i`.
+/// True if `::` is at `i`.
 fn is_double_colon(tokens: &[TokenTree], i: usize) -> bool {
     let first = matches!(tokens.get(i), Some(TokenTree::Punct(it))
         if it.as_char() == ':' && it.spacing() == Spacing::Joint);

@@ -1,4 +1,4 @@
-//! The rules against texts that break them and texts that do not.
+//! Tests the rules with texts that violate them and texts that do not.
 
 use crate::violations::violations;
 
@@ -6,7 +6,7 @@ fn order() -> Vec<String> {
     ["base", "scene", "physics", "cosim", "command", "node"].map(str::to_owned).to_vec()
 }
 
-/// That something is found in the text, and that what is found is `expected`.
+/// Checks that a violation is found in the text, and that its description contains `expected`.
 fn is_found(file: &str, text: &str, expected: &str) {
     let found = violations(file, text, &order());
     assert!(!found.is_empty(), "nothing found in {file}:\n{text}");
@@ -66,7 +66,7 @@ fn imports_from_above_are_clean() {
         is_clean("src/physics/health.rs", text);
     }
     is_clean("src/node/mod.rs", "use crate::{command, cosim, physics};");
-    // The program stands outside the order.
+    // The program is not part of the order.
     is_clean("src/bin/jamgrip/bag.rs", "use jamgrip::node;\nuse crate::args;");
 }
 
@@ -88,7 +88,7 @@ fn a_core_that_touches_the_outside_is_found() {
         ("use std::thread::sleep as wait;", "`std::thread::sleep`"),
         ("use std::thread as t;", "`std::thread`"),
         ("fn f() { log::warn!(\"x\"); }", "`log::warn`"),
-        ("use log::warn as tell;", "`log::warn`"),
+        ("use log::warn as other;", "`log::warn`"),
         ("use log as l;\nfn f() { l::warn!(\"x\"); }", "`log"),
         ("fn f() { println!(\"{:?}\", std::env::args()); }", "`std::env::args`"),
     ] {

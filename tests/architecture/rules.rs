@@ -1,7 +1,7 @@
-//! Who may use what: the tables. Paths are those of files and folders from the repository's root, so
+//! What each module may use: the tables. Paths are those of files and folders from the repository's root, so
 //! that moving a file means replacing its path here; an entry that applies to nothing is a failure.
 
-/// Other people's crates, and the files or folders that may name them. The longest path decides.
+/// Third-party crates, and the files or folders that may use them. The longest path decides.
 pub(crate) const FOREIGN: &[(&str, &[&str])] = &[
     ("rapier3d_f64", &["src/cosim/rapier_world.rs", "src/cosim/volume.rs"]),
     (
@@ -54,15 +54,15 @@ pub(crate) const FOREIGN: &[(&str, &[&str])] = &[
 pub(crate) const FREE: &[&str] =
     &["nalgebra", "serde", "serde_bytes", "serde_json", "postcard", "thiserror", "bytemuck", "log"];
 
-/// What the modules of `rooms` may not name, apart from the files `except`.
+/// Paths that `modules` must not use, except in the files `except`.
 pub(crate) struct Ban {
-    pub(crate) rooms: &'static [&'static str],
+    pub(crate) modules: &'static [&'static str],
     pub(crate) paths: &'static [&'static str],
     pub(crate) except: &'static [&'static str],
     pub(crate) why: &'static str,
 }
 
-/// Rooms whose results depend on nothing but their arguments.
+/// Modules whose results depend on nothing but their arguments.
 const PURE: &[&str] = &[
     "base",
     "physics",
@@ -79,52 +79,52 @@ const SOCKETS: &[&str] = &["std::net", "std::os", "rustdds", "ros2_client", "ice
 
 pub(crate) const BANS: &[Ban] = &[
     Ban {
-        rooms: PURE,
+        modules: PURE,
         paths: &["std::fs", "std::env", "std::process", "std::io", "log", "env_logger"],
         except: &[],
         why: "the core has no files, environment or logs",
     },
-    Ban { rooms: PURE, paths: SOCKETS, except: &[], why: "the core has no sockets" },
-    Ban { rooms: PURE, paths: CLOCKS, except: &[], why: "the core reads no clock" },
+    Ban { modules: PURE, paths: SOCKETS, except: &[], why: "the core has no sockets" },
+    Ban { modules: PURE, paths: CLOCKS, except: &[], why: "the core reads no clock" },
     Ban {
-        rooms: PURE,
+        modules: PURE,
         paths: &["std::thread"],
         except: &["src/base/parallel.rs"],
         why: "threads of the core are in one file",
     },
     Ban {
-        rooms: &["scene"],
+        modules: &["scene"],
         paths: &["std::thread", "std::process", "log", CLOCKS[0]],
         except: &[],
         why: "a scene depends on its files alone",
     },
     Ban {
-        rooms: &["scene", "wire", "simulator"],
+        modules: &["scene", "wire", "simulator"],
         paths: SOCKETS,
         except: &[],
         why: "sockets belong to the transports",
     },
     Ban {
-        rooms: &["wire", "simulator"],
+        modules: &["wire", "simulator"],
         paths: &["std::thread", CLOCKS[0], CLOCKS[1]],
         except: &[],
         why: "no clock and no thread",
     },
     Ban {
-        rooms: &["controller"],
+        modules: &["controller"],
         paths: &["crate::physics", "crate::cosim", "crate::session"],
         except: &[],
-        why: "a controller knows what one in another process would know",
+        why: "the built-in controller uses only what an external one can know",
     },
 ];
 
 /// Files and folders with unsafe code.
 pub(crate) const UNSAFE: &[&str] = &["src/base/parallel.rs", "src/base/lanes/"];
 
-/// Written by a program, not by people.
+/// Generated files.
 pub(crate) const GENERATED: &[&str] = &["src/wire/messages/generated.rs"];
 
-/// Files whose numbers are read by everyone: each says its unit.
+/// Files whose numbers must have units.
 pub(crate) const DATA_FILES: &[&str] = &[
     "src/scene/mod.rs",
     "src/snapshot/mod.rs",

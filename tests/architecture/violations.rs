@@ -1,4 +1,4 @@
-//! What a source file names although it may not.
+//! Forbidden names in a source file.
 
 use std::collections::BTreeSet;
 
@@ -12,7 +12,7 @@ use crate::{
 pub(crate) fn violations(file: &str, text: &str, order: &[String]) -> Vec<String> {
     let read = match paths::read(&module(file), text) {
         Ok(read) => read,
-        Err(fault) => return vec![format!("{file}: {fault}")],
+        Err(error) => return vec![format!("{file}: {error}")],
     };
     let mut found = Vec::new();
     // Once in each file is enough.
@@ -49,13 +49,13 @@ pub(crate) fn module(file: &str) -> Vec<String> {
 
 /// True if a file of the ban's modules names one of its paths.
 pub(crate) fn is_banned(file: &str, mention: &Mention, ban: &Ban) -> bool {
-    let room = module(file).into_iter().next().unwrap_or_default();
-    ban.rooms.contains(&room.as_str()) && ban.paths.iter().any(|path| mention.reaches(path))
+    let top = module(file).into_iter().next().unwrap_or_default();
+    ban.modules.contains(&top.as_str()) && ban.paths.iter().any(|path| mention.reaches(path))
 }
 
 fn against_order(file: &str, mention: &Mention, order: &[String]) -> Option<String> {
-    let room = module(file).into_iter().next()?;
-    let here = order.iter().position(|it| *it == room)?;
+    let top = module(file).into_iter().next()?;
+    let here = order.iter().position(|it| *it == top)?;
     let [first, other, ..] = mention.path.as_slice() else { return None };
     if first != "crate" {
         return None;
@@ -64,7 +64,7 @@ fn against_order(file: &str, mention: &Mention, order: &[String]) -> Option<Stri
         return Some("a glob of the whole crate hides what is used".to_owned());
     }
     let is_below = order.iter().skip(here + 1).any(|it| it == other);
-    is_below.then(|| format!("`{room}` may not use `{other}`, which is below it in src/lib.rs"))
+    is_below.then(|| format!("`{top}` may not use `{other}`, which is below it in src/lib.rs"))
 }
 
 fn against_foreign(file: &str, mention: &Mention) -> Option<(&'static str, String)> {

@@ -274,10 +274,10 @@ fn fill(disk: &Path) {
     fs::remove_file(disk.join("other")).unwrap();
     let mut bag = create(&folder).unwrap();
     let reporter = bag.reporter();
-    let fault = (1..100_000)
+    let error = (1..100_000)
         .find_map(|tick| bag.write(&synthetic::incompressible_packet(tick)).err())
         .unwrap();
-    let text = fault.to_string();
+    let text = error.to_string();
     assert!(text.contains("the disk is full after") && text.contains("free some space"), "{text}");
     // The same error for every packet from now on; closing has nothing left to do.
     assert_eq!(bag.write(&synthetic::packet(100_000)).unwrap_err().to_string(), text);

@@ -315,7 +315,7 @@ fn read_flushed(output: &mut impl BufRead) -> u64 {
             return tick.trim().parse().unwrap();
         }
     }
-    panic!("the recording ended by itself");
+    panic!("the recording ended early");
 }
 
 /// Oracle: `write_variants.py`, which uses the library of the format's authors.

@@ -1,4 +1,4 @@
-//! Playing a recording: times, order, and what is left out.
+//! Playing a recording: times, order, and skipped topics.
 
 use std::{
     path::{Path, PathBuf},
@@ -214,7 +214,7 @@ fn replies_are_sent_when_commands_are_done() {
     };
     let (status, five) = (send(PlayerCommand::Status), send(PlayerCommand::Burst(5)));
     let nowhere = send(PlayerCommand::SeekTo(401_000_000));
-    let (rate, sought) = (send(PlayerCommand::Rate(3.0)), send(PlayerCommand::SeekTo(399_000_000)));
+    let (rate, seek) = (send(PlayerCommand::Rate(3.0)), send(PlayerCommand::SeekTo(399_000_000)));
     let (rest, end) = (send(PlayerCommand::Burst(0)), send(PlayerCommand::Resume));
     let mut output = Memory::default();
     play(&files, &only_clock, &mut output, &listener, &Shutdown::default()).unwrap();
@@ -224,7 +224,7 @@ fn replies_are_sent_when_commands_are_done() {
     let five = five.recv().unwrap();
     assert_eq!((five.is_done, five.n_played), (false, 0));
     assert!(!nowhere.recv().unwrap().is_done, "the recording ends at 400 ms");
-    assert!(sought.recv().unwrap().is_done && rate.recv().unwrap().is_done);
+    assert!(seek.recv().unwrap().is_done && rate.recv().unwrap().is_done);
     let rest = rest.recv().unwrap();
     assert_eq!((rest.is_done, rest.n_played), (true, 2), "399 ms and 400 ms");
     assert!(end.recv().unwrap().is_done);
@@ -262,9 +262,9 @@ fn a_played_recording_reaches_a_subscriber() {
         let topic = |name: &str| -> Topic {
             topics(&synthetic::scene()).into_iter().find(|it| it.name == name).unwrap()
         };
-        let sought = RosNode::join_as("listener", &discovery_range()).unwrap();
-        let wrench = sought.subscription::<WrenchStamped>(&topic("/jamgrip/wrench")).unwrap();
-        let clock = sought.subscription::<Clock>(&topic("/clock")).unwrap();
+        let node = RosNode::join_as("listener", &discovery_range()).unwrap();
+        let wrench = node.subscription::<WrenchStamped>(&topic("/jamgrip/wrench")).unwrap();
+        let clock = node.subscription::<Clock>(&topic("/clock")).unwrap();
         let mut output = RosPlayerNode::join(&discovery_range(), true).unwrap();
         let options = Options {
             rate: 1.0,
@@ -277,7 +277,7 @@ fn a_played_recording_reaches_a_subscriber() {
         let played = play(&files, &options, &mut output, &listener, &Shutdown::default()).unwrap();
         assert!(played.unplayable.is_empty() && output.errors.0 == 0, "{:?}", output.errors);
         let (mut forces, mut times, mut late) = (Vec::new(), Vec::new(), None);
-        let frames = sought.subscription::<TFMessage>(&topic("/tf_static")).unwrap();
+        let frames = node.subscription::<TFMessage>(&topic("/tf_static")).unwrap();
         let begin = now();
         while now() - begin < Duration::from_secs(60) && (forces.len() < 40 || late.is_none()) {
             while let Some((message, _)) = wrench.take().unwrap() {
@@ -406,8 +406,8 @@ fn services_pause_seek_and_step() {
         assert_eq!(burst.actually_burst, 9);
         for (sec, ms, expected) in [(9, 0, false), (0, 300, true)] {
             let time = Time { sec, nanosec: ms * 1_000_000 };
-            let sought: SeekResponse = client.call("seek", &SeekRequest { time });
-            assert_eq!(sought.success, expected);
+            let seek: SeekResponse = client.call("seek", &SeekRequest { time });
+            assert_eq!(seek.success, expected);
         }
         for (rate, expected) in [(-1.0, false), (1e-3, true)] {
             let set: SetRateResponse = client.call("set_rate", &SetRateRequest { rate });

@@ -1,4 +1,4 @@
-//! Commands from ROS 2 messages: every value survives, and no bytes can do harm.
+//! Commands from ROS 2 messages: values are preserved, and arbitrary bytes are handled safely.
 
 use jamgrip::{
     command::{Command, PoseCommand},
@@ -16,12 +16,12 @@ fn codec() -> CommandCodec {
     synthetic::encoder().commands().clone()
 }
 
-/// Stamps as ROS can say them [ns].
+/// Stamps that ROS can represent (ns).
 fn stamps() -> impl Strategy<Value = i64> + Clone {
     i64::from(i32::MIN) * 1_000_000_000..=i64::from(i32::MAX) * 1_000_000_000
 }
 
-/// Commands with any numbers at all, also NaN and infinities; stamps as ROS can say them.
+/// Commands with arbitrary numbers, including NaN and infinities, and stamps that ROS can represent.
 fn any_command() -> impl Strategy<Value = Command> {
     let pose = ("[a-z/_]{0,20}", stamps(), any::<[u64; 3]>(), any::<[u64; 4]>());
     let pose = pose.prop_map(|(frame_id, stamp_ns, position, orientation)| PoseCommand {
@@ -51,25 +51,25 @@ fn any_command() -> impl Strategy<Value = Command> {
 
 proptest! {
     #[test]
-    fn commands_survive_the_way_out_and_back(command in any_command()) {
+    fn commands_are_preserved_by_encoding_and_decoding(command in any_command()) {
         let codec = codec();
         let message = codec.encode(&command, 0);
         prop_assert!(synthetic::encoder().topics()[message.topic].is_input);
         let back = codec.decode(message.topic, &message.cdr).unwrap();
-        // Oracle: the command itself. Debug text is equal for NaN too, and tells -0 from 0.
+        // Oracle: the command itself. Debug text is equal for NaN too, and distinguishes -0 from 0.
         prop_assert_eq!(format!("{back:?}"), format!("{command:?}"));
     }
 
     #[test]
-    fn no_bytes_do_harm(topic in 0_usize..28, bytes in prop::collection::vec(any::<u8>(), 0..200)) {
-        // Oracle: no panic, no endless memory; a message or a reason.
+    fn arbitrary_bytes_do_not_panic(topic in 0_usize..28, bytes in prop::collection::vec(any::<u8>(), 0..200)) {
+        // Oracle: no panic and no unbounded memory: a command or an error.
         if let Err(reason) = codec().decode(topic, &bytes) {
             prop_assert!(reason.to_string().contains('/'), "names the topic: {}", reason);
         }
     }
 
     #[test]
-    fn cut_messages_are_refused(command in any_command(), share in 0.0..1.0_f64) {
+    fn truncated_messages_are_rejected(command in any_command(), share in 0.0..1.0_f64) {
         let codec = codec();
         let message = codec.encode(&command, 0);
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a length")]
@@ -81,7 +81,7 @@ proptest! {
 }
 
 #[test]
-fn refusals_say_what_to_do() {
+fn errors_name_a_remedy() {
     let codec = codec();
     let vacuum = common(CommonTopic::VacuumCommand);
     let text = codec.decode(vacuum, &[1, 2, 3]).unwrap_err().to_string();

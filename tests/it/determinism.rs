@@ -1,5 +1,5 @@
-//! The same bits every time: whatever the number of threads, wherever a run is taken up, whenever
-//! the neighbour lists are built.
+//! The same bits every time: for any number of threads, for a run resumed at any tick, and whenever
+//! the neighbor lists are built.
 
 use std::{io::Write, process::Command as Process};
 
@@ -63,13 +63,13 @@ fn lanes_used() -> usize {
     n
 }
 
-/// Set in the process that runs the script of the next test with at most so many lanes.
+/// Set in the process that runs the script of the next test with at most this many lanes.
 const LANES: &str = "JAMGRIP_TEST_LANES";
 /// The settled start state, for that process.
 const START: &str = "JAMGRIP_TEST_START";
 
 /// Oracle: plain numbers, one at a time, to the last bit. The limit on the width holds for a whole
-/// process, so each width has a process of its own and no other test meets it.
+/// process, so each width runs in a separate process and does not affect other tests.
 #[test]
 #[cfg(target_arch = "x86_64")]
 fn registers_of_any_width_give_the_same_bits() {
@@ -113,7 +113,7 @@ fn registers_of_any_width_give_the_same_bits() {
         .collect();
     let widths: Vec<usize> = runs.iter().map(|it| it.0).collect();
     let expected: Vec<usize> = there.iter().map(|it| it.0).collect();
-    assert_eq!(widths, expected, "each run used the width that it was to use; {has}");
+    assert_eq!(widths, expected, "each run used the requested width; {has}");
     for (width, digests) in &runs {
         assert_eq!(digests.split(' ').count(), N_TICKS + 1);
         assert_eq!(*digests, runs[0].1, "{width} lanes against one");
@@ -136,7 +136,7 @@ fn print_script_with_lanes(limit: &str) {
 }
 
 #[test]
-fn a_run_goes_on_from_its_start_state_as_if_it_had_just_settled() {
+fn a_run_continues_from_a_saved_start_state_with_the_same_bits() {
     let mut settled = Session::settle(coarse::compiled(1, &[]), &mut |_| {}).unwrap();
     let bytes = settled.start_state();
     // Oracle: settling on two threads gave the same bytes.
@@ -177,7 +177,7 @@ fn coupled_script(mut coupled: Coupled) -> (Vec<u64>, u64) {
 }
 
 #[test]
-fn it_does_not_matter_when_the_neighbour_lists_are_built() {
+fn results_do_not_depend_on_when_the_neighbor_lists_are_built() {
     let (expected, n_builds) = coupled_script(coarse::coupled(|_| {}));
     for share in [0.2, 3.0] {
         let other = coarse::coupled(|model| model.skin *= share);
@@ -189,7 +189,7 @@ fn it_does_not_matter_when_the_neighbour_lists_are_built() {
 }
 
 #[test]
-fn it_does_not_matter_for_the_filling_either() {
+fn the_filling_does_not_depend_on_it_either() {
     let fill = |share: f64| {
         let mut compiled = coarse::compiled(2, &[]);
         compiled.model.skin *= share;
@@ -199,7 +199,7 @@ fn it_does_not_matter_for_the_filling_either() {
     assert_eq!(fill(1.0), fill(3.0), "contacts were missed between two builds");
 }
 
-/// Pushes, evacuates, lifts, and drives the object by hand for a while: all that is to be saved.
+/// Pushes, evacuates, lifts, and drives the object for a while, so that all saved quantities change.
 fn eventful(tick: usize) -> Vec<Command> {
     let object = || "cylinder".to_owned();
     match tick {
@@ -216,7 +216,7 @@ fn eventful(tick: usize) -> Vec<Command> {
 }
 
 #[test]
-fn a_run_taken_up_anywhere_goes_on_with_the_same_bits() {
+fn a_run_resumed_at_any_tick_continues_with_the_same_bits() {
     const N_TICKS: usize = 170;
     let mut session = coarse::session(1, &[]);
     let (mut digests, mut saved) = (vec![session.digest()], Vec::new());
@@ -233,8 +233,11 @@ fn a_run_taken_up_anywhere_goes_on_with_the_same_bits() {
     for (start, bytes) in saved {
         let mut resumed = Session::resume(coarse::compiled(2, &[]), &bytes).unwrap();
         // Oracle: the run that never stopped, to the last bit.
-        assert_eq!(resumed.digest(), digests[start], "taken up at tick {start}");
-        assert!(resumed.save().unwrap() == bytes, "tick {start}: what is read is what was written");
+        assert_eq!(resumed.digest(), digests[start], "resumed at tick {start}");
+        assert!(
+            resumed.save().unwrap() == bytes,
+            "tick {start}: saved again, the bytes are the same"
+        );
         for tick in start..N_TICKS {
             resumed.tick(&eventful(tick)).unwrap();
             let expected = digests[tick + 1];
@@ -245,7 +248,7 @@ fn a_run_taken_up_anywhere_goes_on_with_the_same_bits() {
 }
 
 #[test]
-fn bytes_of_another_scene_or_cut_off_are_refused() {
+fn bytes_of_another_scene_and_truncated_bytes_are_rejected() {
     let bytes = coarse::session(1, &[]).save().unwrap();
     for n in [0, 7, bytes.len() / 2, bytes.len() - 1] {
         assert!(Session::resume(coarse::compiled(1, &[]), &bytes[..n]).is_err(), "{n} bytes");

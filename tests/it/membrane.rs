@@ -156,9 +156,9 @@ fn friction_does_not_depend_on_edges() {
         }
         assert!(n > n_steps / 2, "the stick phase ends after {stick} m");
         let mean = sum / Real::from(n);
-        let travelled = rig.state.grains.positions[0].x / edge + 6.1;
+        let traveled = rig.state.grains.positions[0].x / edge + 6.1;
         eprintln!(
-            "slide over {travelled:.1} edges: F/(mu N) {}, ripple {:e}",
+            "slide over {traveled:.1} edges: F/(mu N) {}, ripple {:e}",
             mean / (1.2 * load),
             (highest - lowest) / mean
         );

@@ -156,7 +156,7 @@ struct Swing {
 
 impl Run for Swing {
     fn advance(&mut self) -> Result<Progress, Diverged> {
-        assert!(self.case != "panicking", "on purpose");
+        assert!(self.case != "panicking", "expected panic");
         let state = &mut self.state;
         for _ in 0..PER_SLICE {
             state.v += DT * (-2.0 * self.zeta * OMEGA * state.v - OMEGA * OMEGA * state.x);

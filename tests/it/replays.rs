@@ -476,7 +476,7 @@ fn a_branch_names_the_changes_that_it_cannot_repeat() {
     }
 }
 
-/// Oracle: the recording: made by 0.1.0, since which results have changed, as the changelog says.
+/// Oracle: the recording: made by 0.1.0, an older version; the changelog lists the changes of results since then.
 #[test]
 fn verifying_a_recording_of_the_first_release_names_the_causes() {
     let (report, code) =
@@ -487,7 +487,7 @@ fn verifying_a_recording_of_the_first_release_names_the_causes() {
         "recorded by jamgrip 0.1.0, which did not record the digest of every tick: only the 10 digests",
         "the recording has no checkpoint: the start was",
         "results have changed since: ",
-        "shares out its force by the saddles",
+        "distributes its force by the saddles",
     ] {
         assert!(remarks.contains(expected), "{expected}: {remarks}");
     }

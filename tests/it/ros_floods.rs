@@ -53,7 +53,7 @@ fn flood(node: &RosNode, stopped: &mpsc::Receiver<()>, n_sent: &AtomicU32) -> f6
     let all = topics(&coarse::scene(&[]));
     let mut pose = PoseStamped::default();
     pose.pose.position.x = f64::NAN;
-    let unknown = ObjectCommand { object: "nobody".to_owned(), ..Default::default() };
+    let unknown = ObjectCommand { object: "unknown".to_owned(), ..Default::default() };
     let commands = [
         (CommonTopic::VacuumCommand, Float64 { data: f64::NAN }.to_cdr()),
         (CommonTopic::FlangePoseCommand, pose.to_cdr()),
@@ -133,11 +133,14 @@ fn ten_thousand_commands_change_no_bit() {
         let n_sent = n_sent.load(Ordering::Relaxed);
         program.end();
 
-        let course = Recording::open(&bag).unwrap().history_without_scene(1_000_000).unwrap();
-        let digests: Vec<u64> = course.digests.iter().map(|it| it.1).collect();
+        let history = Recording::open(&bag).unwrap().history_without_scene(1_000_000).unwrap();
+        let digests: Vec<u64> = history.digests.iter().map(|it| it.1).collect();
         let last = usize::try_from(TICKS).unwrap();
-        assert_eq!((digests.len(), course.gap_after), ((1 + under_flood_s.len()) * last + 1, None));
-        let n_received = course.commands.len();
+        assert_eq!(
+            (digests.len(), history.gap_after),
+            ((1 + under_flood_s.len()) * last + 1, None)
+        );
+        let n_received = history.commands.len();
         let rate = f64::from(n_sent) / flood_s;
         writeln!(
             std::io::stderr().lock(),

@@ -132,7 +132,7 @@ fn commands_wait_in_order_for_the_next_tick() {
         let mut pose = PoseStamped::default();
         pose.header.frame_id = "world".to_owned();
         pose.header.stamp.sec = 3;
-        pose.pose.position.z = f64::NAN; // invalid values arrive, too: they are rejected later
+        pose.pose.position.z = f64::NAN; // invalid values also arrive: they are rejected later
         pose.pose.orientation.w = 1.0;
         flange.publish(Body::new(pose.to_cdr())).unwrap();
         wait_until("a first command", || source.has_received());
@@ -226,7 +226,7 @@ fn a_flood_of_commands_delays_no_others() {
     });
 }
 
-/// Oracle: another DDS implementation that only knows the ROS 2 names and types. It receives every
+/// Oracle: another DDS implementation that only uses the ROS 2 names and types. It receives every
 /// tick and the right forces, and its commands arrive as sent. The clock's writer keeps one
 /// message, so a tick is sent only after the peer has received the one before.
 #[test]
@@ -245,14 +245,14 @@ fn an_independent_dds_subscribes_and_publishes() {
             .stdout(Stdio::piped())
             .spawn()
             .unwrap();
-        let mut said = BufReader::new(peer.stdout.take().unwrap());
+        let mut peer_output = BufReader::new(peer.stdout.take().unwrap());
         let mut line = String::new();
-        said.read_line(&mut line).unwrap();
+        peer_output.read_line(&mut line).unwrap();
         assert_eq!(line, "ready\n", "the peer is matched");
 
         let (send, lines) = mpsc::channel();
         let listener = std::thread::spawn(move || {
-            said.lines().map_while(Result::ok).try_for_each(|line| send.send(line))
+            peer_output.lines().map_while(Result::ok).try_for_each(|line| send.send(line))
         });
         let n_ticks = 1000 * seconds.parse::<u64>().unwrap();
         let mut system = Synthetic::new("cylinder");

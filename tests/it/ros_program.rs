@@ -1,4 +1,4 @@
-//! The whole program in its own process, and clients of its services.
+//! The complete program in a separate process, and clients of its services.
 
 use std::{
     path::Path,

@@ -70,7 +70,7 @@ fn reader(
 fn each_topic_reaches_each_compatible_subscriber() {
     inside("ros_qos::each_topic_reaches_each_compatible_subscriber", || {
         let here = RosNode::join(&discovery_range()).unwrap();
-        // Each kind is a participant of its own, because data that reach one reader of a
+        // Each kind is a separate participant, because data that reach one reader of a
         // participant may be passed to its other readers.
         let kinds = [(true, true), (true, false), (false, true), (false, false)];
         let there = kinds.map(|(is_reliable, is_latched)| {

@@ -128,8 +128,8 @@ fn garbage_and_floods_do_not_reach_the_physics() {
         assert_eq!(response.result.result, SimResult::RESULT_OK);
         let mut reset = Client::of::<srv::ResetSimulation>(&node, "reset_simulation");
         let mut step = Client::of::<srv::StepSimulation>(&node, "step_simulation");
-        let mut look = Client::of::<srv::GetEntityState>(&node, "get_entity_state");
-        let quiet = episode(&mut reset, &mut step, &mut look);
+        let mut get_state = Client::of::<srv::GetEntityState>(&node, "get_entity_state");
+        let quiet = episode(&mut reset, &mut step, &mut get_state);
 
         let (specs, _) = endpoints("/jamgrip", None);
         // A request to unload the world has no fields, so any bytes are a valid request.
@@ -155,7 +155,7 @@ fn garbage_and_floods_do_not_reach_the_physics() {
             }
             n
         });
-        let loud = episode(&mut reset, &mut step, &mut look);
+        let loud = episode(&mut reset, &mut step, &mut get_state);
         stop.send(()).unwrap();
         let n_received = flooder.join().unwrap();
         assert!(100 < n_received, "{n_received} requests are not a flood");
@@ -202,7 +202,7 @@ proptest! {
     }
 }
 
-/// Oracle: counting, by a client on another DDS implementation that only knows the ROS 2 names and
+/// Oracle: counting, by a client on another DDS implementation that only uses the ROS 2 names and
 /// types, and uses Cyclone's service mapping.
 #[test]
 fn an_independent_dds_calls_services_and_an_action() {
@@ -354,7 +354,7 @@ fn names_on_the_command_line_appear_in_the_graph() {
     inside("ros_simulator::names_on_the_command_line_appear_in_the_graph", || {
         let folder = tempfile::tempdir().unwrap();
         let line = ["--ros-args", "-r", "__ns:=/left", "-r", "__node:=grip", "-r", "~/wrench:=/ft"];
-        let more = ["-r", "~/get_entities:=~/things", "-p", "outputs.ros.interfaces_prefix:=/sim"];
+        let more = ["-r", "~/get_entities:=~/renamed", "-p", "outputs.ros.interfaces_prefix:=/sim"];
         let bag = folder.path().join("bag");
         let recorded = ["--bag", bag.to_str().unwrap()];
         let line = [&recorded[..], &line[..], &more[..]].concat();
@@ -364,7 +364,7 @@ fn names_on_the_command_line_appear_in_the_graph() {
             ["/ft", "/left/grip/pressure", "/clock"].iter().all(|it| node.n_writers(it) == 1)
         });
         assert_eq!(node.n_writers("/left/grip/wrench") + node.n_writers("/jamgrip/pressure"), 0);
-        for name in ["/left/grip/things", "/left/grip/step_simulation", "/sim/step_simulation"] {
+        for name in ["/left/grip/renamed", "/left/grip/step_simulation", "/sim/step_simulation"] {
             let service_type = srv::StepSimulation::TYPE;
             let spec = ServiceSpec { name: name.to_owned(), service_type };
             let mut client = RosClient::open(&node, &spec, ServiceMapping::Enhanced).unwrap();

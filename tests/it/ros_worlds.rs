@@ -61,7 +61,7 @@ fn a_scene_is_settled_while_requests_are_served() {
         let program = Program::start_with(folder.path(), &[], &line);
         let node = RosNode::join_as("operator", &discovery_range()).unwrap();
         let mut set = Client::of::<srv::SetSimulationState>(&node, "set_simulation_state");
-        let mut look = Client::of::<srv::GetSimulationState>(&node, "get_simulation_state");
+        let mut get_state = Client::of::<srv::GetSimulationState>(&node, "get_simulation_state");
         let mut step = Client::of::<srv::StepSimulation>(&node, "step_simulation");
         let mut world = Client::of::<srv::LoadWorld>(&node, "load_world");
         let mut steps = |n: u64| {
@@ -80,7 +80,8 @@ fn a_scene_is_settled_while_requests_are_served() {
         world.send(&load("other.yaml"));
         let mut n_responses = 0;
         let response: LoadWorldResponse = loop {
-            let it: GetSimulationStateResponse = look.call(&GetSimulationStateRequest::default());
+            let it: GetSimulationStateResponse =
+                get_state.call(&GetSimulationStateRequest::default());
             n_responses += u32::from(it.state.state == SimulationState::STATE_LOADING_WORLD);
             if it.state.state == SimulationState::STATE_STOPPED {
                 break world.receive();
@@ -111,7 +112,7 @@ fn a_scene_is_settled_while_requests_are_served() {
 }
 
 /// Oracle: counting, and the requested pose. A spawned object is published like those of the scene,
-/// and recorded on channels of its own from then on.
+/// and recorded on separate channels from then on.
 #[test]
 fn spawned_objects_have_topics() {
     inside("ros_worlds::spawned_objects_have_topics", || {

@@ -134,7 +134,7 @@ fn a_failed_case_is_a_row_that_fails_and_does_not_affect_others() {
     assert_eq!(found.rows[..3], alone.rows);
     let error = |i: usize| found.cases[i].error.clone().unwrap();
     assert!(error(3).contains("height [m] of oscillator") && error(3).contains("damp it"));
-    assert_eq!(error(4), "the program panicked: on purpose");
+    assert_eq!(error(4), "the program panicked: expected panic");
     let failed: Vec<&str> =
         found.rows.iter().filter(|row| !row.pass).map(|row| row.id.as_str()).collect();
     assert_eq!(
@@ -233,7 +233,7 @@ fn files_contain_the_outcome() {
     let lines: Vec<&str> = curve.lines().collect();
     assert_eq!((lines[0], lines.len()), ("time [s],height [m]", 41));
     let height: f64 = lines[40].split(',').nth(1).unwrap().parse().unwrap();
-    assert_eq!(height.to_bits(), found.quantities[1].value.to_bits(), "not a digit is lost");
+    assert_eq!(height.to_bits(), found.quantities[1].value.to_bits(), "all digits are kept");
 
     let page = out.join("report.html");
     let page_text = peers::run("read_page.py", &[page.to_str().unwrap()]);
@@ -300,7 +300,7 @@ fn the_validation_document_matches_the_stored_results() {
         assert!(present == *text, "docs/{name} is out of date");
     }
     let n_figures = fs::read_dir("docs/figures").map_or(0, Iterator::count);
-    assert_eq!(n_figures + 1, files.len(), "no figure is left over");
+    assert_eq!(n_figures + 1, files.len(), "there is no unused figure");
     for outcome in &stored {
         assert_eq!(report::page(outcome).matches("<figure>").count(), outcome.plots.len());
     }

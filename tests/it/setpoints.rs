@@ -4,7 +4,7 @@
 use jamgrip::{
     base::{Pose, Real, Vec3, random::Random, random::Stream, real::Twist},
     command::{
-        Command, CommandCounts, Limit, Outcome, PoseCommand, Refusal,
+        Command, CommandCounts, CommandError, Limit, Outcome, PoseCommand,
         apply::{CommandProcessor, Frames},
     },
     cosim::{FLANGE, Inputs},
@@ -46,13 +46,13 @@ fn both(pose: &PoseCommand) -> [Command; 2] {
 }
 
 /// Asserts that `rejected` is rejected for `reason`, is counted, and does not change the setpoints.
-fn check_rejected(rejected: Command, reason: impl Fn(&Refusal) -> bool) {
+fn check_rejected(rejected: Command, reason: impl Fn(&CommandError) -> bool) {
     let mut processor = processor();
     let (before, _) = processor.take(&[], &frames(), TICK_NS);
     let (after, outcome) = take(&mut processor, rejected.clone(), 2 * TICK_NS);
-    let Outcome::Refused(why) = outcome else { panic!("{rejected:?}: {outcome:?}") };
+    let Outcome::Rejected(why) = outcome else { panic!("{rejected:?}: {outcome:?}") };
     assert!(reason(&why), "{rejected:?}: {why}");
-    let counts = CommandCounts { n_refused: 1, ..CommandCounts::default() };
+    let counts = CommandCounts { n_rejected: 1, ..CommandCounts::default() };
     assert_eq!(processor.counts(), counts, "{rejected:?}");
     assert_eq!(format!("{after:?}"), format!("{before:?}"), "{rejected:?} changed the setpoints");
     assert!(!processor.is_driven(0));
@@ -61,7 +61,7 @@ fn check_rejected(rejected: Command, reason: impl Fn(&Refusal) -> bool) {
 #[test]
 fn numbers_that_are_not_finite_are_rejected() {
     for bad in [Real::NAN, Real::INFINITY, Real::NEG_INFINITY] {
-        let finite = |why: &Refusal| matches!(why, Refusal::NotFinite { .. });
+        let finite = |why: &CommandError| matches!(why, CommandError::NotFinite { .. });
         check_rejected(Command::Vacuum { gauge_pa: bad }, finite);
         for k in 0..3 {
             let mut it = pose(Vec3::new(0.0, 0.0, 0.1));
@@ -83,7 +83,7 @@ fn numbers_that_overflow_in_world_coordinates_are_rejected() {
             let mut it = pose(Vec3::new(size, -size, size));
             it.frame_id = frame.to_owned();
             both(&it).into_iter().for_each(|command| {
-                check_rejected(command, |why| matches!(why, Refusal::NotFinite { .. }));
+                check_rejected(command, |why| matches!(why, CommandError::NotFinite { .. }));
             });
         }
     }
@@ -94,7 +94,7 @@ fn quaternions_that_are_not_normalized_are_rejected() {
     for bad in [[0.0; 4], [0.0, 0.0, 0.0, 1.002], [0.0, 0.0, 0.0, 0.998], [1.0; 4], [1e200; 4]] {
         let it = PoseCommand { orientation: bad, ..pose(Vec3::zeros()) };
         both(&it).into_iter().for_each(|command| {
-            check_rejected(command, |why| matches!(why, Refusal::NotNormalised { .. }));
+            check_rejected(command, |why| matches!(why, CommandError::NotNormalized { .. }));
         });
     }
     // A small deviation, as in single precision, is accepted and normalized.
@@ -114,7 +114,7 @@ fn unknown_frames_and_objects_are_rejected_and_known_ones_listed() {
         });
     });
     let unknown =
-        |why: &Refusal| why.to_string() == "unknown object `ball`: the scene has cylinder";
+        |why: &CommandError| why.to_string() == "unknown object `ball`: the scene has cylinder";
     check_rejected(drive("ball", pose(Vec3::zeros())), unknown);
     check_rejected(Command::ObjectRelease { object: "ball".to_owned() }, unknown);
 }
@@ -137,11 +137,11 @@ fn poses_are_interpreted_in_their_frame() {
 
 #[test]
 fn pressure_out_of_the_pump_range_is_clamped_and_counted() {
-    for (asked_pa, set_pa) in [(-200e3, -95e3), (1e9, 20e3)] {
+    for (requested_pa, set_pa) in [(-200e3, -95e3), (1e9, 20e3)] {
         let mut processor = processor();
         let (inputs, outcome) =
-            take(&mut processor, Command::Vacuum { gauge_pa: asked_pa }, TICK_NS);
-        assert_eq!(outcome, Outcome::Limited(Limit::PumpRange { asked_pa, set_pa }));
+            take(&mut processor, Command::Vacuum { gauge_pa: requested_pa }, TICK_NS);
+        assert_eq!(outcome, Outcome::Limited(Limit::PumpRange { requested_pa, set_pa }));
         assert!(inputs.gauge_setpoint.to_bits() == set_pa.to_bits(), "{}", inputs.gauge_setpoint);
         assert_eq!(processor.counts(), CommandCounts { n_limited: 1, ..CommandCounts::default() });
     }
@@ -167,7 +167,7 @@ fn a_pose_jump_is_limited_and_counted() {
     assert!((distance_m - 0.05).abs() < 1e-12 && allowed_m < 0.01, "{distance_m} {allowed_m}");
     // The target is approached within the limits.
     assert!((inputs.flange_target.translation.z - 0.101).abs() < 1e-15);
-    let counts = CommandCounts { n_applied: 100, n_limited: 1, n_refused: 0 };
+    let counts = CommandCounts { n_applied: 100, n_limited: 1, n_rejected: 0 };
     assert_eq!(processor.counts(), counts);
 }
 

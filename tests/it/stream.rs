@@ -129,7 +129,10 @@ fn another_process_reads_and_may_be_killed() {
     // It prints once a second what it has read; before its first state it prints `tick 0`.
     while !received.try_iter().any(|line| line.starts_with("tick ") && !line.starts_with("tick 0 "))
     {
-        assert!(now() - start < Duration::from_secs(60), "the first reader read nothing in 60 s");
+        assert!(
+            now() - start < Duration::from_secs(60),
+            "the first reader received nothing in 60 s"
+        );
         write_for(&mut stream, Duration::from_millis(50));
     }
     assert_eq!(victim.try_wait().unwrap(), None, "it is still reading");

@@ -7,7 +7,7 @@ use jamgrip::{
         Pose, Quat, Tick, Vec3,
         real::{Twist, Wrench},
     },
-    command::{Command, CommandCounts, CommandRecord, Outcome, PoseCommand, Refusal},
+    command::{Command, CommandCounts, CommandError, CommandRecord, Outcome, PoseCommand},
     io::sink::{Packet, RunStatistics, SinkCounters},
     scene::{
         Bag, BagCompression, Chamber, Controller, Flange, Grains, Lockstep, Material, Membrane,
@@ -187,7 +187,7 @@ pub(crate) fn snapshot(tick: u64) -> Snapshot {
         grains: tick.is_multiple_of(100).then(grains),
         contacts: tick.is_multiple_of(50).then(contacts),
         commands: commands(tick),
-        command_counts: CommandCounts { n_applied: tick, n_limited: 2, n_refused: 1 },
+        command_counts: CommandCounts { n_applied: tick, n_limited: 2, n_rejected: 1 },
         digest: tick.wrapping_mul(0x9e37_79b9_7f4a_7c15),
     }
 }
@@ -249,13 +249,13 @@ fn commands(tick: u64) -> Vec<CommandRecord> {
         position: [0.0, 0.1, f64::NAN],
         orientation: [0.0, 0.0, 0.0, 1.0],
     };
-    let reason = Refusal::NotFinite { field: "position.z", value: f64::NAN };
+    let reason = CommandError::NotFinite { field: "position.z", value: f64::NAN };
     let applied = |command| CommandRecord { command, outcome: Outcome::Applied };
     vec![
         applied(Command::Vacuum { gauge_pa: -80_000.0 }),
         CommandRecord {
             command: Command::FlangePose(pose.clone()),
-            outcome: Outcome::Refused(reason),
+            outcome: Outcome::Rejected(reason),
         },
         applied(Command::ObjectPose { object: OBJECT.to_owned(), pose: pose.clone() }),
         applied(Command::ObjectPose { object: "ghost".to_owned(), pose }),

@@ -105,9 +105,9 @@ class Client:
         self.name = name
         self.request, response = TYPES[name]
         participant = node.participant
-        ask = Topic(participant, f"rq/jamgrip/{name}Request", self.request)
+        request_topic = Topic(participant, f"rq/jamgrip/{name}Request", self.request)
         answer = Topic(participant, f"rr/jamgrip/{name}Reply", response)
-        self.writer = DataWriter(participant, ask, qos=self.QOS)
+        self.writer = DataWriter(participant, request_topic, qos=self.QOS)
         self.reader = DataReader(participant, answer, qos=self.QOS)
         wait_for(
             lambda: self.writer.get_matched_subscriptions()

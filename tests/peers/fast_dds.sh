@@ -1,6 +1,6 @@
 #!/bin/sh
 # A coarse gripper and a peer on Fast DDS (Debian: apt-get install g++ libfastrtps-dev): topics, services
-# and an action, in a private network. Run by hand, because not every machine has Fast DDS:
+# and an action, in a private network. Run it manually, because not every machine has Fast DDS:
 #   sh tests/peers/fast_dds.sh
 # Prints one line of JSON; expected:
 #   {"paused": 1, "stepped": 1, "n_ticks": 7, "setpoint": -30000.0, "accepted": 1, "status": 4, "feedback": 2}
@@ -17,7 +17,7 @@ object: { name: ball, shape: { sphere: { radius: 15 mm } }, position: [0 mm, 0 m
 flange: { position: [0 mm, 0 mm, 101 mm] }
 SCENE
 export folder
-# Shared memory is not isolated by a network namespace: the peer keeps to UDP.
+# Shared memory is not isolated by a network namespace: the peer uses only UDP.
 export FASTDDS_BUILTIN_TRANSPORTS=UDPv4
 exec unshare -n sh -c '
 ip link set lo up

@@ -1,4 +1,4 @@
-"""Commands a whole pick-and-lift over ROS 2 topics, from an independent DDS implementation.
+"""Commands a complete pick-and-lift over ROS 2 topics, from an independent DDS implementation.
 
 A small controller of its own, not the project's: it approaches until it touches the object, pushes,
 evacuates, lifts, holds, puts back and releases. Meanwhile it reads force, poses, vacuum, membrane
@@ -34,7 +34,7 @@ node = Node()
 clock = node.subscribe("/clock", t.Clock, depth=1000)
 wrench = node.subscribe("/jamgrip/wrench", t.WrenchStamped, depth=1000)
 flange = node.subscribe("/jamgrip/flange/pose", t.PoseStamped, depth=1000)
-thing = node.subscribe(f"/jamgrip/object/{OBJECT}/pose", t.PoseStamped, depth=1000)
+target = node.subscribe(f"/jamgrip/object/{OBJECT}/pose", t.PoseStamped, depth=1000)
 vacuum = node.subscribe("/jamgrip/vacuum_state", t.VacuumState, depth=1000)
 grains = node.subscribe("/jamgrip/grains", t.PointCloud2, depth=1)
 membrane = node.subscribe("/jamgrip/membrane", t.PointCloud2, depth=1)
@@ -75,7 +75,7 @@ class Seen:
         for it in flange.take(N=1000):
             self.flange = it.pose
             self.stamps["flange"] = it.header.stamp.seconds()
-        for it in thing.take(N=1000):
+        for it in target.take(N=1000):
             self.object = it.pose.position
             self.stamps["object"] = it.header.stamp.seconds()
         for it in vacuum.take(N=1000):
@@ -179,7 +179,7 @@ def mark(name):
 run_until(after(0.1))
 mark("approach")
 felt = run_until(lambda: TOUCH_N <= seen.push(), TRAVEL_M_S, seen.object.z)
-assert felt, "came down to the object's centre and felt nothing"
+assert felt, "came down to the object's center and felt notarget"
 mark("push")
 peak_n = 0.0
 

@@ -31,14 +31,14 @@ def plain(value):
 
 
 def with_rosbags(folder):
-    """Topic: type, count, count promised by metadata.yaml, times, first message."""
+    """Topic: type, count, count in metadata.yaml, times, first message."""
     topics = {}
     with AnyReader([folder]) as reader:
         for connection in reader.connections:
             topics[connection.topic] = {
                 "type": connection.msgtype,
                 "hash": connection.digest,
-                "promised": connection.msgcount,
+                "listed": connection.msgcount,
                 "count": 0,
                 "first": None,
             }
@@ -98,7 +98,7 @@ def main():
     folder = pathlib.Path(sys.argv[1])
     by_rosbags, by_mcap = with_rosbags(folder), with_mcap(folder)
     for name, topic in by_rosbags["topics"].items():
-        counts = (topic["promised"], topic["count"], by_mcap["counts"].get(name, 0))
+        counts = (topic["listed"], topic["count"], by_mcap["counts"].get(name, 0))
         assert len(set(counts)) == 1, f"{name}: metadata.yaml, rosbags, mcap count {counts}"
     print(json.dumps({"rosbags": by_rosbags, "mcap": by_mcap}))
 

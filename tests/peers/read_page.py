@@ -39,7 +39,7 @@ page = Page()
 page.feed(open(sys.argv[1], encoding="utf-8").read())
 page.close()
 assert not page.open, f"left open: {page.open}"
-assert len(page.ids) == len(set(page.ids)), "an id stands for two things"
+assert len(page.ids) == len(set(page.ids)), "an id is used twice"
 for it in page.ids:
     print("id", it)
 print("pictures", page.n_pictures)

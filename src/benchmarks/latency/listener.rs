@@ -23,7 +23,7 @@ use crate::{
     },
 };
 
-/// Marks, and the wall-clock times at which they were sent or received (ns).
+/// Numbers of samples, and the wall-clock times at which they were sent or received (ns).
 pub(super) type Samples = Vec<(u64, u64)>;
 
 /// Time between two commands: not a multiple of a tick, so that they arrive at all times within a
@@ -33,7 +33,7 @@ const COMMAND_EVERY: Duration = Duration::from_micros(10_300);
 const POLL_EVERY: Duration = Duration::from_micros(20);
 /// Timeout of discovery (s).
 const TIMEOUT: Real = 30.0;
-/// Time for which it listens longer than the run (s).
+/// Time for which it still listens after the run (s).
 const MARGIN: Real = 1.0;
 
 /// All samples of the listener.

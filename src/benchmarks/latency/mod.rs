@@ -8,7 +8,7 @@
 
 mod idle_plant; // a plant that only ticks in real time
 mod listener; // the subscriber process
-mod private_network; // a network namespace of its own
+mod private_network; // a separate network namespace
 
 use std::{
     process::{Child, Command, Stdio},

@@ -23,7 +23,7 @@ pub enum PrivateNetworkError {
         "this system does not allow a private network, and no other is used:\n{tried}run as root, with \
          CAP_SYS_ADMIN in a container, or allow unprivileged user namespaces"
     )]
-    Refused {
+    NotPermitted {
         /// The failed attempts.
         tried: String,
     },
@@ -43,7 +43,7 @@ pub(super) fn is_private() -> bool {
 pub(super) fn run(case: &Case, options: &Options) -> Result<BenchResult, PrivateNetworkError> {
     if std::env::var_os(INSIDE).is_some() {
         let tried = "unshare: the new network has interfaces\n".to_owned();
-        return Err(PrivateNetworkError::Refused { tried });
+        return Err(PrivateNetworkError::NotPermitted { tried });
     }
     let inside = |text: String| PrivateNetworkError::Inside(text);
     let program = std::env::current_exe().map_err(|error| inside(error.to_string()))?;
@@ -82,5 +82,5 @@ pub(super) fn run(case: &Case, options: &Options) -> Result<BenchResult, Private
         let results = results.map_err(|error| inside(error.to_string()))?;
         return results.into_iter().next().ok_or_else(|| inside("no result".to_owned()));
     }
-    Err(PrivateNetworkError::Refused { tried })
+    Err(PrivateNetworkError::NotPermitted { tried })
 }

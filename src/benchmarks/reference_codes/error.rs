@@ -26,12 +26,12 @@ pub enum ReferenceError {
         tail: String,
     },
     /// Its output lacks something.
-    #[error("{peer}: no `{wanted}` in its output; its last lines:\n{tail}")]
+    #[error("{peer}: no `{expected}` in its output; its last lines:\n{tail}")]
     Unreadable {
         /// Name of the code.
         peer: &'static str,
         /// What is missing.
-        wanted: &'static str,
+        expected: &'static str,
         /// Its last lines of output.
         tail: String,
     },

@@ -19,7 +19,7 @@ pub(super) struct Repetition {
 /// Parses the output of a reference code.
 pub(super) fn read(tool: Tool, output: &str) -> Result<Repetition, ReferenceError> {
     let peer = tool.name();
-    let unreadable = |wanted| ReferenceError::Unreadable { peer, wanted, tail: tail(output) };
+    let unreadable = |expected| ReferenceError::Unreadable { peer, expected, tail: tail(output) };
     let loop_of = if tool == Tool::Yade { "JAMGRIP loop " } else { "Loop time of " };
     let number = |text: &str| text.parse::<Real>().ok().filter(|it| it.is_finite());
     // The last one is the measured one.

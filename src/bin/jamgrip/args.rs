@@ -169,10 +169,10 @@ pub(crate) struct Experiment {
     /// List all experiments
     #[arg(long, conflicts_with = "name")]
     pub(crate) list: bool,
-    /// Smaller or faster, within minutes (default)
+    /// Reduced size, takes minutes (default)
     #[arg(long, conflicts_with = "full")]
     quick: bool,
-    /// As published; may take hours
+    /// Full size, as published; may take hours
     #[arg(long)]
     full: bool,
     /// Set a key of the scene, for example grains.youngs_modulus=100MPa; may be repeated
@@ -197,7 +197,7 @@ pub(crate) struct Experiment {
 /// Arguments of `validate`.
 #[derive(Debug, Args)]
 pub(crate) struct Validate {
-    /// Only these experiments
+    /// Run only these experiments
     pub(crate) names: Vec<String>,
     /// Folder for the results; the same command resumes an interrupted run
     #[arg(long, value_name = "DIR")]

@@ -68,13 +68,13 @@ pub(crate) struct Replay {
     /// Play in a loop
     #[arg(long = "loop", conflicts_with_all = ["verify", "from"])]
     pub(crate) is_loop: bool,
-    /// Play only these topics; a trailing `*` matches any rest
+    /// Play only these topics; a trailing `*` matches any suffix
     #[arg(long, value_name = "TOPIC", num_args = 1.., conflicts_with_all = ["verify", "from"])]
     pub(crate) topics: Vec<String>,
     /// Do not play these topics
     #[arg(long, value_name = "TOPIC", num_args = 1.., conflicts_with_all = ["verify", "from"])]
     pub(crate) exclude: Vec<String>,
-    /// Publish /clock at this rate of wall time instead of the recorded one [default: 40]
+    /// Publish /clock at this wall-clock rate instead of the recorded one [default: 40]
     #[arg(
         long, value_name = "HZ", num_args = 0..=1, default_missing_value = "40",
         value_parser = factor, conflicts_with_all = ["verify", "from"]
@@ -159,7 +159,7 @@ pub(crate) enum Bag {
     Recover {
         /// Recording: a rosbag2 folder or an .mcap file
         bag: PathBuf,
-        /// Output [default: next to it, its name and _recovered]
+        /// Output [default: next to it, with the suffix _recovered]
         #[arg(long, short, value_name = "PATH")]
         output: Option<PathBuf>,
     },

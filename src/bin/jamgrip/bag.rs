@@ -34,7 +34,7 @@ use crate::{
 /// A digest differs, a recording is damaged, or an error occurred.
 const FAILED: u8 = 1;
 /// The command line is invalid; clap uses the same code.
-const WRONG: u8 = 2;
+const INVALID_USAGE: u8 = 2;
 /// The user interrupted it: 128 plus the number of SIGINT.
 const INTERRUPTED: u8 = 130;
 
@@ -48,8 +48,8 @@ pub(crate) fn replay(args: &Replay) -> Result<ExitCode, Box<dyn Error>> {
 
 pub(crate) fn bag(action: &Bag) -> Result<ExitCode, Box<dyn Error>> {
     match action {
-        Bag::Info(look) => info(look),
-        Bag::Check(look) => check(look),
+        Bag::Info(args) => info(args),
+        Bag::Check(args) => check(args),
         Bag::Plot { bag, output } => plot(bag, output.as_deref()),
         Bag::Recover { bag, output } => recover(bag, output.as_deref()),
     }
@@ -143,11 +143,11 @@ fn branch(args: &Replay, from: f64) -> Result<ExitCode, Box<dyn Error>> {
         shutdown: Shutdown::listen()?,
         facts: Vec::new(),
     };
-    let wanted = Branch { from_ns: nanoseconds(from), overrides: args.overrides() };
-    let finished = match branch::branch(&recorded, &wanted, &options) {
+    let requested = Branch { from_ns: nanoseconds(from), overrides: args.overrides() };
+    let finished = match branch::branch(&recorded, &requested, &options) {
         Err(error) if error.is_of_command_line() => {
             writeln!(io::stderr().lock(), "{error}")?;
-            return Ok(ExitCode::from(WRONG));
+            return Ok(ExitCode::from(INVALID_USAGE));
         }
         other => other?,
     };
@@ -180,7 +180,7 @@ fn play(args: &Replay) -> Result<ExitCode, Box<dyn Error>> {
     let perform = |player: &mut dyn play::PlayerOutput| {
         play::play(&files, &options, player, &cues, &shutdown)
     };
-    let (played, fault) = with_player_node(&options, sender, perform)?;
+    let (played, error) = with_player_node(&options, sender, perform)?;
     let mut stderr = io::stderr().lock();
     for topic in &played.unplayable {
         writeln!(
@@ -192,13 +192,13 @@ fn play(args: &Replay) -> Result<ExitCode, Box<dyn Error>> {
         let n = played.n_damages;
         writeln!(stderr, "the recording has {n} damaged parts; `jamgrip bag check` lists them")?;
     }
-    if let Some(fault) = fault {
-        writeln!(stderr, "some messages were not published, the last: {fault}")?;
+    if let Some(error) = error {
+        writeln!(stderr, "some messages were not published, the last: {error}")?;
     }
     let mut stdout = io::stdout().lock();
     if args.json {
-        let (n, refused) = (played.n_published, &played.unplayable);
-        writeln!(stdout, "{}", serde_json::json!({"published": n, "refused": refused}))?;
+        let (n, unplayable) = (played.n_published, &played.unplayable);
+        writeln!(stdout, "{}", serde_json::json!({"published": n, "refused": unplayable}))?;
     } else {
         writeln!(stdout, "{} messages published", played.n_published)?;
     }
@@ -231,7 +231,7 @@ fn with_player_node(
     _: mpsc::Sender<CommandRequest>,
     _: impl FnOnce(&mut dyn play::PlayerOutput) -> io::Result<Played>,
 ) -> Result<Performance, Box<dyn Error>> {
-    Err("playing needs a jamgrip that was built with feature `ros`".into())
+    Err("playing needs a build with feature `ros`".into())
 }
 
 /// Reads cues until standard input or the player ends.
@@ -284,8 +284,8 @@ fn plot(path: &Path, output: Option<&Path>) -> Result<ExitCode, Box<dyn Error>> 
     };
     let output = output.map_or_else(beside, Path::to_owned);
     let page = page::html(path)?;
-    let fault = |error| format!("{}: {error}; choose another file with --output", output.display());
-    std::fs::write(&output, page).map_err(fault)?;
+    let error = |error| format!("{}: {error}; choose another file with --output", output.display());
+    std::fs::write(&output, page).map_err(error)?;
     writeln!(io::stdout().lock(), "{}", output.display())?;
     Ok(ExitCode::SUCCESS)
 }
@@ -298,8 +298,8 @@ fn recover(path: &Path, output: Option<&Path>) -> Result<ExitCode, Box<dyn Error
         writeln!(stdout, "{}: {damage}", file.display())?;
     }
     let (n_messages, n_attachments) = (recovered.n_messages, recovered.n_attachments);
-    let place = recovered.output.display();
-    writeln!(stdout, "{n_messages} messages and {n_attachments} attachments saved in {place}")?;
+    let output = recovered.output.display();
+    writeln!(stdout, "{n_messages} messages and {n_attachments} attachments saved in {output}")?;
     Ok(ExitCode::SUCCESS)
 }
 

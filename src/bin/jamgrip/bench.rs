@@ -62,7 +62,7 @@ pub(crate) fn bench(args: &Bench) -> Result<ExitCode, Box<dyn Error>> {
 
 #[cfg(all(feature = "ros", feature = "shm"))]
 pub(crate) fn listen(prefix: &str, seconds: f64) -> Result<ExitCode, Box<dyn Error>> {
-    let heard = benchmarks::listen(prefix, seconds).map_err(|error| error.to_string())?;
-    writeln!(io::stdout().lock(), "{heard}")?;
+    let measured = benchmarks::listen(prefix, seconds).map_err(|error| error.to_string())?;
+    writeln!(io::stdout().lock(), "{measured}")?;
     Ok(ExitCode::SUCCESS)
 }

@@ -25,7 +25,7 @@ use crate::args::{CommonArgs, Experiment, Validate};
 /// A case could not run.
 const FAILED: u8 = 1;
 /// All cases ran, and a row fails.
-const RED: u8 = 3;
+const ROW_FAILED: u8 = 3;
 /// The user interrupted it: 128 plus the number of SIGINT.
 const INTERRUPTED: u8 = 130;
 
@@ -122,8 +122,8 @@ fn verdict(outcomes: &[Outcome]) -> ExitCode {
     if !outcomes.iter().all(Outcome::is_complete) {
         return ExitCode::from(FAILED);
     }
-    let is_red = outcomes.iter().any(|outcome| 0 < outcome.n_failed());
-    if is_red { ExitCode::from(RED) } else { ExitCode::SUCCESS }
+    let has_failed_row = outcomes.iter().any(|outcome| 0 < outcome.n_failed());
+    if has_failed_row { ExitCode::from(ROW_FAILED) } else { ExitCode::SUCCESS }
 }
 
 /// Width of the terminal, if the shell exports it.

@@ -35,14 +35,14 @@ const LOG_FILTER: &str = "warn,rustdds=off,ros2_client=off";
 /// The run could not begin or continue.
 const FAILED: u8 = 1;
 /// The scene or the command line is invalid; clap uses the same code.
-const WRONG: u8 = 2;
+const INVALID_USAGE: u8 = 2;
 
 fn main() -> ExitCode {
     let (line, ros_args) = match ros_args::split(std::env::args()) {
         Ok(split) => split,
         Err(error) => {
             drop(writeln!(io::stderr().lock(), "{error}"));
-            return ExitCode::from(WRONG);
+            return ExitCode::from(INVALID_USAGE);
         }
     };
     let cli = Cli::parse_from(line);
@@ -76,7 +76,7 @@ fn main() -> ExitCode {
             || error.is::<ros_args::RosArgsError>()
             || error.downcast_ref::<BenchError>().is_some_and(BenchError::is_of_command_line)
             || error.downcast_ref::<RunnerError>().is_some_and(RunnerError::is_of_command_line);
-        ExitCode::from(if is_of_command_line { WRONG } else { FAILED })
+        ExitCode::from(if is_of_command_line { INVALID_USAGE } else { FAILED })
     })
 }
 

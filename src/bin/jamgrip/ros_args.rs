@@ -194,7 +194,7 @@ mod tests {
         assert_eq!((rest.len(), args), (3, RosArgs::default()));
     }
 
-    /// Oracle: house rule, an error names place, value and remedy.
+    /// Oracle: the rule that every error names the location, the value and the remedy.
     #[test]
     fn invalid_arguments_are_rejected() {
         for line in ["-r", "-r a=b", "-p seed=7", "--log-level loud", "--what x", "-p"] {

@@ -27,7 +27,7 @@ use std::ops::Deref;
 use crate::scene::Scene;
 
 /// A scene with density scaling applied to grains and membrane. Laws, masses and substeps are computed
-/// from it; the type prevents scaling twice or not at all.
+/// from it; the type prevents scaling twice and unscaled use.
 #[derive(Clone, Debug)]
 pub struct ScaledScene(Scene);
 

@@ -36,7 +36,7 @@ use crate::{
     scene::{Object, Scene, Shape},
 };
 
-/// To be incremented whenever the same scene would settle differently; part of every cache key.
+/// Increment this whenever the same scene would settle differently. Part of every cache key.
 pub const PHYSICS_VERSION: u64 = 6;
 /// Skin of the neighbor lists, relative to the largest radius.
 const SKIN_SHARE: Real = 0.25;

@@ -1,4 +1,4 @@
-//! A prepared grip: its model, and the set-points of object and pump at any time.
+//! A prepared grip: its model, and the setpoints of object and pump at any time.
 
 use super::{
     cases::{Case, Change, Grip},
@@ -32,7 +32,7 @@ pub(super) struct PreparedGrip {
 }
 
 impl PreparedGrip {
-    /// Prepares a grip. The first grip of a case with several pressures goes on until the object is
+    /// Prepares a grip. The first grip of a case with several pressures continues until the object is
     /// free: it shows the complete record.
     pub(super) fn new(
         scene: &GripperScene,
@@ -99,7 +99,7 @@ impl PreparedGrip {
         phases.map(|&phase| n_ticks(phase) * self.n_substeps).sum()
     }
 
-    /// Sets the motion of the object and the pump's set-point at `time` (s) of `phase`; `low` is
+    /// Sets the motion of the object and the pump's setpoint at `time` (s) of `phase`; `low` is
     /// the height of the settled membrane's lowest point (m).
     pub(super) fn control(&self, controls: &mut Controls, phase: Phase, time: Real, low: Real) {
         let protocol = &self.scene.protocol;

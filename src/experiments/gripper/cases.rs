@@ -2,7 +2,7 @@
 //! starts.
 //!
 //! A case is one filling. Its grips share the settled state, and those that differ only from the
-//! relaxed state on share the insertion, too, so that the scatter between fillings does not affect
+//! relaxed state on also share the insertion, so that the scatter between fillings does not affect
 //! comparisons.
 
 use super::scene::GripperScene;

@@ -188,9 +188,9 @@ pub(super) fn is_past_peak(record: &Record, grip: usize, scene: &GripperScene) -
 pub(super) fn rows(record: &Record, grip: usize, phase: Phase, name: &str) -> Vec<Real> {
     let column = |name: &str| record.column(name).unwrap_or(&[]);
     let keys = column("grip").iter().zip(column("phase"));
-    let wanted = [real(grip), real(phase as usize)].map(Real::to_bits);
+    let key = [real(grip), real(phase as usize)].map(Real::to_bits);
     keys.zip(column(name))
-        .filter(|((grip, phase), _)| [grip.to_bits(), phase.to_bits()] == wanted)
+        .filter(|((grip, phase), _)| [grip.to_bits(), phase.to_bits()] == key)
         .map(|(_, value)| *value)
         .collect()
 }

@@ -1,4 +1,4 @@
-//! The phases of a grip, and set-points over time as pure functions, so that a resumed run has the
+//! The phases of a grip, and setpoints over time as pure functions, so that a resumed run has the
 //! same.
 
 use serde::{Deserialize, Serialize};
@@ -83,7 +83,7 @@ impl Stroke {
     }
 }
 
-/// Value at `time` (s) of a set-point that goes from 0 to `goal` in `n_steps` equal steps, one
+/// Value at `time` (s) of a setpoint that goes from 0 to `goal` in `n_steps` equal steps, one
 /// every `step_time` (s), the first one at time 0.
 pub(super) fn staircase(goal: Real, n_steps: usize, step_time: Real, time: Real) -> Real {
     let n = crate::base::real::real(n_steps);

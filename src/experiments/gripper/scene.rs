@@ -1,5 +1,5 @@
 //! The scene of the gripper experiment, key by key: the gripper itself, the protocol of a grip,
-//! accelerations of it, and what is varied.
+//! speedups of the protocol, and what is varied.
 
 use crate::{
     base::{Real, Vec3},
@@ -13,7 +13,7 @@ use crate::{
     },
 };
 
-/// A length that is surely given in the right unit.
+/// A length of a plausible magnitude, so that a wrong unit is detected.
 const SOME_LENGTH: Quantity = Quantity { dimension: &LENGTH, range: Range::AboveUpTo(0.0, 10.0) };
 const SOME_SPEED: Quantity = Quantity::above_zero(&SPEED);
 const ANY_TIME: Quantity = Quantity::at_least_zero(&TIME);
@@ -154,12 +154,12 @@ impl Keys for GripperScene {
             unfit.push(("grains.radius_min", reason, "swap them or write equal values"));
         }
         if membrane <= self.protocol.penetration {
-            let reason = "is deeper than the bag".to_owned();
+            let reason = "is deeper than the membrane".to_owned();
             unfit.push(("protocol.penetration", reason, "stay below membrane.radius"));
         }
         let largest = self.sweep.radii.iter().copied().fold(gripper.object.radius, Real::max);
         if membrane <= largest {
-            let reason = "has an object larger than the bag".to_owned();
+            let reason = "has an object larger than the membrane".to_owned();
             unfit.push(("object.radius", reason, "stay below membrane.radius"));
         }
         let pump = gripper.chamber.gauge_min;

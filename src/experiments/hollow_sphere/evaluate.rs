@@ -39,7 +39,7 @@ pub(super) fn findings(scene: &HollowSphereScene, records: &[Record]) -> Finding
     findings.curves.push(plots::table(&groups));
     findings.notes.push(
         "In the source's contact law a grain indents the membrane with the membrane's own low \
-        modulus, by some tenths of a millimeter under full vacuum. Hard grains do not move that \
+        modulus, by a few tenths of a millimeter under full vacuum. Hard grains do not move that \
         much closer together, so the inner membrane lifts off the object between them. \
         `sweep.stiff_contacts` repeats a case with contacts as stiff as the grains."
             .to_owned(),

@@ -85,8 +85,8 @@ impl TestSystem {
         match grains.len() {
             1 => grains.radii[0] - grains.positions[0].z,
             _ => {
-                let apart = grains.positions[0] - grains.positions[1];
-                grains.radii[0] + grains.radii[1] - apart.norm()
+                let separation = grains.positions[0] - grains.positions[1];
+                grains.radii[0] + grains.radii[1] - separation.norm()
             }
         }
     }

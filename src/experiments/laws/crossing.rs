@@ -125,9 +125,9 @@ impl Path {
             *position += Vec3::from_fn(|_, _| random.between(-dent, dent));
         }
         let mesh = Mesh::new(positions, flipped).expect("dents do not change the connectivity");
-        let sheet = MembraneModel::new(mesh, scene.membrane.sheet);
+        let membrane = MembraneModel::new(mesh, scene.membrane.material);
         let material = &scene.grain.material;
-        let mut test = TestSystem::on_membrane(material, surface, sheet, 1e-9);
+        let mut test = TestSystem::on_membrane(material, surface, membrane, 1e-9);
         test.add_grain(Vec3::z() * radius, radius, material.density);
         let angle = random.between(0.0, 2.0 * std::f64::consts::PI);
         let along = Vec3::new(angle.cos(), angle.sin(), 0.0);
@@ -271,7 +271,7 @@ impl Path {
     }
 }
 
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "some thousand steps")]
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few thousand steps")]
 fn n_steps(steps: Real) -> usize {
     steps.round().max(1.0) as usize
 }

@@ -37,7 +37,7 @@ use crate::{
 const REST: Real = 1e-4;
 /// Substeps between two measurements of the kinetic energy.
 const STOP_EVERY: usize = 20;
-/// Largest number of substeps; the membranes of the scene need some thousands.
+/// Largest number of substeps; the membranes of the scene need a few thousand.
 const N_STEPS_MAX: usize = 100_000;
 
 pub(super) struct Inflation;
@@ -79,8 +79,13 @@ impl Law for Inflation {
 
 /// The scene's membrane without bending, well damped.
 fn stretch_only(scene: &LawsScene) -> MembraneMaterial {
-    let sheet = scene.membrane.sheet;
-    MembraneMaterial { bending_stiffness: 0.0, bending_damping: 0.0, spring_damping: 0.5, ..sheet }
+    let material = scene.membrane.material;
+    MembraneMaterial {
+        bending_stiffness: 0.0,
+        bending_damping: 0.0,
+        spring_damping: 0.5,
+        ..material
+    }
 }
 
 /// Lets the free vertices come to rest under `pressure` (Pa) and the `pull` on each vertex (N).
@@ -112,7 +117,7 @@ fn settle(
         if unbalanced < REST * load {
             return;
         }
-        // Not in every substep: fast modes have peaks of their own, which differ from those of slow
+        // Not in every substep: the peaks of fast modes differ from those of slow
         // modes.
         if step % STOP_EVERY == 0 {
             if energy < last {
@@ -286,14 +291,14 @@ const ROWS: &[RowSpec] = &[
         "net force of the air on a closed surface divided by the sum of all loads",
         "closed surface, uniform pressure; Götz (2024) eq. 30",
         Expected::at_most(1e-12),
-        "rounding of some thousand terms",
+        "rounding of a few thousand terms",
     ),
     (
         "C5.torque",
         "net torque of the air on a closed surface divided by loads times radius",
         "closed surface, uniform pressure; Götz (2024) eq. 31",
         Expected::at_most(1e-10),
-        "rounding of some thousand terms, with a lever arm of 15 radii",
+        "rounding of a few thousand terms, with a lever arm of 15 radii",
     ),
     (
         "C5.power",

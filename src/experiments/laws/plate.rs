@@ -68,12 +68,12 @@ impl Law for Plate {
 /// D times the spacing of rows across a strip (N m²).
 fn edge_stiffness(scene: &LawsScene) -> Real {
     let row = 0.75_f64.sqrt() * scene.membrane.edge;
-    0.25 * scene.membrane.sheet.bending_stiffness * row
+    0.25 * scene.membrane.material.bending_stiffness * row
 }
 
 /// The scene's membrane without springs: bending alone.
 fn bending_only(scene: &LawsScene) -> MembraneMaterial {
-    MembraneMaterial { youngs_modulus: 0.0, bending_damping: 0.0, ..scene.membrane.sheet }
+    MembraneMaterial { youngs_modulus: 0.0, bending_damping: 0.0, ..scene.membrane.material }
 }
 
 /// Energy of a patch bent to a given curvature.
@@ -82,7 +82,7 @@ fn curvatures(scene: &LawsScene, record: &mut Record) {
     let mesh = Mesh::hexagonal_patch(edge, 12).expect("there are rings");
     let model = MembraneModel::new(mesh, bending_only(scene));
     let area = real(model.mesh.hinges.len()) * edge * edge * 0.75_f64.sqrt() / 3.0;
-    let stiffness = 0.25 * scene.membrane.sheet.bending_stiffness;
+    let stiffness = 0.25 * scene.membrane.material.bending_stiffness;
     let mut scratch = MembraneScratch::new(&model);
     let mut worst = 0.0_f64;
     for ([xx, xy, yy], oracle) in SHAPES {

@@ -31,7 +31,7 @@ impl Run for LawRun {
             self.n_done += 1;
             self.record.digest = digest(&self.record);
         }
-        #[expect(clippy::cast_precision_loss, reason = "some hundred points")]
+        #[expect(clippy::cast_precision_loss, reason = "a few hundred points")]
         let share = self.n_done as f64 / n_points.max(1) as f64;
         Ok(Progress { phase: "points", share, is_done: self.n_done == n_points })
     }

@@ -115,7 +115,7 @@ scene_keys! {
     /// The membrane.
     pub(super) struct Membrane {
         /// Springs and hinges.
-        sheet: MembraneMaterial = Inline,
+        material: MembraneMaterial = Inline,
         /// Edge of a flat patch (m).
         edge: Real = SOME_LENGTH,
         /// Radius of a sphere (m).

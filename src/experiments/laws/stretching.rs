@@ -44,11 +44,14 @@ impl Law for Stretching {
 
 /// A flat hexagon of the scene's membrane without bending.
 fn patch(scene: &LawsScene, rings: usize, record: &mut Record) {
-    let sheet =
-        MembraneMaterial { bending_stiffness: 0.0, bending_damping: 0.0, ..scene.membrane.sheet };
+    let material = MembraneMaterial {
+        bending_stiffness: 0.0,
+        bending_damping: 0.0,
+        ..scene.membrane.material
+    };
     let mesh = Mesh::hexagonal_patch(scene.membrane.edge, rings).expect("there are rings");
-    let model = MembraneModel::new(mesh, sheet);
-    let in_plane = sheet.youngs_modulus * sheet.thickness;
+    let model = MembraneModel::new(mesh, material);
+    let in_plane = material.youngs_modulus * material.thickness;
     for direction in DIRECTIONS {
         let (s, c) = direction.sin_cos();
         let (along, across) = (Vec3::new(c, s, 0.0), Vec3::new(-s, c, 0.0));
@@ -63,7 +66,7 @@ fn patch(scene: &LawsScene, rings: usize, record: &mut Record) {
         worst(record, "U9.shear_modulus", modulus / (in_plane * 3.0 / 8.0) - 1.0);
     }
     let tension = stress(&model, &Mat3::identity());
-    let expected = 3.0_f64.sqrt() * stretch::stiffness(sheet.youngs_modulus, sheet.thickness);
+    let expected = 3.0_f64.sqrt() * stretch::stiffness(material.youngs_modulus, material.thickness);
     for axis in 0..2 {
         worst(record, "U10.tension", tension[(axis, axis)] / (expected * STRAIN) - 1.0);
     }
@@ -85,7 +88,7 @@ fn stress(model: &MembraneModel, shape: &Mat3) -> Mat3 {
 /// Two vertices of the membrane released from a stretched state: the decay of amplitude in a
 /// period.
 fn ring_down(scene: &LawsScene, record: &mut Record) {
-    let MembraneMaterial { youngs_modulus, thickness, density, .. } = scene.membrane.sheet;
+    let MembraneMaterial { youngs_modulus, thickness, density, .. } = scene.membrane.material;
     let (edge, gamma) = (scene.membrane.edge, 0.15);
     let mass = density * thickness * edge * edge * 0.75_f64.sqrt();
     let k = stretch::stiffness(youngs_modulus, thickness);

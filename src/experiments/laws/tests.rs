@@ -26,13 +26,13 @@ fn every_law_matches_its_closed_form() {
     let findings = plan.evaluate(&records);
     for row in &findings.rows {
         let (measured, oracle, tolerance) = (row.measured, row.oracle, row.tolerance);
-        let verdict = if row.pass { "ok " } else { "RED" };
+        let verdict = if row.pass { "ok " } else { "FAIL" };
         eprintln!("{verdict} {}: {measured:.6e}, {oracle:.6e} ± {tolerance:.1e}", row.id);
     }
     // Oracle and reason of each tolerance are in the rows.
-    let red: Vec<&str> =
+    let failed: Vec<&str> =
         findings.rows.iter().filter(|row| !row.pass).map(|row| row.id.as_str()).collect();
-    assert!(red.is_empty(), "{red:?}");
+    assert!(failed.is_empty(), "{failed:?}");
     assert!(findings.rows.len() > 40 && findings.notes.is_empty(), "{:?}", findings.notes);
 }
 
@@ -47,7 +47,7 @@ fn a_resumed_case_continues_with_the_same_bits() {
     let mut second = plan.start("inflation").unwrap();
     second.resume(&saved).unwrap();
     while !second.advance().unwrap().is_done {}
-    // Oracle: the uninterrupted run, bit by bit.
+    // Oracle: the uninterrupted run, bit for bit.
     assert_eq!(second.record(), uninterrupted);
     assert!(
         plan.start("impact").unwrap().resume(&saved).is_err(),

@@ -14,12 +14,12 @@
 //! E*, R*, m* effective modulus, radius, mass                 [Pa], [m], [kg]
 //! A          dissipation time                                [s]
 //! θ          angle of incidence from the normal              [rad]
-//! e, e_t     restitution of the normal, of the tangential velocity of the centre
+//! e, e_t     restitution of the normal, of the tangential velocity of the center
 //! ω'         spin after the impact of a body that had none   [rad/s]
 //! ```
 //!
 //! Sources: Hertz (1881); Müller & Pöschel (2011) for the rational form with the end condition F ≥
-//! 0 (against an integration of the law it is right to 10⁻⁵ below v* = 0.5 and to 2·10⁻⁴ at 1.2);
+//! 0 (its error against an integration of the law is 10⁻⁵ below v* = 0.5 and 2·10⁻⁴ at 1.2);
 //! rigid-body impact with Coulomb's friction for the last line.
 
 use crate::base::Real;

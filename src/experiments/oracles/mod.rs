@@ -1,6 +1,6 @@
 //! Closed forms and exact reference solutions to compare measurements with.
 //!
-//! They are independent of the simulation: formulas and small integrations of their own.
+//! They are independent of the simulation: separate formulas and small integrations.
 
 pub mod impact; // two bodies that collide
 pub mod micro_slip; // oblique impact without the law's simplification

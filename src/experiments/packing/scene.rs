@@ -12,7 +12,7 @@ use crate::{
     },
 };
 
-/// A length that is surely given in the right unit.
+/// A length of a plausible magnitude, so that a wrong unit is detected.
 const SOME_LENGTH: Quantity = Quantity { dimension: &LENGTH, range: Range::AboveUpTo(0.0, 0.1) };
 const SOME_TIME: Quantity = Quantity::above_zero(&TIME);
 const SOME_PRESSURE: Quantity = Quantity::above_zero(&PRESSURE);
@@ -142,7 +142,7 @@ impl Keys for PackingScene {
         }
         if it.pressure_high < it.pressure_low {
             let reason = "is below compression.pressure_low".to_owned();
-            unfit.push(("compression.pressure_high", reason, "grains are let go from there"));
+            unfit.push(("compression.pressure_high", reason, "decompression starts there"));
         }
         unfit
     }

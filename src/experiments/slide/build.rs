@@ -87,7 +87,7 @@ fn id(cells: &[(i32, i32)], cell: (i32, i32)) -> Option<u32> {
 }
 
 /// A positive number rounded up.
-#[expect(clippy::cast_possible_truncation, reason = "patches have some hundred edges")]
+#[expect(clippy::cast_possible_truncation, reason = "patches have a few hundred edges")]
 fn count(value: Real) -> i32 {
     value.ceil() as i32
 }
@@ -122,7 +122,7 @@ pub(super) fn system(
 ) -> Result<System, BuildError> {
     let radius = scene.ball.radius;
     let law = case.law(scene);
-    let mut membrane = MembraneModel::new(patch.mesh, scene.membrane.sheet());
+    let mut membrane = MembraneModel::new(patch.mesh, scene.membrane.material());
     let mut contact_radius = radius;
     if case.has_spheres {
         let sphere = scene.membrane.sphere_radius;

@@ -50,7 +50,7 @@ fn worst(
 ) -> Option<Real> {
     let values: Option<Vec<Real>> =
         names.iter().map(|name| named(records, name).map(&of)).collect();
-    // NaN must not hide behind a number.
+    // NaN must not be hidden by a number.
     values.map(|it| it.into_iter().fold(0.0, |a, b| if b > a || b.is_nan() { b } else { a }))
 }
 
@@ -339,7 +339,7 @@ fn framed(scene: &SlideScene, records: &[CaseRecord<'_>], rows: &mut Vec<Row>) {
             unit: "1",
             oracle: "Coulomb: slopes of facets cancel over whole periods",
             reason: "2 %: the path through the dent of the membrane is not quite symmetric, and \
-                    facets that tilt by some degrees make it longer",
+                    facets that tilt by a few degrees make it longer",
         },
         Expected::within(1.0, 0.02),
         mean / friction,

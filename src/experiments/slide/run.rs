@@ -1,6 +1,6 @@
 //! One case: the ball is pulled over the membrane, substep by substep.
 //!
-//! The system moves freely for one substep. Then the load, which the system does not know, is added
+//! The system moves freely for one substep. Then the load, which is not part of the system, is added
 //! to the ball's fall, its horizontal motion is replaced by the prescribed one, and its spin is set
 //! to zero. That is equivalent to a force and a guide that act during the substep.
 
@@ -191,7 +191,7 @@ impl Run for SlideRun {
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
-    reason = "some million substeps"
+    reason = "a few million substeps"
 )]
 fn count(value: Real) -> u64 {
     value.round() as u64

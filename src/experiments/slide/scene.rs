@@ -110,7 +110,7 @@ impl Membrane {
     }
 
     /// Springs and hinges.
-    pub(super) fn sheet(&self) -> MembraneMaterial {
+    pub(super) fn material(&self) -> MembraneMaterial {
         MembraneMaterial {
             thickness: self.thickness,
             youngs_modulus: self.material.youngs_modulus,

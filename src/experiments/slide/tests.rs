@@ -22,10 +22,10 @@ fn every_row_of_a_short_slide_is_as_expected() {
         plan.cases().iter().map(|case| finish(plan.start(case).unwrap())).collect();
     let findings = plan.evaluate(&records);
     assert_eq!(findings.rows.len(), 21, "rows of all cases");
-    let red: Vec<&str> =
+    let failed: Vec<&str> =
         findings.rows.iter().filter(|row| !row.pass).map(|row| row.id.as_str()).collect();
     // A membrane that is free to bend forms facets: the only difference from the source.
-    assert_eq!(red, ["C8.framed_ripple"], "{:#?}", findings.rows);
+    assert_eq!(failed, ["C8.framed_ripple"], "{:#?}", findings.rows);
     assert!(findings.notes.iter().all(|it| it.starts_with("triangles_heavy: overlap")));
     assert_eq!(findings.plots.len(), 8);
 }

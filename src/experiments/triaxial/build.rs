@@ -1,7 +1,7 @@
 //! The specimen: grains in a tubular membrane between two plates, and what changes of it between
 //! the phases of the test.
 //!
-//! A frame holds the membrane straight while the grains grow; afterwards its end rings are fixed to
+//! A frame holds the membrane straight while the grains grow; afterward its end rings are fixed to
 //! the plates and the rest is free. Grains touch the plates and the membrane. They are softer while
 //! they grow; stiffness and dissipation rise to their true values by equal factors.
 
@@ -120,7 +120,7 @@ impl Recipe {
         let mut random = Random::new(self.scene.seeds[self.choice.initial], Stream::Position);
         let margin = grains.radius_max;
         let positions = scatter(&small, None, &mut random, |it| room.place(margin, it))
-            .expect("the first solid fraction is limited to what always finds a place");
+            .expect("the first solid fraction is limited so that every grain finds a position");
         let density = grains.material.density;
         let masses = self.final_radii.iter().map(|&r| sphere_volume(r) * density).collect();
         Grains::at_rest(positions, small, masses)
@@ -152,8 +152,8 @@ impl Recipe {
     pub(super) fn step(&self, membrane: &MembraneModel, positions: &[Vec3]) -> Real {
         let TriaxialScene { grains, time, .. } = &self.scene;
         let packing = time.rayleigh_share * rayleigh_time(grains.radius_min, &grains.material);
-        let sheet = critical_step_at(membrane, positions, self.contact_stiffness);
-        time.safety * packing.min(sheet)
+        let membrane_step = critical_step_at(membrane, positions, self.contact_stiffness);
+        time.safety * packing.min(membrane_step)
     }
 
     /// Sets the contact laws of softer grains: `share` 1 as during growth, 0 for the true ones.
@@ -180,7 +180,7 @@ fn membrane(scene: &TriaxialScene, choice: Choice) -> Result<MembraneModel, Mesh
         Kind::Triangles => scene.membrane.bending_damping,
         Kind::Spheres => scene.membrane.bending_damping_spheres,
     };
-    let mut membrane = MembraneModel::new(mesh, scene.membrane.sheet(damping));
+    let mut membrane = MembraneModel::new(mesh, scene.membrane.material(damping));
     if scene.membrane.bends_by_first_areas {
         membrane.bend_by_first_areas();
     }
@@ -216,7 +216,7 @@ fn laws(scene: &TriaxialScene, softness: Real) -> [PairLaw; 3] {
         dissipation_time: between(grains.dissipation_time, growth.dissipation_time),
         tangential_damping: grains.tangential_damping,
     };
-    let on_sheet = Surface {
+    let on_membrane = Surface {
         friction: membrane.friction,
         dissipation_time: membrane.dissipation_time,
         tangential_damping: membrane.tangential_damping,
@@ -224,14 +224,14 @@ fn laws(scene: &TriaxialScene, softness: Real) -> [PairLaw; 3] {
     [
         PairLaw::against_rigid(&material, surface(scene.plates.friction)),
         PairLaw::between(&material, &material, surface(grains.friction)),
-        PairLaw::between(&material, &membrane.material, on_sheet),
+        PairLaw::between(&material, &membrane.material, on_membrane),
     ]
 }
 
 fn set_laws(scene: &TriaxialScene, model: &mut Model, softness: Real) {
-    let [plates, grains, sheet] = laws(scene, softness);
+    let [plates, grains, membrane] = laws(scene, softness);
     model.walls.iter_mut().for_each(|wall| wall.law = plates);
-    (model.grain_law, model.membrane_law) = (grains, sheet);
+    (model.grain_law, model.membrane_law) = (grains, membrane);
 }
 
 /// Substep while grains grow in the held membrane (s).

@@ -89,7 +89,7 @@ pub(super) fn hoop_pressure(system: &System) -> Real {
     n_vertices * (around + 2.0 * across) / (2.0 * volume)
 }
 
-/// Kinetic energy of the grains (J). That of the membrane is left out: single vertices of some
+/// Kinetic energy of the grains (J). That of the membrane is not included: single vertices of a few
 /// milligrams may oscillate forever between two contacts while nothing else moves.
 pub(super) fn grain_energy(system: &System) -> Real {
     let grains = &system.state.grains;

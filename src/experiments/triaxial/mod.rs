@@ -11,7 +11,7 @@ mod protocol; // from grown grains to the last strain
 mod run; // one case
 mod scene; // scene keys
 mod time_series; // the recorded series
-mod timing; // both models side by side
+mod timing; // comparison of the run times of both models
 
 use super::{
     Experiment, Plan, Run, SceneText, StartError, find_case, findings::Findings, record::Record,

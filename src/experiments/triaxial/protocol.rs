@@ -36,8 +36,8 @@ use crate::{
 
 /// Substeps between two measurements of the specimen's cross-section and of rest.
 const CHECK_EVERY: u64 = 50;
-/// Substeps between two updates of the free membrane's substep. In that time grains move by some
-/// hundredths of their size, and the update costs some hundredths of the time of the substeps.
+/// Substeps between two updates of the free membrane's substep. In that time grains move by a few
+/// hundredths of their size, and the update costs a few hundredths of the time of the substeps.
 const UPDATE_SUBSTEP_EVERY: u64 = 4000;
 
 /// A phase of the test.

@@ -12,7 +12,7 @@ use crate::{
     },
 };
 
-/// A length that is surely given in the right unit.
+/// A length of a plausible magnitude, so that a wrong unit is detected.
 const SOME_LENGTH: Quantity = Quantity { dimension: &LENGTH, range: Range::AboveUpTo(0.0, 1.0) };
 
 scene_keys! {
@@ -190,7 +190,7 @@ scene_keys! {
 
 impl Membrane {
     /// Springs and hinges, with this damping of the hinges (N s).
-    pub(super) fn sheet(&self, bending_damping: Real) -> MembraneMaterial {
+    pub(super) fn material(&self, bending_damping: Real) -> MembraneMaterial {
         MembraneMaterial {
             thickness: self.thickness,
             youngs_modulus: self.material.youngs_modulus,

@@ -68,8 +68,9 @@ impl MapEach for Vec<Option<Mat3>> {
     }
 }
 
-/// Oracle: a simple cubic lattice, compressed equally along all axes, has the same pressure everywhere: that of
-/// its one contact per axis and cell. Periodic, so that no cell differs. Tolerance: rounding.
+/// Oracle: a simple cubic lattice, compressed equally along all axes, has the same pressure
+/// everywhere: that of its one contact per axis and cell. Periodic, so that no cell differs.
+/// Tolerance: rounding.
 #[test]
 fn a_compressed_lattice_is_hydrostatic_in_every_cell() {
     let (n, radius, edge) = (4, 1e-3, 1.99e-3);

@@ -19,7 +19,8 @@ fn scattered(n: usize) -> (Vec<Vec3>, Vec<Real>, Grid) {
     (positions, radii, grid)
 }
 
-/// Oracle: the total of the distributed quantity. Tolerance 1e-12: sums of thousands of parts, each exact to 1e-15.
+/// Oracle: the total of the distributed quantity. Tolerance 1e-12: sums of thousands of parts, each
+/// exact to 1e-15.
 #[test]
 fn the_cells_add_up_to_the_totals() {
     let (positions, radii, grid) = scattered(300);
@@ -86,12 +87,12 @@ fn a_linear_velocity_has_its_gradient() {
     let frame = Pose::from_parts(Vec3::zeros().into(), rotation);
     let grid = Grid::new(frame, Vec3::repeat(1.0), [n; 3]).unwrap();
     let overlaps = Overlaps::new(&grid, &positions, &vec![0.4; n * n * n], None);
-    let wanted = Mat3::new(0.1, 2.0, -0.4, 0.0, 0.7, 1.3, -2.2, 0.5, -0.8);
-    let velocities: Vec<Vec3> = positions.iter().map(|x| wanted * x).collect();
+    let expected = Mat3::new(0.1, 2.0, -0.4, 0.0, 0.7, 1.3, -2.2, 0.5, -0.8);
+    let velocities: Vec<Vec3> = positions.iter().map(|x| expected * x).collect();
     let gradients = gradient(&grid, &overlaps.mean(&velocities));
     for indices in [[1, 1, 1], [2, 3, 3], [3, 4, 2]] {
         let found = gradients[grid.index(indices)].unwrap();
-        assert!((found - wanted).norm() < 1e-12, "{found}");
+        assert!((found - expected).norm() < 1e-12, "{found}");
     }
     let mut lonely = vec![None; grid.n_cells()];
     lonely[grid.index([2, 2, 2])] = Some(Vec3::x());

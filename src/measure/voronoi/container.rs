@@ -11,9 +11,9 @@
 //! s_f  1 if O sees the inner side of the facet, −1 if the outer one
 //! ```
 //!
-//! The cones over all facets, with their signs, cover space w times, and their parts beyond the facets cover
-//! the outside. Each part is convex. Only facets no farther from O than the cell's farthest vertex contribute.
-//! Areas of faces are clipped by the same sum.
+//! The cones over all facets, with their signs, cover space w times, and their parts beyond the
+//! facets cover the outside. Each part is convex. Only facets no farther from O than the cell's
+//! farthest vertex contribute. Areas of faces are clipped by the same sum.
 
 use std::{collections::BTreeMap, f64::consts::PI};
 

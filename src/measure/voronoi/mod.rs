@@ -21,11 +21,12 @@
 //! assert!(cells[0].faces.iter().any(|face| face.neighbor == Neighbor::Sphere(1)));
 //! ```
 //!
-//! This module does its own clipping instead of using a crate, after a comparison on 19 652 cells (lattices with noise, equal and unequal
-//! radii; random points): `voro_rs` 0.3, which binds voro++, gives the same volumes to 3e-14 and the same
-//! faces in 0.38 to 0.49 s, this module in 0.27 to 0.49 s on one core. The binding needs a C++ compiler for
-//! each target and has no triangulated containers; `meshless_voronoi` 0.7 and `vorothree` 0.0.1 do not support
-//! radii. Their licenses (BSD-3-Clause-LBNL, MIT, Apache-2.0) would all be acceptable.
+//! This module does its own clipping instead of using a crate, after a comparison on 19 652 cells
+//! (lattices with noise, equal and unequal radii; random points): `voro_rs` 0.3, which binds
+//! voro++, gives the same volumes to 3e-14 and the same faces in 0.38 to 0.49 s, this module in
+//! 0.27 to 0.49 s on one core. The binding needs a C++ compiler for each target and has no
+//! triangulated containers; `meshless_voronoi` 0.7 and `vorothree` 0.0.1 do not support radii.
+//! Their licenses (BSD-3-Clause-LBNL, MIT, Apache-2.0) would all be acceptable.
 
 mod container;
 mod polyhedron;
@@ -157,7 +158,8 @@ impl Tessellation<'_> {
         }
     }
 
-    /// Cuts `cell` of sphere i by the plane of sphere j, which is at `delta` from it; true if it became smaller.
+    /// Cuts `cell` of sphere i by the plane of sphere j, which is at `delta` from it; true if it
+    /// became smaller.
     fn cut_by(
         &self,
         (i, j): (usize, usize),

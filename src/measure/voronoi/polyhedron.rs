@@ -158,7 +158,8 @@ impl Polyhedron {
 }
 
 impl Cutter {
-    /// Sets `self.cut` to the part of `original` that is not above the plane; false if the cut is inconsistent.
+    /// Sets `self.cut` to the part of `original` that is not above the plane; false if the cut is
+    /// inconsistent.
     fn divide(
         &mut self,
         original: &Polyhedron,

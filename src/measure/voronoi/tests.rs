@@ -74,8 +74,9 @@ fn a_lattice_has_its_exact_cells() {
     }
 }
 
-/// Oracle: the container's volume and symmetry. Radii that differ by a factor of ten, positions at random: many
-/// cells are empty, many do not contain their own center. Faces have the same area from both sides.
+/// Oracle: the container's volume and symmetry. Radii that differ by a factor of ten, positions at
+/// random: many cells are empty, many do not contain their own center. Faces have the same area
+/// from both sides.
 #[test]
 fn cells_fill_the_box_and_share_their_faces() {
     let (low, high) = (Vec3::new(-1.0, 2.0, 0.0), Vec3::new(1.0, 3.0, 0.7));
@@ -122,7 +123,8 @@ fn a_hidden_sphere_has_an_empty_cell() {
     assert!(total(&laguerre_cells(&hidden, &[0.1; 3], &flat)).abs() < 1e-15);
 }
 
-/// Oracle: the box minus the corner of volume 1/6 that the wall cuts off, and the wall's triangle of area √3/2.
+/// Oracle: the box minus the corner of volume 1/6 that the wall cuts off, and the wall's triangle
+/// of area √3/2.
 #[test]
 fn walls_cut_cells() {
     let (low, high) = (Vec3::zeros(), Vec3::repeat(2.0));

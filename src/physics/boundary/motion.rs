@@ -37,7 +37,7 @@ pub enum WallMotion {
     /// Does not move.
     #[default]
     Fixed,
-    /// Moved by the owner of the system, who writes the velocity, and the pose if it jumps, into
+    /// Moved by the owner of the system, which writes the velocity, and the pose if it jumps, into
     /// `Controls::walls` before each substep. `System::step` advances the pose.
     External,
     /// Moves at a constant velocity.

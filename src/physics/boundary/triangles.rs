@@ -3,7 +3,7 @@
 //! A grain may touch several faces, edges and vertices of such a wall at the same time, so there is no
 //! single distance. Each triangle has a closest point and the feature on which it lies;
 //! `Triangles::touching` selects the local minima of the distance, each once. The surface may be open.
-//! Grains touch its triangles from both sides, and the normal points towards the grain.
+//! Grains touch its triangles from both sides, and the normal points toward the grain.
 
 use std::sync::Arc;
 

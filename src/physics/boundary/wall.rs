@@ -35,12 +35,12 @@ impl WallModel {
     }
 }
 
-/// The surface of a wall in its own frame.
+/// The surface of a wall, in the frame of the wall.
 #[derive(Clone, Debug, PartialEq)]
 pub enum WallShape {
     /// A plane through the origin of the frame.
     Plane {
-        /// Unit normal, towards the grains.
+        /// Unit normal, toward the grains.
         normal: Vec3,
     },
     /// The inner side of an infinite cylinder around z.
@@ -81,7 +81,7 @@ impl WallShape {
         }
     }
 
-    /// Distance (m) of the surface from the point at `arm` (m) from the wall's origin, and the unit normal towards
+    /// Distance (m) of the surface from the point at `arm` (m) from the wall's origin, and the unit normal toward
     /// the point, world axes. `None` if the wall has no surface or no single distance.
     pub fn distance(&self, motion: &BodyMotion, arm: &Vec3) -> Option<(Real, Vec3)> {
         self.placed(motion).distance(arm)

@@ -48,7 +48,7 @@ impl Wall {
         Self { shape, pose: Pose::identity(), motion: WallMotion::Fixed, law: None }
     }
 
-    /// A plane through `point` (m); the unit vector `normal` points towards the grains.
+    /// A plane through `point` (m); the unit vector `normal` points toward the grains.
     pub fn plane(point: Vec3, normal: Vec3) -> Self {
         let pose = Pose::translation(point.x, point.y, point.z);
         Self::new(WallShape::Plane { normal }).at(pose)

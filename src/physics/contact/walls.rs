@@ -7,7 +7,7 @@
 //! | symbol | meaning | unit |
 //! |---|---|---|
 //! | R, m, ẋ, ω | radius, mass, velocity and angular velocity of the grain | m, kg, m/s, rad/s |
-//! | d, n | distance of the wall from the grain's center, unit normal towards the grain | m, – |
+//! | d, n | distance of the wall from the grain's center, unit normal toward the grain | m, – |
 //! | ξ, b | overlap, vector from the center to the contact point | m |
 //! | v, v_wall | relative velocity, velocity of the wall at the contact point | m/s |
 //! | R*, m* | effective radius and mass for the contact law | m, kg |

@@ -207,7 +207,7 @@ mod tests {
             let mesh = Mesh::bar(&bar).unwrap();
             let volume = pressure::volume(&mesh, &mesh.positions);
             // The middle row is rotated by half a step and so cuts the edges: a triangle with legs of half a
-            // step, 0.01/n, is missing there. It vanishes towards both ends: a third of a prism in total.
+            // step, 0.01/n, is missing there. It vanishes toward both ends: a third of a prism in total.
             let cut = 4.0 * 0.5 * (0.01 / n_side as Real).powi(2) * 0.05 / 3.0;
             assert!((volume - (0.02 * 0.02 * 0.05 - cut)).abs() < 1e-12, "{volume} {cut}");
             assert!(mesh.is_closed());

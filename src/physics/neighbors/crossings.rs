@@ -2,7 +2,7 @@
 //!
 //! The check runs at every build of the lists, for grains whose center is closer to the membrane than the skin.
 //! Between two builds grain and membrane together move by less than the skin, so no grain can cross the membrane
-//! and leave that distance undetected. The sign of the distance to the closest point follows from the normal of
+//! undetected. The sign of the distance to the closest point follows from the normal of
 //! the face, the mean normal at an edge, or the angle-weighted mean normal at a vertex (Bærentzen & Aanæs 2005),
 //! which is exact for every closed surface. Grains next to a rim are not checked.
 

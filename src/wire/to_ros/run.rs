@@ -43,7 +43,7 @@ pub(super) fn statistics(snapshot: &Snapshot, run: &RunStatistics) -> Statistics
         seed: run.seed,
         n_commands_applied: commands.n_applied,
         n_commands_limited: commands.n_limited,
-        n_commands_refused: commands.n_refused,
+        n_commands_refused: commands.n_rejected,
         sinks: run.sinks.iter().map(sink).collect(),
         overlap_ratio_max: jamming.overlap_ratio_max,
         membrane_overlap_ratio_max: jamming.membrane_overlap_ratio_max,
@@ -100,9 +100,9 @@ fn commands(snapshot: &Snapshot) -> DiagnosticStatus {
     let values = [
         ("applied", counts.n_applied.to_string()),
         ("limited", counts.n_limited.to_string()),
-        ("refused", counts.n_refused.to_string()),
+        ("refused", counts.n_rejected.to_string()),
     ];
-    let (level, message) = match counts.n_refused {
+    let (level, message) = match counts.n_rejected {
         0 => (DiagnosticStatus::OK, "none rejected"),
         _ => (DiagnosticStatus::WARN, "some rejected"),
     };

@@ -24,10 +24,10 @@ def scattered(rng, n, low, high, radii, period=None):
         while True:
             margin = 0.0 if period is not None else radii[i]
             place = rng.uniform(low + margin, high - margin)
-            apart = np.array(places).reshape(-1, 3) - place
+            separation = np.array(places).reshape(-1, 3) - place
             if period is not None:
-                apart -= period * np.round(apart / period)
-            if (np.linalg.norm(apart, axis=1) > radii[:i] + radii[i]).all():
+                separation -= period * np.round(separation / period)
+            if (np.linalg.norm(separation, axis=1) > radii[:i] + radii[i]).all():
                 break
         places.append(place)
     return np.array(places)

@@ -39,7 +39,7 @@ fn the_bits_do_not_depend_on_the_number_of_threads() {
     let bits = |forces: Vec<Vec3>| -> Vec<[u64; 3]> {
         forces.iter().map(|f| [f.x.to_bits(), f.y.to_bits(), f.z.to_bits()]).collect()
     };
-    // Oracle: the same computation on one thread, bit by bit.
+    // Oracle: the same computation on one thread, bit for bit.
     assert_eq!(bits(on(1)), bits(on(3)));
 }
 
