@@ -70,7 +70,7 @@ impl Plant for Counter {
 
     fn view<'a>(&'a self, snapshot: &'a Snapshot) -> View<'a> {
         View {
-            snapshot: snapshot,
+            snapshot,
             grain_positions: &[],
             grain_velocities: &[],
             grain_spins: &[],

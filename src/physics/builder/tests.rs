@@ -150,14 +150,16 @@ fn several_membranes_share_a_system() {
     assert!((center - pose.translation.vector).norm() < 1e-12);
 }
 
+/// The error of a builder with a floor and one change.
+fn error(change: &dyn Fn(&mut SystemBuilder)) -> BuildError {
+    let mut builder = builder_of_a_floor();
+    change(&mut builder);
+    builder.build().err().unwrap()
+}
+
 #[test]
-fn inconsistent_parts_are_rejected() {
+fn inconsistent_grains_and_walls_are_rejected() {
     // Oracle: the one error of each builder.
-    let error = |change: &dyn Fn(&mut SystemBuilder)| {
-        let mut builder = builder_of_a_floor();
-        change(&mut builder);
-        builder.build().err().unwrap()
-    };
     let message = |it: &dyn Fn(&mut SystemBuilder)| error(it).to_string();
     let text = message(&|it| {
         it.grain(Vec3::zeros(), -1e-3);
@@ -185,6 +187,11 @@ fn inconsistent_parts_are_rejected() {
         it.wall(Wall::plane(Vec3::zeros(), Vec3::x() * 2.0));
     };
     assert_eq!(error(&tilted), BuildError::Normal { wall: 1, length: 2.0 });
+}
+
+#[test]
+fn inconsistent_membranes_and_boxes_are_rejected() {
+    // Oracle: the one error of each builder.
     let loose = error(&|it| {
         it.membrane(disc());
     });
