@@ -437,6 +437,25 @@ mod tests {
     }
 
     #[test]
+    fn contacts_with_surfaces_are_restored() {
+        // Oracle: the state that was written.
+        let history = |memory| SurfaceHistory {
+            spring: Vec3::new(1e-6, -0.0, 2e-6),
+            normal: Vec3::z(),
+            memory,
+        };
+        let mut before = state(0);
+        before.springs.surfaces = SurfaceHistories {
+            ids: vec![[0, 2], [3, 0]],
+            histories: vec![history(vec![]), history(vec![1.0, 0.5])],
+        };
+        let after = read(&write(&before)).unwrap();
+        assert_eq!(after.springs.surfaces, before.springs.surfaces);
+        assert_eq!(digest(&after), digest(&before));
+        assert_ne!(digest(&after), digest(&state(0)));
+    }
+
+    #[test]
     fn springs_at_walls_are_written_and_digested_as_if_all_were_listed() {
         // Oracle: the array of all walls with all grains, as earlier versions wrote it.
         let state = state(0);

@@ -133,7 +133,7 @@ impl ListedSprings {
 
 /// History of contacts of grains with walls of triangles and with bodies. A grain may have several contacts with
 /// the same surface.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct SurfaceHistories {
     /// Surface, as in `Model::surface`, and grain of each contact; ascending.
     pub ids: Vec<[u32; 2]>,
