@@ -255,5 +255,5 @@ fn bytes_of_another_scene_and_truncated_bytes_are_rejected() {
     }
     let other = coarse::compiled(1, &["grains.count=281"]);
     let error = Session::resume(other, &bytes).err().unwrap().to_string();
-    assert!(error.contains("280 grains, the scene has 281"), "{error}");
+    assert!(error.contains("280 grains, but the scene has 281"), "{error}");
 }
